@@ -1,0 +1,76 @@
+// file.cpp — opening, checking, renaming.
+#include "cli/file.hpp"
+#include "error.hpp"
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <iostream>
+#include <unistd.h>
+
+namespace molmesh::cli {
+namespace fs = std::filesystem;
+
+InputFile::InputFile(const std::string& path) : name_(path) {
+  if (path == "-") {
+    standard_ = true;
+    name_ = "<stdin>";
+    return;
+  }
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) fail_input(path + ": is a directory, expected a file");
+  errno = 0;
+  file_.open(path, std::ios::binary);
+  if (!file_) fail_input(path + ": cannot open: " + std::strerror(errno ? errno : ENOENT));
+}
+
+std::istream& InputFile::stream() {
+  return standard_ ? std::cin : file_;
+}
+
+OutputFile::OutputFile(const std::string& path) : path_(path) {
+  if (path == "-") {
+    standard_ = true;
+    return;
+  }
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  direct_ = fs::exists(status) && !fs::is_regular_file(status); // /dev/null, a named pipe
+  temporary_ = direct_ ? path : path + ".tmp." + std::to_string(getpid());
+  errno = 0;
+  file_.open(temporary_, std::ios::binary | std::ios::trunc);
+  if (!file_) refuse("cannot open");
+}
+
+OutputFile::~OutputFile() {
+  if (standard_ || direct_ || temporary_.empty()) return;
+  file_.close();
+  std::remove(temporary_.c_str());
+}
+
+std::ostream& OutputFile::stream() {
+  return standard_ ? std::cout : file_;
+}
+
+void OutputFile::refuse(const char* what) const {
+  fail(Status::not_written, (standard_ ? "<stdout>" : path_) + ": " + what + ": " + std::strerror(errno ? errno : EIO));
+}
+
+void OutputFile::commit() {
+  errno = 0;
+  stream().flush();
+  if (!stream()) refuse("cannot write");
+  if (standard_) return;
+  file_.close();
+  if (!file_) refuse("cannot write");
+  if (direct_) return;
+  const int fd = open(temporary_.c_str(), O_RDONLY);
+  const bool synced = fd >= 0 && fsync(fd) == 0;
+  if (fd >= 0) close(fd);
+  if (!synced) refuse("cannot write");
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) refuse("cannot rename");
+  temporary_.clear();
+}
+
+} // namespace molmesh::cli

@@ -1,0 +1,83 @@
+// run.hpp — what every tool shares: common options, the run report, main() around run(options).
+#pragma once
+#include "error.hpp"
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace molmesh::cli {
+
+/// Options of every tool (design §4). A tool's Options derives from it.
+struct Common {
+  std::string input = "-", output = "-";
+  std::string mode = "omp"; ///< seq, omp, cuda
+  int threads = 0;          ///< 0: all
+  std::string report;       ///< empty: none
+  bool quiet = false, verbose = false;
+
+  /// Threads to use: 1 for seq. Throws Error(mode_unavailable) for cuda, which no tool has yet.
+  int resolved_threads() const;
+};
+
+/// Phases and counts of one run, for --report and -v.
+class Run {
+public:
+  /// Ends the phase before, starts this one.
+  void phase(const std::string& name);
+  void end_phase();
+  nlohmann::ordered_json counts = nlohmann::ordered_json::object();
+  /// A line on stderr unless -q (prefixed with the tool's name): what the user should know, not an error.
+  void note(const std::string& line) const;
+
+  std::string tool;
+  bool quiet = false, verbose = false;
+  struct Phase {
+    std::string name;
+    double seconds;
+  };
+  std::vector<Phase> phases;
+
+private:
+  std::chrono::steady_clock::time_point started_;
+  bool open_ = false;
+};
+
+/// "hier2density 0.1.0"
+std::string creator(const std::string& tool);
+
+/// Numbers with a fixed count separated by commas ("0.9,1.1"), strictly parsed. Throws Error(usage).
+std::vector<double> numbers(const std::string& option, const std::string& text, size_t count);
+
+namespace detail {
+void describe_common(CLI::App& app, Common& o);
+int parse(CLI::App& app, int argc, char** argv, bool& stop);
+int finish(const CLI::App& app, const Common& o, Run& run, Status status);
+int failed(const std::string& tool, const std::exception& e);
+} // namespace detail
+
+/// The whole of a tool's main(). describe(app, options) declares the tool's own options; run(options, run) works and
+/// returns a Status. Every exception becomes one line on stderr and its exit status.
+template <class Options, class Describe, class RunTool>
+int run_main(const char* tool, const char* purpose, int argc, char** argv, Describe describe, RunTool run_tool) {
+  try {
+    Options options;
+    CLI::App app(purpose, tool);
+    detail::describe_common(app, options);
+    describe(app, options);
+    bool stop = false;
+    const int status = detail::parse(app, argc, argv, stop);
+    if (stop) return status;
+    Run run;
+    run.tool = tool;
+    run.quiet = options.quiet;
+    run.verbose = options.verbose;
+    const Status result = run_tool(options, run);
+    return detail::finish(app, options, run, result);
+  } catch (const std::exception& e) {
+    return detail::failed(tool, e);
+  }
+}
+
+} // namespace molmesh::cli

@@ -1,0 +1,32 @@
+// error.hpp — the one exception of the library, and the exit status every tool maps it to (design §4).
+#pragma once
+#include <stdexcept>
+#include <string>
+
+namespace molmesh {
+
+enum class Status {
+  good = 0,
+  failed = 1,           ///< the run failed
+  usage = 2,            ///< options
+  bad_input = 3,        ///< input unreadable or invalid
+  not_written = 4,      ///< output not written
+  below_quality = 5,    ///< valid and written, but below the quality asked for
+  mode_unavailable = 6, ///< no GPU, or built without
+};
+
+/// what() is one line without a final newline; for bad input "FILE:LINE: what was found, what was expected".
+struct Error : std::runtime_error {
+  Error(Status s, const std::string& line) : std::runtime_error(line), status(s) {}
+  Status status;
+};
+
+[[noreturn]] inline void fail(Status status, const std::string& line) {
+  throw Error(status, line);
+}
+/// Input that is unreadable or invalid: status 3.
+[[noreturn]] inline void fail_input(const std::string& line) {
+  fail(Status::bad_input, line);
+}
+
+} // namespace molmesh

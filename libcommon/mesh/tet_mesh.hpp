@@ -1,0 +1,30 @@
+// tet_mesh.hpp — tetrahedra with their regions and boundary triangles: what the .vtu file holds (design §3).
+#pragma once
+#include "geom/vec.hpp"
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace molmesh {
+
+using Tet = std::array<int32_t, 4>; ///< dot(cross(p1 - p0, p2 - p0), p3 - p0) > 0, VTK's order
+using Tri = std::array<int32_t, 3>; ///< counter-clockwise seen from outside
+
+enum Region : int32_t { molecule = 1, outside = 2, cavity = 3 };
+enum Boundary : int32_t { surface = 1, box_x0 = 2, box_x1, box_y0, box_y1, box_z0, box_z1 };
+
+/// Triangles are exactly the faces between regions and the faces with one tetrahedron. Molecular-surface triangles
+/// point out of region 1, box triangles out of the box. No duplicate or unused point (I6).
+struct TetMesh {
+  std::vector<Vec3d> point;      ///< Å
+  std::vector<Tet> tet;
+  std::vector<int32_t> region;   ///< [tets] Region; any positive label of a foreign mesh
+  std::vector<int32_t> part;     ///< [tets] METIS part, or empty
+  std::vector<Tri> tri;
+  std::vector<int32_t> boundary; ///< [tris] Boundary; any positive label of a foreign mesh
+  double isovalue = 1;
+  std::string source, creator;
+};
+
+} // namespace molmesh

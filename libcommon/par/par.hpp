@@ -1,0 +1,94 @@
+// par.hpp — loops, reductions, scans and sorts, serial and OpenMP. The only file with `#pragma omp`.
+// Every function gives the same result for any number of threads.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <mutex>
+#include <vector>
+
+namespace molmesh::par {
+
+/// Number of threads OpenMP would use by default (1 without OpenMP).
+int default_threads();
+
+/// f(i) for i in [0, n); calls are independent. `grain`: items a thread takes at a time (dynamic schedule).
+/// The first exception thrown by f (lowest chunk not guaranteed) is rethrown after the loop.
+template <class F>
+void for_n(int64_t n, int threads, int64_t grain, F&& f) {
+  if (n <= 0) return;
+  if (threads <= 1 || n <= grain) {
+    for (int64_t i = 0; i < n; ++i) f(i);
+    return;
+  }
+  std::exception_ptr error;
+  std::mutex guard;
+  const int64_t chunks = (n + grain - 1) / grain;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+  for (int64_t c = 0; c < chunks; ++c) {
+    try {
+      const int64_t end = std::min(n, (c + 1) * grain);
+      for (int64_t i = c * grain; i < end; ++i) f(i);
+    } catch (...) {
+      const std::lock_guard<std::mutex> lock(guard);
+      if (!error) error = std::current_exception();
+    }
+  }
+  if (error) std::rethrow_exception(error);
+}
+
+template <class F>
+void for_n(int64_t n, int threads, F&& f) {
+  for_n(n, threads, int64_t{1024}, static_cast<F&&>(f));
+}
+
+/// combine(… combine(combine(init, f(0)), f(1)) …) in a fixed tree: chunks of `grain` left to right, then the
+/// chunk results left to right. Same bits for any number of threads; `combine` need not commute.
+template <class T, class F, class C>
+T reduce(int64_t n, int threads, T init, F&& f, C&& combine, int64_t grain = 4096) {
+  const int64_t chunks = n > 0 ? (n + grain - 1) / grain : 0;
+  std::vector<T> part(static_cast<size_t>(chunks), init);
+  for_n(chunks, threads, 1, [&](int64_t c) {
+    T sum = init;
+    const int64_t end = std::min(n, (c + 1) * grain);
+    for (int64_t i = c * grain; i < end; ++i) sum = combine(sum, f(i));
+    part[static_cast<size_t>(c)] = sum;
+  });
+  T sum = init;
+  for (const T& p : part) sum = combine(sum, p);
+  return sum;
+}
+
+/// count[i] → sum of count[0..i), in place; returns the total. Count → scan → fill instead of atomic appends.
+template <class T>
+T exclusive_scan(std::vector<T>& count) {
+  T sum{};
+  for (T& c : count) {
+    const T n = c;
+    c = sum;
+    sum += n;
+  }
+  return sum;
+}
+
+/// Sort by operator< or `less`. Equal elements must be interchangeable: the result is then unique.
+template <class T, class Less>
+void sort(std::vector<T>& v, int threads, Less less) {
+  const int64_t n = static_cast<int64_t>(v.size());
+  int64_t runs = 1;
+  while (runs < threads && n / (2 * runs) > 8192) runs *= 2;
+  const auto at = [&](int64_t r) { return v.begin() + static_cast<std::ptrdiff_t>(n * r / runs); };
+  for_n(runs, threads, 1, [&](int64_t r) { std::sort(at(r), at(r + 1), less); });
+  for (int64_t width = 1; width < runs; width *= 2)
+    for_n(runs / (2 * width), threads, 1, [&](int64_t m) {
+      const int64_t r = m * 2 * width;
+      std::inplace_merge(at(r), at(r + width), at(r + 2 * width), less);
+    });
+}
+template <class T>
+void sort(std::vector<T>& v, int threads) {
+  sort(v, threads, [](const T& a, const T& b) { return a < b; });
+}
+
+} // namespace molmesh::par
