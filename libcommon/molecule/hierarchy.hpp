@@ -5,16 +5,32 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace molmesh {
 
+/// Atom names and elements, each text stored once: a capsid has 10⁷ atoms and a few dozen names. Entry 0 is "X".
+class Names {
+public:
+  Names() { add("X"); }
+  /// The entry of `text`, added when new.
+  int32_t add(std::string_view text);
+  const std::string& operator[](int32_t entry) const { return text_[static_cast<size_t>(entry)]; }
+  int64_t size() const { return static_cast<int64_t>(text_.size()); }
+
+private:
+  std::vector<std::string> text_;
+  std::unordered_map<std::string, int32_t> entry_;
+};
+
 struct Atom {
-  Vec3d center;        ///< Å, finite
-  double radius = 0;   ///< Å, > 0
+  Vec3d center;                                             ///< Å, finite
+  double radius = 0;                                        ///< Å, > 0
   double charge = std::numeric_limits<double>::quiet_NaN(); ///< elementary charges; NaN: not given
-  std::string name;    ///< "CA"; no white space
-  std::string element; ///< "C"
+  int32_t name = 0;                                         ///< entry of Hierarchy::names: "CA"
+  int32_t element = 0;                                      ///< entry of Hierarchy::names: "C"
 };
 
 /// One group. Its children are groups of the next level, or atoms at the innermost level:
@@ -31,14 +47,16 @@ struct Level {
 };
 
 /// Levels outermost first; possibly none (a plain sum over atoms). The groups of level l are consecutive, in file
-/// order, and partition level l + 1 (or the atoms) exactly.
+/// order, and partition level l + 1 (or the atoms) exactly; none is empty.
 struct Hierarchy {
-  std::string source; ///< "1tii.pdb sha256:…", empty when unknown
+  std::string source; ///< "1tii.pdb sha256:…", one line, empty when unknown
   std::vector<Level> level;
   std::vector<Atom> atom;
+  Names names;
 };
 
-/// Throws Error(bad_input) naming the first broken rule: ranges that do not partition, values out of range.
+/// Throws Error(bad_input) naming the first broken rule: no atom, ranges that do not partition, an empty group or
+/// name, values out of range.
 void check(const Hierarchy& h, const std::string& file);
 
 } // namespace molmesh

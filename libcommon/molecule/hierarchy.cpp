@@ -1,0 +1,64 @@
+// hierarchy.cpp — what every hierarchy must hold, whoever made it.
+#include "molecule/hierarchy.hpp"
+#include "error.hpp"
+#include <cmath>
+
+namespace molmesh {
+
+int32_t Names::add(std::string_view text) {
+  const auto [found, is_new] = entry_.try_emplace(std::string(text), static_cast<int32_t>(text_.size()));
+  if (is_new)
+    text_.emplace_back(text);
+  return found->second;
+}
+
+void check(const Hierarchy& h, const std::string& file) {
+  const auto refuse = [&](const std::string& what) { fail_input(file + ": " + what); };
+  if (h.atom.empty())
+    refuse("no atom, expected at least one");
+  if (h.source.find_first_of("\r\n") != std::string::npos)
+    refuse("source of several lines, expected one");
+
+  for (size_t l = 0; l < h.level.size(); ++l) {
+    const Level& level = h.level[l];
+    if (level.name.empty())
+      refuse("level without a name");
+    for (size_t m = 0; m < l; ++m)
+      if (h.level[m].name == level.name)
+        refuse("level '" + level.name + "' twice, expected distinct names");
+    const size_t children = l + 1 < h.level.size() ? h.level[l + 1].group.size() : h.atom.size();
+    int64_t next = 0;
+    for (const Group& g : level.group) {
+      const auto bad = [&](const std::string& what) { refuse(level.name + " '" + g.name + "': " + what); };
+      if (g.name.empty())
+        refuse(level.name + " without a name");
+      if (!(std::isfinite(g.exponent) && g.exponent > 0))
+        bad("exponent " + std::to_string(g.exponent) + ", expected a finite number > 0");
+      if (g.begin != next)
+        bad("begins at child " + std::to_string(g.begin) + ", expected " + std::to_string(next));
+      if (g.end <= g.begin)
+        bad("is empty, expected at least one child");
+      next = g.end;
+    }
+    if (next != static_cast<int64_t>(children))
+      refuse("level '" + level.name + "' covers " + std::to_string(next) + " of " + std::to_string(children) +
+             " children, expected all");
+  }
+
+  for (size_t a = 0; a < h.atom.size(); ++a) {
+    const Atom& atom = h.atom[a];
+    const auto bad = [&](const char* what) { refuse("atom " + std::to_string(a) + ": " + what); };
+    if (!std::isfinite(atom.center.x + atom.center.y + atom.center.z))
+      bad("position not finite");
+    if (!(std::isfinite(atom.radius) && atom.radius > 0))
+      bad("radius not a finite number > 0");
+    if (std::isinf(atom.charge))
+      bad("charge not finite");
+    if (atom.name < 0 || atom.name >= h.names.size() || h.names[atom.name].empty())
+      bad("no name");
+    if (atom.element < 0 || atom.element >= h.names.size() || h.names[atom.element].empty())
+      bad("no element");
+  }
+}
+
+} // namespace molmesh
