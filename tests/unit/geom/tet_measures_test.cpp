@@ -6,7 +6,7 @@
 using namespace molmesh;
 
 TEST_CASE("the regular tetrahedron has quality 1") {
-  const Vec3d a{1, 1, 1}, b{1, -1, -1}, c{-1, 1, -1}, d{-1, -1, 1};
+  const Vec3d a{1, 1, 1}, b{1, -1, -1}, c{-1, -1, 1}, d{-1, 1, -1};
   CHECK(tet_volume(a, b, c, d) == Approx(8.0 / 3)); // a cube of side 2 less four corners
   const double q = joe_liu_q(six_volume(a, b, c, d), edge_sum2(a, b, c, d));
   CHECK(q == Approx(1).epsilon(1e-14));
