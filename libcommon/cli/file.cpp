@@ -19,34 +19,35 @@ InputFile::InputFile(const std::string& path) : name_(path) {
     return;
   }
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) fail_input(path + ": is a directory, expected a file");
+  if (fs::is_directory(path, ignored))
+    fail_input(path + ": is a directory, expected a file");
   errno = 0;
   file_.open(path, std::ios::binary);
-  if (!file_) fail_input(path + ": cannot open: " + std::strerror(errno ? errno : ENOENT));
+  if (!file_)
+    fail_input(path + ": cannot open: " + std::strerror(errno ? errno : ENOENT));
 }
 
 std::istream& InputFile::stream() {
   return standard_ ? std::cin : file_;
 }
 
-OutputFile::OutputFile(const std::string& path) : path_(path) {
+OutputFile::OutputFile(const std::string& path) : path_(path), target_(path), written_(path) {
   if (path == "-") {
     standard_ = true;
     return;
   }
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  direct_ = fs::exists(status) && !fs::is_regular_file(status); // /dev/null, a named pipe
-  temporary_ = direct_ ? path : path + ".tmp." + std::to_string(getpid());
+  std::error_code none;
+  const fs::file_status status = fs::status(path, none);
+  if (fs::is_symlink(fs::symlink_status(path, none)) && fs::exists(status))
+    target_ = fs::canonical(path).string();
   errno = 0;
-  file_.open(temporary_, std::ios::binary | std::ios::trunc);
-  if (!file_) refuse("cannot open");
-}
-
-OutputFile::~OutputFile() {
-  if (standard_ || direct_ || temporary_.empty()) return;
-  file_.close();
-  std::remove(temporary_.c_str());
+  if (!fs::exists(status) || fs::is_regular_file(status)) {
+    written_ = target_ + ".tmp." + std::to_string(getpid());
+    temporary_.emplace(written_);
+  }
+  file_.open(written_, std::ios::binary | std::ios::trunc);
+  if (!file_)
+    refuse("cannot open");
 }
 
 std::ostream& OutputFile::stream() {
@@ -54,23 +55,31 @@ std::ostream& OutputFile::stream() {
 }
 
 void OutputFile::refuse(const char* what) const {
-  fail(Status::not_written, (standard_ ? "<stdout>" : path_) + ": " + what + ": " + std::strerror(errno ? errno : EIO));
+  const int error = errno ? errno : EIO;
+  fail(Status::not_written, (standard_ ? "<stdout>" : path_) + ": " + what + ": " + std::strerror(error));
 }
 
 void OutputFile::commit() {
   errno = 0;
   stream().flush();
-  if (!stream()) refuse("cannot write");
-  if (standard_) return;
+  if (!stream())
+    refuse("cannot write");
+  if (standard_)
+    return;
   file_.close();
-  if (!file_) refuse("cannot write");
-  if (direct_) return;
-  const int fd = open(temporary_.c_str(), O_RDONLY);
+  if (!file_)
+    refuse("cannot write");
+  if (!temporary_)
+    return;
+  const int fd = open(written_.c_str(), O_RDONLY);
   const bool synced = fd >= 0 && fsync(fd) == 0;
-  if (fd >= 0) close(fd);
-  if (!synced) refuse("cannot write");
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) refuse("cannot rename");
-  temporary_.clear();
+  if (fd >= 0)
+    close(fd);
+  if (!synced)
+    refuse("cannot write");
+  if (std::rename(written_.c_str(), target_.c_str()) != 0)
+    refuse("cannot rename");
+  temporary_->keep();
 }
 
 } // namespace molmesh::cli

@@ -1,7 +1,9 @@
 // file.hpp — inputs that may be stdin, outputs that are whole or absent (I10).
 #pragma once
+#include "cli/cleanup.hpp"
 #include <fstream>
 #include <iosfwd>
+#include <optional>
 #include <string>
 
 namespace molmesh::cli {
@@ -20,23 +22,24 @@ private:
   bool standard_ = false;
 };
 
-/// "-" is standard output. A regular file is written under a temporary name beside it and renamed by commit();
-/// without commit() nothing is left behind. Throws Error(not_written).
+/// "-" is standard output. A regular file is written as PATH.tmp.PID beside it and renamed by commit(); without
+/// commit(), or when a signal ends the process, nothing is left behind and an older file of that name stays as it
+/// was. A symbolic link is followed; a device or named pipe is written directly. Throws Error(not_written).
 class OutputFile {
 public:
   explicit OutputFile(const std::string& path);
-  ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
   std::ostream& stream();
-  /// Flush, check, close, rename.
+  /// Flush, check, sync, close, rename.
   void commit();
 
 private:
   [[noreturn]] void refuse(const char* what) const;
-  std::string path_, temporary_;
+  std::string path_, target_, written_;
+  std::optional<Temporary> temporary_; ///< before file_: the file is closed first, then removed
   std::ofstream file_;
-  bool standard_ = false, direct_ = false;
+  bool standard_ = false;
 };
 
 } // namespace molmesh::cli

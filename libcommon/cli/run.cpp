@@ -1,12 +1,13 @@
 // run.cpp — common options, exit statuses, the run report.
 #include "cli/run.hpp"
-#include "cli/file.hpp"
+#include "cli/help.hpp"
 #include "par/par.hpp"
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <new>
+#include <stdexcept>
 #include <sys/resource.h>
 
 #ifndef MOLMESH_VERSION
@@ -16,8 +17,10 @@
 namespace molmesh::cli {
 
 int Common::resolved_threads() const {
-  if (mode == "cuda") fail(Status::mode_unavailable, "--mode cuda: not available in this build, use seq or omp");
-  if (mode == "seq") return 1;
+  if (mode == "cuda")
+    fail(Status::mode_unavailable, "--mode cuda: not available in this build, use seq or omp");
+  if (mode == "seq")
+    return 1;
   return threads > 0 ? threads : par::default_threads();
 }
 
@@ -29,13 +32,15 @@ void Run::phase(const std::string& name) {
 }
 
 void Run::end_phase() {
-  if (!open_) return;
+  if (!open_)
+    return;
   phases.back().seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
   open_ = false;
 }
 
 void Run::note(const std::string& line) const {
-  if (!quiet) std::cerr << tool << ": " << line << '\n';
+  if (!quiet)
+    std::cerr << tool << ": " << line << '\n';
 }
 
 std::string creator(const std::string& tool) {
@@ -52,31 +57,68 @@ std::vector<double> numbers(const std::string& option, const std::string& text, 
   while (v.size() < count) {
     double x = 0;
     const auto [next, error] = std::from_chars(p, end, x);
-    if (error != std::errc{} || !std::isfinite(x)) refuse();
+    if (error != std::errc{} || !std::isfinite(x))
+      refuse();
     v.push_back(x);
     p = next;
-    if (v.size() < count && (p == end || *p++ != ',')) refuse();
+    if (v.size() < count && (p == end || *p++ != ','))
+      refuse();
   }
-  if (p != end) refuse();
+  if (p != end)
+    refuse();
   return v;
 }
 
 namespace detail {
 namespace {
 
+/// A number when the text is one, else the text.
+nlohmann::ordered_json value_json(const std::string& text) {
+  const auto number = nlohmann::ordered_json::parse(text, nullptr, false);
+  return number.is_number() ? number : nlohmann::ordered_json(text);
+}
+
+/// The options in force, given or by default; files and verbosity stand elsewhere or do not matter.
 nlohmann::ordered_json options_json(const CLI::App& app) {
   nlohmann::ordered_json j = nlohmann::ordered_json::object();
   for (const CLI::Option* option : app.get_options()) {
-    if (option->get_lnames().empty() || !option->get_configurable()) continue;
+    if (option->get_lnames().empty() || !option->get_configurable())
+      continue;
     const std::string name = option->get_lnames().front();
     if (option->get_expected_min() == 0)
       j[name] = option->count() > 0;
     else if (option->get_items_expected_max() > 1)
       j[name] = option->results();
     else
-      j[name] = option->count() > 0 ? option->results().back() : option->get_default_str();
+      j[name] = value_json(option->count() > 0 ? option->results().back() : option->get_default_str());
   }
   return j;
+}
+
+/// One printable line: control characters and bytes that are no UTF-8 become \xHH, and 2,000 characters are enough.
+std::string one_line(const std::string& text) {
+  std::string line;
+  for (size_t i = 0; i < text.size() && line.size() < 2000;) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const size_t length = byte < 0x80                   ? 1
+                          : byte >= 0xC2 && byte < 0xE0 ? 2
+                          : byte >= 0xE0 && byte < 0xF0 ? 3
+                          : byte >= 0xF0 && byte < 0xF5 ? 4
+                                                        : 0;
+    bool valid = length > 0 && i + length <= text.size() && byte >= 0x20 && byte != 0x7F;
+    for (size_t k = 1; valid && k < length; ++k)
+      valid = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
+    if (valid) {
+      line.append(text, i, length);
+      i += length;
+    } else {
+      char hex[8];
+      std::snprintf(hex, sizeof hex, "\\x%02x", byte);
+      line += text[i] == '\n' && i + 1 == text.size() ? "" : text[i] == '\n' ? "; " : hex;
+      ++i;
+    }
+  }
+  return line;
 }
 
 } // namespace
@@ -84,38 +126,64 @@ nlohmann::ordered_json options_json(const CLI::App& app) {
 void describe_common(CLI::App& app, Common& o) {
   app.option_defaults()->always_capture_default();
   app.set_help_flag("-h,--help", "show this help and stop")->configurable(false);
-  app.set_version_flag("--version", creator(app.get_name()))->configurable(false);
-  app.add_option("input,--input", o.input, "input file; - is standard input")->configurable(false);
-  app.add_option("-o,--output", o.output, "output file; - is standard output")->configurable(false);
+  app.set_version_flag("--version", creator(app.get_name()), "show the version and stop")->configurable(false);
+  app.add_option("input", o.input, "input file; - is standard input")->configurable(false);
+  app.add_option("-o,--output", o.output, "output file; - is standard output")
+      ->type_name("FILE")
+      ->configurable(false);
   app.add_option("--mode", o.mode, "seq: one thread, omp: many cores, cuda: one GPU")
+      ->type_name("MODE")
       ->check(CLI::IsMember({"seq", "omp", "cuda"}));
-  app.add_option("-t,--threads", o.threads, "threads for --mode omp, 0: all [0..1024]")->check(CLI::Range(0, 1024));
-  app.add_option("--report", o.report, "write the run report (JSON) to this file")->configurable(false);
+  app.add_option("-t,--threads", o.threads, "threads for --mode omp; 0: all")->check(CLI::Range(0, 1024));
+  app.add_option("--report", o.report, "write the run report (JSON) to this file")
+      ->type_name("FILE")
+      ->configurable(false);
   app.add_flag("-q,--quiet", o.quiet, "errors only on standard error")->configurable(false);
   app.add_flag("-v,--verbose", o.verbose, "phases and their seconds on standard error")->configurable(false);
 }
 
-int parse(CLI::App& app, int argc, char** argv, bool& stop) {
+int parse(CLI::App& app, int argc, char** argv) {
+  const auto print = [](const std::string& text) {
+    std::cout << text << std::flush;
+    if (!std::cout)
+      fail(Status::not_written, "<stdout>: cannot write");
+    return static_cast<int>(Status::good);
+  };
   try {
     app.parse(argc, argv);
-    return 0;
-  } catch (const CLI::Success& e) {
-    stop = true;
-    app.exit(e);
-    std::cout.flush();
-    return std::cout ? static_cast<int>(Status::good) : static_cast<int>(Status::not_written);
+    check_numbers(app);
+    return -1;
+  } catch (const CLI::CallForHelp&) {
+    return print(help(app));
+  } catch (const CLI::CallForVersion&) {
+    return print(app.version() + '\n');
   } catch (const CLI::ParseError& e) {
-    stop = true;
-    std::cerr << app.get_name() << ": " << e.what() << " (see " << app.get_name() << " --help)\n";
+    std::cerr << app.get_name() << ": " << one_line(e.what()) << " (see " << app.get_name() << " --help)\n";
     return static_cast<int>(Status::usage);
   }
 }
 
-int finish(const CLI::App& app, const Common& o, Run& run, Status status) {
+std::unique_ptr<OutputFile> open_report(const Common& o) {
+  if (o.report.empty())
+    return nullptr;
+  if (o.report == o.output)
+    fail(Status::usage, "--report: found " + o.report + ", expected another file than the output");
+  return std::make_unique<OutputFile>(o.report);
+}
+
+int finish(const CLI::App& app, const Common& o, Run& run, OutputFile* report, Status status) {
   run.end_phase();
-  if (run.verbose)
-    for (const Run::Phase& p : run.phases) std::fprintf(stderr, "%s: %-16s %8.3f s\n", run.tool.c_str(), p.name.c_str(), p.seconds);
-  if (!o.report.empty()) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const int64_t peak_rss_bytes = int64_t{usage.ru_maxrss} * 1024;
+  if (run.verbose) {
+    for (const Run::Phase& p : run.phases)
+      std::fprintf(stderr, "%s: %-16s %8.3f s\n", run.tool.c_str(), p.name.c_str(), p.seconds);
+    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+    std::fprintf(stderr, "%s: %.3f s of processor time, %.1f MB at most\n", run.tool.c_str(),
+                 seconds(usage.ru_utime) + seconds(usage.ru_stime), 1e-6 * double(peak_rss_bytes));
+  }
+  if (report) {
     nlohmann::ordered_json j;
     j["tool"] = run.tool;
     j["version"] = MOLMESH_VERSION;
@@ -125,22 +193,20 @@ int finish(const CLI::App& app, const Common& o, Run& run, Status status) {
     j["output"] = o.output;
     j["options"] = options_json(app);
     j["phases"] = nlohmann::ordered_json::array();
-    for (const Run::Phase& p : run.phases) j["phases"].push_back({{"name", p.name}, {"seconds", p.seconds}});
+    for (const Run::Phase& p : run.phases)
+      j["phases"].push_back({{"name", p.name}, {"seconds", p.seconds}});
     j["counts"] = run.counts;
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    j["peak_rss_bytes"] = int64_t{usage.ru_maxrss} * 1024;
-    OutputFile file(o.report);
-    file.stream() << j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
-    file.commit();
+    j["peak_rss_bytes"] = peak_rss_bytes;
+    report->stream() << j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    report->commit();
   }
   return static_cast<int>(status);
 }
 
 int failed(const std::string& tool, const std::exception& e) {
   const auto* error = dynamic_cast<const Error*>(&e);
-  const bool memory = dynamic_cast<const std::bad_alloc*>(&e) != nullptr;
-  std::cerr << tool << ": " << (memory ? "not enough memory" : e.what()) << '\n';
+  const bool memory = dynamic_cast<const std::bad_alloc*>(&e) || dynamic_cast<const std::length_error*>(&e);
+  std::cerr << tool << ": " << (memory ? "not enough memory" : one_line(e.what())) << '\n';
   return static_cast<int>(error ? error->status : Status::failed);
 }
 

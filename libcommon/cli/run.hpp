@@ -1,8 +1,12 @@
 // run.hpp — what every tool shares: common options, the run report, main() around run(options).
 #pragma once
+#include "cli/cleanup.hpp"
+#include "cli/file.hpp"
 #include "error.hpp"
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <ios>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -52,29 +56,35 @@ std::vector<double> numbers(const std::string& option, const std::string& text, 
 
 namespace detail {
 void describe_common(CLI::App& app, Common& o);
-int parse(CLI::App& app, int argc, char** argv, bool& stop);
-int finish(const CLI::App& app, const Common& o, Run& run, Status status);
+/// Exit status when the run stops here (help, version, usage), else -1.
+int parse(CLI::App& app, int argc, char** argv);
+/// Opened before the run, so that a report that cannot be written stops it before any work. Null without --report.
+std::unique_ptr<OutputFile> open_report(const Common& o);
+int finish(const CLI::App& app, const Common& o, Run& run, OutputFile* report, Status status);
 int failed(const std::string& tool, const std::exception& e);
 } // namespace detail
 
-/// The whole of a tool's main(). describe(app, options) declares the tool's own options; run(options, run) works and
-/// returns a Status. Every exception becomes one line on stderr and its exit status.
+/// The whole of a tool's main(). describe(app, options) declares the tool's own options; run(options, run) works
+/// and returns a Status. Every exception becomes one line on stderr and its exit status.
 template <class Options, class Describe, class RunTool>
 int run_main(const char* tool, const char* purpose, int argc, char** argv, Describe describe, RunTool run_tool) {
   try {
+    guard_process();
+    std::ios::sync_with_stdio(false);
     Options options;
     CLI::App app(purpose, tool);
     detail::describe_common(app, options);
     describe(app, options);
-    bool stop = false;
-    const int status = detail::parse(app, argc, argv, stop);
-    if (stop) return status;
+    if (const int status = detail::parse(app, argc, argv); status >= 0)
+      return status;
+    options.resolved_threads(); // a mode that is not here stops before any file is touched
+    const std::unique_ptr<OutputFile> report = detail::open_report(options);
     Run run;
     run.tool = tool;
     run.quiet = options.quiet;
     run.verbose = options.verbose;
     const Status result = run_tool(options, run);
-    return detail::finish(app, options, run, result);
+    return detail::finish(app, options, run, report.get(), result);
   } catch (const std::exception& e) {
     return detail::failed(tool, e);
   }

@@ -1,0 +1,140 @@
+// file_test.cpp — an output is whole or absent, whatever happens to the process (I10).
+#include "child.hpp"
+#include "cli/file.hpp"
+#include "error.hpp"
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+using namespace molmesh;
+using namespace molmesh::test;
+
+namespace {
+
+/// Status of writing `bytes` zeros to `path` and committing.
+Status write(const std::string& path, size_t bytes) {
+  try {
+    cli::OutputFile file(path);
+    file.stream() << std::string(bytes, '\0');
+    file.commit();
+    return Status::good;
+  } catch (const Error& e) {
+    return e.status;
+  }
+}
+
+} // namespace
+
+TEST_CASE("a committed output has its name, its contents and no company") {
+  const Folder folder;
+  {
+    cli::OutputFile file(folder / "a");
+    file.stream() << "seven tetrahedra";
+    CHECK_FALSE(std::filesystem::exists(folder / "a"));
+    CHECK(folder.files() == 1);
+    file.commit();
+  }
+  CHECK(contents(folder / "a") == "seven tetrahedra");
+  CHECK(folder.files() == 1);
+}
+
+TEST_CASE("an output that is not committed leaves the older file alone") {
+  const Folder folder;
+  std::ofstream(folder / "a") << "old";
+  { cli::OutputFile(folder / "a").stream() << "new, unfinished"; }
+  CHECK(contents(folder / "a") == "old");
+  CHECK(folder.files() == 1);
+}
+
+TEST_CASE("an output that cannot be opened or written is status 4") {
+  const Folder folder;
+  CHECK(write(folder / "absent/a", 1) == Status::not_written);
+  CHECK(write(folder.path.string(), 1) == Status::not_written);
+  CHECK(write("/dev/full", 1) == Status::not_written);
+  CHECK(write("/dev/full", 1 << 20) == Status::not_written);
+  CHECK(write("/dev/null", 1 << 20) == Status::good);
+  CHECK(folder.files() == 0);
+}
+
+TEST_CASE("a disk that fills up is status 4 and leaves nothing") {
+  const Folder folder;
+  const Outcome o = in_child([&] {
+    cli::guard_process();
+    const rlimit limit{1 << 16, 1 << 16}; // bytes a file may have: stands in for the disk
+    setrlimit(RLIMIT_FSIZE, &limit);
+    return static_cast<int>(write(folder / "a", 1 << 20));
+  });
+  CHECK(o.status == 4);
+  CHECK(folder.files() == 0);
+}
+
+TEST_CASE("an output through a symbolic link reaches the file behind it") {
+  const Folder folder;
+  std::ofstream(folder / "real") << "old";
+  std::filesystem::create_symlink("real", folder / "link");
+  CHECK(write(folder / "link", 3) == Status::good);
+  CHECK(std::filesystem::is_symlink(folder / "link"));
+  CHECK(contents(folder / "real") == std::string(3, '\0'));
+}
+
+TEST_CASE("a signal removes the temporary file and still ends the process") {
+  for (int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM}) {
+    const Folder folder;
+    const Outcome o = in_child([&] {
+      const rlimit no_core{0, 0};
+      setrlimit(RLIMIT_CORE, &no_core);
+      cli::guard_process();
+      cli::OutputFile file(folder / "a"), report(folder / "b");
+      file.stream() << "unfinished" << std::flush;
+      raise(signal);
+      return 0;
+    });
+    CHECK(o.signal == signal);
+    CHECK(folder.files() == 0);
+  }
+}
+
+TEST_CASE("nohup stays in force") {
+  const Outcome o = in_child([] {
+    std::signal(SIGHUP, SIG_IGN);
+    cli::guard_process();
+    raise(SIGHUP);
+    return 0;
+  });
+  CHECK(o.status == 0);
+}
+
+TEST_CASE("a closed standard output is never replaced by a file opened later") {
+  const Folder folder;
+  const Outcome o = in_child(
+      [&] {
+        cli::guard_process();
+        cli::OutputFile file(folder / "a");
+        file.stream() << "mesh";
+        std::cout << "stray" << std::flush;
+        std::cerr << "stray" << std::flush;
+        file.commit();
+        return std::cout ? 0 : 4;
+      },
+      [] {
+        close(STDOUT_FILENO);
+        close(STDERR_FILENO);
+      });
+  CHECK(o.status == 4);
+  CHECK(contents(folder / "a") == "mesh");
+}
+
+TEST_CASE("an input that is absent or a folder is status 3 and named") {
+  const Folder folder;
+  for (const std::string& path : {folder / "absent", folder.path.string()}) {
+    try {
+      cli::InputFile file(path);
+      FAIL("opened " + path);
+    } catch (const Error& e) {
+      CHECK(e.status == Status::bad_input);
+      CHECK(std::string(e.what()).rfind(path + ": ", 0) == 0);
+    }
+  }
+  CHECK(cli::InputFile("-").name() == "<stdin>");
+}
