@@ -48,7 +48,7 @@ void check(const Hierarchy& h, const std::string& file) {
   for (size_t a = 0; a < h.atom.size(); ++a) {
     const Atom& atom = h.atom[a];
     const auto bad = [&](const char* what) { refuse("atom " + std::to_string(a) + ": " + what); };
-    if (!std::isfinite(atom.center.x + atom.center.y + atom.center.z))
+    if (!(std::isfinite(atom.center.x) && std::isfinite(atom.center.y) && std::isfinite(atom.center.z)))
       bad("position not finite");
     if (!(std::isfinite(atom.radius) && atom.radius > 0))
       bad("radius not a finite number > 0");

@@ -1,0 +1,307 @@
+// hier_reader.cpp — .hier in blocks of whole lines; every rule of HIERv1.md that a reader must check.
+#include "error.hpp"
+#include "formats/hier/hier.hpp"
+#include "formats/hier/text.hpp"
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <istream>
+
+namespace molmesh::formats {
+namespace {
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t';
+}
+
+/// Text for a message: shortened, with what is not printable made visible.
+std::string shown(std::string_view text) {
+  std::string s = "'";
+  for (const char c : text.substr(0, 40)) {
+    if (is_blank(c))
+      s += ' ';
+    else
+      percent_encode(s, {&c, 1});
+  }
+  return s + (text.size() > 40 ? "…'" : "'");
+}
+
+/// The entries of short names, found without hashing a string: atoms come in a few dozen kinds.
+class NameCache {
+public:
+  int32_t entry(std::string_view text, Names& names) {
+    if (text.size() >= sizeof(uint64_t))
+      return names.add(text);
+    uint64_t key = text.size() << 56; // the length tells "A" from "A\0"
+    std::memcpy(&key, text.data(), text.size());
+    Slot& slot = slots_[(key * 0x9E3779B97F4A7C15u) >> 56];
+    if (slot.key != key || slot.entry < 0)
+      slot = {key, names.add(text)};
+    return slot.entry;
+  }
+
+private:
+  struct Slot {
+    uint64_t key = 0;
+    int32_t entry = -1;
+  };
+  std::array<Slot, 256> slots_;
+};
+
+class HierReader {
+public:
+  HierReader(std::istream& in, const std::string& file) : in_(in), file_(file) {}
+
+  Hierarchy read() {
+    std::string block(size_t{1} << 20, '\0');
+    size_t kept = 0;
+    for (;;) {
+      if (kept == block.size())
+        block.resize(2 * block.size());
+      in_.read(block.data() + kept, static_cast<std::streamsize>(block.size() - kept));
+      const auto got = static_cast<size_t>(in_.gcount());
+      if (in_.bad())
+        refuse("cannot read");
+      const size_t size = kept + got;
+      const size_t end = std::string_view(block.data(), size).rfind('\n') + 1; // 0: no whole line yet
+      lines(block.data(), block.data() + end);
+      kept = size - end;
+      std::memmove(block.data(), block.data() + end, kept);
+      if (got == 0)
+        break;
+    }
+    ++line_;
+    if (kept != 0) {
+      check_text({block.data(), kept});
+      refuse("R1: the last line " + shown({block.data(), kept}) + " has no end, expected a complete file");
+    }
+    end();
+    return std::move(h_);
+  }
+
+private:
+  [[noreturn]] void refuse(const std::string& what) const {
+    fail_input(file_ + ":" + std::to_string(line_) + ": " + what);
+  }
+
+  void lines(const char* p, const char* end) {
+    unsigned odd = 0; // any byte outside printable ASCII, tab and line feed
+    for (const char* q = p; q != end; ++q) {
+      const auto c = static_cast<unsigned char>(*q);
+      odd |= static_cast<unsigned>(c >= 0x7F) | static_cast<unsigned>(c < 0x20 && c != '\n' && c != '\t');
+    }
+    while (p != end) {
+      const auto* stop = static_cast<const char*>(std::memchr(p, '\n', static_cast<size_t>(end - p)));
+      ++line_;
+      if (odd != 0)
+        check_text({p, static_cast<size_t>(stop - p)});
+      at_ = p;
+      stop_ = stop;
+      while (stop_ != at_ && is_blank(stop_[-1]))
+        --stop_;
+      skip_blanks();
+      if (at_ != stop_ && *at_ != '#')
+        record();
+      p = stop + 1;
+    }
+  }
+
+  void check_text(std::string_view line) const {
+    for (size_t i = 0; i < line.size();) {
+      const auto c = static_cast<unsigned char>(line[i]);
+      const size_t length = utf8_length(line.substr(i));
+      if (length == 0)
+        refuse("R1: found a byte that is not UTF-8, expected text");
+      if (c == '\r')
+        refuse("R1: found a carriage return, expected lines that end with a line feed alone");
+      if ((c < 0x20 && c != '\t') || c == 0x7F)
+        refuse("R1: found a control character, expected text");
+      i += length;
+    }
+  }
+
+  void skip_blanks() {
+    while (at_ != stop_ && is_blank(*at_))
+      ++at_;
+  }
+
+  /// The next field, empty at the end of the line.
+  std::string_view field() {
+    const char* begin = at_;
+    while (at_ != stop_ && !is_blank(*at_))
+      ++at_;
+    const std::string_view f(begin, static_cast<size_t>(at_ - begin));
+    skip_blanks();
+    return f;
+  }
+
+  std::string_view needed(const char* what) {
+    const std::string_view f = field();
+    if (f.empty())
+      refuse(std::string("R6: the line ends, expected ") + what);
+    return f;
+  }
+
+  void expect_end(const char* record_shape) {
+    if (at_ != stop_)
+      refuse("R6: found " + shown(field()) + " more, expected " + record_shape);
+  }
+
+  std::string_view name(const char* what) {
+    const std::string_view f = needed(what);
+    if (f.find('%') == std::string_view::npos)
+      return f;
+    if (!percent_decode(f, decoded_))
+      refuse("R7: found " + shown(f) + ", expected % with two hexadecimal digits");
+    return decoded_;
+  }
+
+  double number(const char* what) {
+    const std::string_view f = needed(what);
+    double v = 0;
+    const auto [rest, error] = std::from_chars(f.data(), f.data() + f.size(), v);
+    if (error != std::errc{} || rest != f.data() + f.size() || !std::isfinite(v))
+      refuse("R8: found " + shown(f) + ", expected " + what + ", a finite decimal number");
+    return v;
+  }
+
+  double positive(const char* what) {
+    const char* begin = at_;
+    const double v = number(what);
+    if (!(v > 0))
+      refuse("R9: found " + shown({begin, static_cast<size_t>(at_ - begin)}) + ", expected " + what + " > 0");
+    return v;
+  }
+
+  void record() {
+    const std::string_view word = field();
+    if (stage_ == Stage::body) {
+      if (word == "atom")
+        return atom();
+      for (size_t l = 0; l < h_.level.size(); ++l)
+        if (word == h_.level[l].name)
+          return group(l);
+      if (word == "hier" || word == "source" || word == "levels")
+        refuse("R5: found a second or late record " + shown(word) + ", expected a group or an atom");
+      std::string known;
+      for (const Level& level : h_.level)
+        known += "'" + level.name + "', ";
+      refuse("R5: found " + shown(word) + ", expected " + known + "or 'atom'");
+    }
+    head(word);
+  }
+
+  void head(std::string_view word) {
+    if (stage_ == Stage::start) {
+      if (word != "hier")
+        refuse("R2: found " + shown(word) + ", expected 'hier 1'");
+      const std::string_view version = needed("the version, 1");
+      if (version != "1")
+        refuse("R2: found version " + shown(version) + ", expected 1: this reader knows no other");
+      expect_end("'hier 1' alone");
+      stage_ = Stage::head;
+    } else if (word == "source") {
+      if (has_source_)
+        refuse("R3: found a second 'source', expected 'levels'");
+      h_.source.assign(at_, stop_);
+      has_source_ = true;
+    } else if (word == "levels") {
+      while (at_ != stop_)
+        level(field());
+      stage_ = Stage::body;
+    } else {
+      refuse("R4: found " + shown(word) + " before 'levels', expected 'source' or 'levels'");
+    }
+  }
+
+  void level(std::string_view word) {
+    const bool plain = std::all_of(word.begin(), word.end(), [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+    });
+    if (!plain || word == "hier" || word == "source" || word == "levels" || word == "atom")
+      refuse("R4: found level " + shown(word) +
+             ", expected a word of letters, digits, _ and - that is no record's");
+    for (const Level& other : h_.level)
+      if (other.name == word)
+        refuse("R4: found level " + shown(word) + " twice, expected distinct levels");
+    h_.level.push_back({std::string(word), {}});
+  }
+
+  int64_t children(size_t l) const {
+    return static_cast<int64_t>(l + 1 < h_.level.size() ? h_.level[l + 1].group.size() : h_.atom.size());
+  }
+
+  /// Closes the groups of level l and below.
+  void close(size_t l) {
+    for (size_t m = h_.level.size(); m-- > l;) {
+      if (m >= open_)
+        continue;
+      Group& g = h_.level[m].group.back();
+      g.end = children(m);
+      if (g.end == g.begin)
+        refuse("R11: " + h_.level[m].name + " " + shown(g.name) + " ends without an atom, expected one");
+    }
+    open_ = std::min(open_, l);
+  }
+
+  void group(size_t l) {
+    close(l);
+    if (l > open_)
+      refuse("R10: found " + h_.level[l].name + " outside any " + h_.level[open_].name + ", expected '" +
+             h_.level[open_].name + " NAME P' first");
+    const std::string_view text = name("a name");
+    Group g{std::string(text), 1, children(l), 0};
+    g.exponent = positive("the exponent P");
+    expect_end("'LEVEL NAME P'");
+    h_.level[l].group.push_back(std::move(g));
+    open_ = l + 1;
+  }
+
+  void atom() {
+    if (open_ != h_.level.size())
+      refuse("R10: found an atom outside any " + h_.level[open_].name + ", expected every level open");
+    Atom a;
+    a.name = cache_.entry(name("the atom's name"), h_.names);
+    a.element = cache_.entry(name("the element"), h_.names);
+    a.center.x = number("x");
+    a.center.y = number("y");
+    a.center.z = number("z");
+    a.radius = positive("the radius");
+    if (at_ != stop_)
+      a.charge = number("the charge");
+    expect_end("'atom NAME ELEMENT X Y Z RADIUS [CHARGE]'");
+    h_.atom.push_back(a);
+  }
+
+  void end() {
+    if (stage_ == Stage::start)
+      refuse("R2: the file is empty, expected 'hier 1'");
+    if (stage_ == Stage::head)
+      refuse("R4: the file ends, expected 'levels'");
+    close(0);
+    if (h_.atom.empty())
+      refuse("R12: the file ends, expected at least one atom");
+  }
+
+  enum class Stage { start, head, body };
+  std::istream& in_;
+  const std::string& file_;
+  Hierarchy h_;
+  NameCache cache_;
+  std::string decoded_;
+  Stage stage_ = Stage::start;
+  bool has_source_ = false;
+  size_t open_ = 0; ///< levels [0, open_) have an open group
+  int64_t line_ = 0;
+  const char *at_ = nullptr, *stop_ = nullptr;
+};
+
+} // namespace
+
+Hierarchy read_hier(std::istream& in, const std::string& file) {
+  return HierReader(in, file).read();
+}
+
+} // namespace molmesh::formats
