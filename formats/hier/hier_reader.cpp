@@ -28,6 +28,37 @@ std::string shown(std::string_view text) {
   return s + (text.size() > 40 ? "…'" : "'");
 }
 
+/// Plain decimals of up to 15 digits, as coordinates are: digits and power of ten are exact doubles, and so their
+/// quotient is correctly rounded. False for anything else.
+bool short_decimal(std::string_view f, double& value) {
+  static constexpr double power[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                     1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+  const bool negative = f[0] == '-';
+  if (negative)
+    f.remove_prefix(1);
+  if (f.empty() || f.size() > 15)
+    return false;
+  int64_t digits = 0;
+  size_t decimals = 0, points = 0;
+  for (const char c : f) {
+    if (c == '.') {
+      ++points;
+      continue;
+    }
+    const unsigned digit = static_cast<unsigned char>(c) - unsigned{'0'};
+    if (digit > 9)
+      return false;
+    digits = digits * 10 + digit;
+    decimals += points;
+  }
+  if (points > 1 || f.size() == points)
+    return false;
+  value = static_cast<double>(digits) / power[decimals];
+  if (negative)
+    value = -value;
+  return true;
+}
+
 /// The entries of short names, found without hashing a string: atoms come in a few dozen kinds.
 class NameCache {
 public:
@@ -161,6 +192,8 @@ private:
   double number(const char* what) {
     const std::string_view f = needed(what);
     double v = 0;
+    if (short_decimal(f, v))
+      return v;
     const auto [rest, error] = std::from_chars(f.data(), f.data() + f.size(), v);
     if (error != std::errc{} || rest != f.data() + f.size() || !std::isfinite(v))
       refuse("R8: found " + shown(f) + ", expected " + what + ", a finite decimal number");

@@ -87,9 +87,9 @@ void HierWriter::put_number(double value) {
   char* end = text + sizeof text;
   // Coordinates mostly have three decimals: n / 1000 with n an integer below 10¹², and then "n/1000" reads back
   // exactly.
-  const double thousand = std::nearbyint(value * 1000);
-  if (std::abs(thousand) < 1e12 && thousand / 1000 == value && thousand != 0) {
-    auto n = static_cast<int64_t>(std::abs(thousand));
+  const double size = std::abs(value);
+  auto n = size < 1e9 ? static_cast<int64_t>(size * 1000 + 0.5) : 0;
+  if (n != 0 && static_cast<double>(n) / 1000 == size) {
     char* p = end;
     int decimals = static_cast<int>(n % 1000);
     n /= 1000;
