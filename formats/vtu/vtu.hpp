@@ -5,10 +5,19 @@
 
 namespace molmesh::formats {
 
+/// What the reader had to decide by itself.
+struct VtuNotes {
+  int64_t dropped_cells = 0;     ///< vertices and lines
+  int64_t dropped_triangles = 0; ///< of a file without `boundary`: triangles are rebuilt from the tetrahedra
+  bool region_missing = false;   ///< region 1 for all
+  bool boundary_missing = false; ///< label 1 for all
+};
+
 /// Any tetrahedral .vtu: ours, or a foreign one (ascii, inline base64 or appended; raw or zlib; Float32/64;
-/// Int32/64; without our arrays: region 1 for all, triangles rebuilt). Throws Error(bad_input); hexahedra and other cells are refused.
-TetMesh read_vtu(std::istream& in, const std::string& file);
-/// Same mesh, same bytes.
+/// Int32/64; without our arrays: region 1 for all, triangles rebuilt). Throws Error(bad_input), its line names the
+/// broken rule of VTUv1.md; hexahedra and other cells are refused.
+TetMesh read_vtu(std::istream& in, const std::string& file, VtuNotes* notes = nullptr);
+/// Same mesh, same bytes. The stream's state tells whether all of it was written.
 void write_vtu(std::ostream& out, const TetMesh& mesh);
 
 } // namespace molmesh::formats
