@@ -111,7 +111,7 @@ TEST_CASE("every exception becomes one printable line and its status") {
   CHECK(tool({}, [](const Options&, cli::Run&) { return Status::below_quality; }).status == 5);
 }
 
-TEST_CASE("--mode cuda in a build without CUDA is status 6 before any work") {
+TEST_CASE("mode cuda in a build without CUDA is status 6 before any work") {
   const Outcome o =
       tool({"--mode", "cuda"}, [](const Options&, cli::Run&) -> Status { throw std::logic_error("ran"); });
   CHECK(o.status == 6);
