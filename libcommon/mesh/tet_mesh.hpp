@@ -17,10 +17,10 @@ enum Boundary : int32_t { surface = 1, box_x0 = 2, box_x1, box_y0, box_y1, box_z
 /// Triangles are exactly the faces between regions and the faces with one tetrahedron. Molecular-surface triangles
 /// point out of region 1, box triangles out of the box. No duplicate or unused point (I6).
 struct TetMesh {
-  std::vector<Vec3d> point;      ///< Å
+  std::vector<Vec3d> point; ///< Å
   std::vector<Tet> tet;
-  std::vector<int32_t> region;   ///< [tets] Region; any positive label of a foreign mesh
-  std::vector<int32_t> part;     ///< [tets] METIS part, or empty
+  std::vector<int32_t> region; ///< [tets] Region; any positive label of a foreign mesh
+  std::vector<int32_t> part;   ///< [tets] METIS part, or empty
   std::vector<Tri> tri;
   std::vector<int32_t> boundary; ///< [tris] Boundary; any positive label of a foreign mesh
   double isovalue = 1;

@@ -17,9 +17,11 @@ int default_threads();
 /// The first exception thrown by f (lowest chunk not guaranteed) is rethrown after the loop.
 template <class F>
 void for_n(int64_t n, int threads, int64_t grain, F&& f) {
-  if (n <= 0) return;
+  if (n <= 0)
+    return;
   if (threads <= 1 || n <= grain) {
-    for (int64_t i = 0; i < n; ++i) f(i);
+    for (int64_t i = 0; i < n; ++i)
+      f(i);
     return;
   }
   std::exception_ptr error;
@@ -29,13 +31,16 @@ void for_n(int64_t n, int threads, int64_t grain, F&& f) {
   for (int64_t c = 0; c < chunks; ++c) {
     try {
       const int64_t end = std::min(n, (c + 1) * grain);
-      for (int64_t i = c * grain; i < end; ++i) f(i);
+      for (int64_t i = c * grain; i < end; ++i)
+        f(i);
     } catch (...) {
       const std::lock_guard<std::mutex> lock(guard);
-      if (!error) error = std::current_exception();
+      if (!error)
+        error = std::current_exception();
     }
   }
-  if (error) std::rethrow_exception(error);
+  if (error)
+    std::rethrow_exception(error);
 }
 
 template <class F>
@@ -52,11 +57,13 @@ T reduce(int64_t n, int threads, T init, F&& f, C&& combine, int64_t grain = 409
   for_n(chunks, threads, 1, [&](int64_t c) {
     T sum = init;
     const int64_t end = std::min(n, (c + 1) * grain);
-    for (int64_t i = c * grain; i < end; ++i) sum = combine(sum, f(i));
+    for (int64_t i = c * grain; i < end; ++i)
+      sum = combine(sum, f(i));
     part[static_cast<size_t>(c)] = sum;
   });
   T sum = init;
-  for (const T& p : part) sum = combine(sum, p);
+  for (const T& p : part)
+    sum = combine(sum, p);
   return sum;
 }
 
@@ -77,7 +84,8 @@ template <class T, class Less>
 void sort(std::vector<T>& v, int threads, Less less) {
   const int64_t n = static_cast<int64_t>(v.size());
   int64_t runs = 1;
-  while (runs < threads && n / (2 * runs) > 8192) runs *= 2;
+  while (runs < threads && n / (2 * runs) > 8192)
+    runs *= 2;
   const auto at = [&](int64_t r) { return v.begin() + static_cast<std::ptrdiff_t>(n * r / runs); };
   for_n(runs, threads, 1, [&](int64_t r) { std::sort(at(r), at(r + 1), less); });
   for (int64_t width = 1; width < runs; width *= 2)
