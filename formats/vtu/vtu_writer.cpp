@@ -1,4 +1,4 @@
-// write.cpp — a TetMesh as .vtu, appended raw (VTUv1.md).
+// vtu_writer.cpp — a TetMesh as .vtu, appended raw (VTUv1.md).
 #include "formats/vtu/vtu.hpp"
 #include <bit>
 #include <cassert>

@@ -1,0 +1,270 @@
+// vtu_reader.cpp — tetrahedra, triangles and labels out of a VTK unstructured grid (VTUv1.md).
+#include "error.hpp"
+#include "formats/vtu/vtk_array.hpp"
+#include "formats/vtu/vtu.hpp"
+#include "mesh/adjacency.hpp"
+#include <algorithm>
+#include <cmath>
+#include <istream>
+#include <limits>
+
+namespace molmesh::formats {
+namespace {
+
+using namespace vtk;
+
+constexpr double coordinate_limit = 1e30; // Å; squares and cubes of it stay finite
+constexpr int64_t tet_limit = int64_t{1} << 29, point_limit = std::numeric_limits<int32_t>::max();
+
+std::string read_all(std::istream& in, const std::string& file) {
+  std::string text;
+  const auto start = in.tellg();
+  if (start >= 0 && in.seekg(0, std::ios::end)) {
+    text.reserve(static_cast<size_t>(std::max<std::streamoff>(in.tellg() - start, 0)));
+    in.seekg(start);
+  }
+  in.clear();
+  constexpr size_t step = size_t{1} << 20;
+  for (size_t size = 0;;) {
+    text.resize(size + step);
+    in.read(text.data() + size, step);
+    size += static_cast<size_t>(in.gcount());
+    if (static_cast<size_t>(in.gcount()) < step) {
+      text.resize(size);
+      break;
+    }
+  }
+  if (in.bad())
+    fail_input(file + ": cannot read");
+  return text;
+}
+
+const ArrayTag* find(const std::vector<ArrayTag>& arrays, const char* name) {
+  const auto a = std::find_if(arrays.begin(), arrays.end(), [&](const ArrayTag& t) { return t.name == name; });
+  return a == arrays.end() ? nullptr : &*a;
+}
+
+const char* cell_name(int64_t type) {
+  switch (type) {
+  case 7:
+    return "polygon";
+  case 9:
+    return "quadrilateral";
+  case 11:
+    return "voxel";
+  case 12:
+    return "hexahedron";
+  case 13:
+    return "wedge";
+  case 14:
+    return "pyramid";
+  case 22:
+    return "quadratic triangle";
+  case 24:
+    return "quadratic tetrahedron";
+  case 42:
+    return "polyhedron";
+  default:
+    return "cell";
+  }
+}
+
+class Reader {
+public:
+  Reader(const Document& d, VtuNotes& notes) : d_(d), decoder_(d), notes_(notes) {}
+
+  TetMesh read() {
+    for (const Piece& p : d_.piece) {
+      notes_.region_missing |= !find(p.cell_data, "region");
+      notes_.boundary_missing |= !find(p.cell_data, "boundary");
+    }
+    for (const Piece& p : d_.piece)
+      read_piece(p);
+    if (m_.tet.empty())
+      d_.refuse(d_.piece.front().line, "R7", "no tetrahedron");
+    if (m_.part.size() != m_.tet.size())
+      m_.part.clear(); // pieces with and without
+    read_field();
+    return std::move(m_);
+  }
+
+private:
+  void read_piece(const Piece& p) {
+    const size_t first_point = m_.point.size();
+    if (p.points > point_limit - static_cast<int64_t>(first_point))
+      d_.refuse(p.line, "R10", "over 2^31 - 1 points");
+    const ArrayTag& points = need(p, p.point, nullptr);
+    const Column x = column(points, static_cast<uint64_t>(p.points) * 3, false);
+    if (points.components != 3)
+      d_.refuse(points.line, "R3", "Points with " + std::to_string(points.components) + " components, expected 3");
+    m_.point.reserve(first_point + static_cast<size_t>(p.points));
+    for (size_t i = 0; i < static_cast<size_t>(p.points); ++i) {
+      const Vec3d v{x.real(3 * i), x.real(3 * i + 1), x.real(3 * i + 2)};
+      for (int k = 0; k < 3; ++k)
+        if (!(std::fabs(v[k]) <= coordinate_limit))
+          d_.refuse(points.line, "R6",
+                    "point " + std::to_string(i) + " has the coordinate " + std::to_string(v[k]) +
+                        ", expected a finite number up to 1e30");
+      m_.point.push_back(v);
+    }
+    read_cells(p, static_cast<int32_t>(first_point));
+  }
+
+  void read_cells(const Piece& p, int32_t first_point) {
+    const auto cells = static_cast<uint64_t>(p.cells);
+    const ArrayTag& offsets_tag = need(p, p.cell, "offsets");
+    const ArrayTag& connectivity_tag = need(p, p.cell, "connectivity");
+    const ArrayTag& types_tag = need(p, p.cell, "types");
+    const Column types = column(types_tag, cells, true), offsets = column(offsets_tag, cells, true);
+    const Column corners =
+        column(connectivity_tag, cells == 0 ? 0 : static_cast<uint64_t>(offsets.integer(cells - 1)), true);
+    const Labels region(*this, p, "region", notes_.region_missing),
+        boundary(*this, p, "boundary", notes_.boundary_missing),
+        part(*this, p, "part", find(p.cell_data, "part") == nullptr);
+    size_t tets = m_.tet.size();
+    for (size_t c = 0; c < cells; ++c)
+      tets += types.integer(c) == 10;
+    m_.tet.reserve(tets);
+    m_.region.reserve(tets);
+    if (part.tag)
+      m_.part.reserve(tets);
+    int64_t begin = 0;
+    for (size_t c = 0; c < cells; ++c) {
+      const int64_t end = offsets.integer(c), type = types.integer(c);
+      if (end < begin || end > static_cast<int64_t>(corners.size()))
+        d_.refuse(offsets_tag.line, "R8",
+                  "cell " + std::to_string(c) + " ends at corner " + std::to_string(end) + ", expected " +
+                      std::to_string(begin) + " to " + std::to_string(corners.size()));
+      const auto corner = [&](int count) {
+        if (end - begin != count)
+          d_.refuse(offsets_tag.line, "R8",
+                    "cell " + std::to_string(c) + " has " + std::to_string(end - begin) + " corners, expected " +
+                        std::to_string(count));
+      };
+      const auto point = [&](int i) {
+        const int64_t v = corners.integer(static_cast<size_t>(begin + i));
+        if (v < 0 || v >= p.points)
+          d_.refuse(connectivity_tag.line, "R8",
+                    "cell " + std::to_string(c) + " names point " + std::to_string(v) + ", the file has " +
+                        std::to_string(p.points));
+        return static_cast<int32_t>(v) + first_point;
+      };
+      if (type == 10) {
+        corner(4);
+        if (m_.tet.size() == tet_limit)
+          d_.refuse(p.line, "R10", "over 2^29 tetrahedra");
+        m_.tet.push_back({point(0), point(1), point(2), point(3)});
+        m_.region.push_back(region.positive(c, 1));
+        if (part.tag)
+          m_.part.push_back(part.at(c));
+      } else if (type == 5) {
+        corner(3);
+        if (notes_.boundary_missing) {
+          ++notes_.dropped_triangles;
+        } else {
+          m_.tri.push_back({point(0), point(1), point(2)});
+          m_.boundary.push_back(boundary.positive(c, 1));
+        }
+      } else if (type >= 1 && type <= 4) {
+        ++notes_.dropped_cells;
+        if (end < begin)
+          corner(0);
+      } else {
+        d_.refuse(types_tag.line, "R7",
+                  "cell " + std::to_string(c) + " is a " + cell_name(type) + " (type " + std::to_string(type) +
+                      "), expected tetrahedra (10) and triangles (5)");
+      }
+      begin = end;
+    }
+  }
+
+  void read_field() {
+    const auto text = [&](const char* name) {
+      std::string s;
+      if (const ArrayTag* a = find(d_.field, name)) {
+        const Column c = decoder_.decode(*a);
+        for (size_t i = 0; i < c.size(); ++i)
+          s += static_cast<char>(c.integer(i));
+      }
+      return s;
+    };
+    if (const ArrayTag* a = find(d_.field, "isovalue")) {
+      const Column c = decoder_.decode(*a);
+      if (c.size() != 1 || !std::isfinite(c.real(0)))
+        d_.refuse(a->line, "R4", "isovalue is not one finite number");
+      m_.isovalue = c.real(0);
+    }
+    m_.source = text("source");
+    m_.creator = text("creator");
+  }
+
+  /// A label of every cell, if the piece has one.
+  struct Labels {
+    Labels(Reader& r, const Piece& p, const char* name, bool missing)
+        : reader(r), tag(missing ? nullptr : find(p.cell_data, name)) {
+      if (tag)
+        values = r.column(*tag, static_cast<uint64_t>(p.cells), true);
+    }
+    int32_t at(size_t c) const {
+      const int64_t v = values.integer(c);
+      if (v < std::numeric_limits<int32_t>::min() || v > std::numeric_limits<int32_t>::max())
+        refuse(c, v, "a 32-bit label");
+      return static_cast<int32_t>(v);
+    }
+    int32_t positive(size_t c, int32_t standard) const {
+      if (!tag)
+        return standard;
+      const int32_t v = at(c);
+      if (v < 1)
+        refuse(c, v, "a positive label");
+      return v;
+    }
+    void refuse(size_t c, int64_t v, const char* expected) const {
+      reader.d_.refuse(tag->line, "R9",
+                       "cell " + std::to_string(c) + " has " + tag->name + ' ' + std::to_string(v) + ", expected " +
+                           expected);
+    }
+    const Reader& reader;
+    const ArrayTag* tag;
+    Column values;
+  };
+
+  const ArrayTag& need(const Piece& p, const std::vector<ArrayTag>& arrays, const char* name) {
+    const ArrayTag* a = name ? find(arrays, name) : arrays.empty() ? nullptr : &arrays.front();
+    if (!a)
+      d_.refuse(p.line, "R3", std::string("a Piece without ") + (name ? name : "Points"));
+    return *a;
+  }
+
+  Column column(const ArrayTag& a, uint64_t expected, bool integer) {
+    Column c = decoder_.decode(a);
+    if (integer && !c.is_integer())
+      d_.refuse(a.line, "R5", "array '" + a.name + "' holds reals, expected integers");
+    if (c.size() != expected)
+      d_.refuse(a.line, "R4",
+                "array '" + a.name + "' has " + std::to_string(c.size()) + " values, expected " +
+                    std::to_string(expected));
+    return c;
+  }
+
+  const Document& d_;
+  Decoder decoder_;
+  VtuNotes& notes_;
+  TetMesh m_;
+};
+
+} // namespace
+
+TetMesh read_vtu(std::istream& in, const std::string& file, VtuNotes* notes) {
+  const std::string text = read_all(in, file);
+  const Document document = parse_document(file, text);
+  VtuNotes own;
+  VtuNotes& n = notes ? *notes : own;
+  n = {};
+  TetMesh mesh = Reader(document, n).read();
+  if (n.boundary_missing)
+    rebuild_triangles(mesh);
+  return mesh;
+}
+
+} // namespace molmesh::formats

@@ -1,0 +1,202 @@
+// vtu_test.cpp — the rules of VTUv1.md, the exact round trip, foreign encodings.
+#include "error.hpp"
+#include "formats/vtu/vtu.hpp"
+#include "mesh/adjacency.hpp"
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <sstream>
+
+using namespace molmesh;
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path folder(const char* name) {
+  return fs::path(MOLMESH_SOURCE_DIR) / "formats/vtu/samples" / name;
+}
+
+std::vector<fs::path> samples(const char* name) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder(name)))
+    files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string content(const fs::path& p) {
+  std::ifstream in(p, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TetMesh read_text(const std::string& text, formats::VtuNotes* notes = nullptr) {
+  std::istringstream in(text);
+  return formats::read_vtu(in, "x.vtu", notes);
+}
+
+std::string written(const TetMesh& m) {
+  std::ostringstream out;
+  formats::write_vtu(out, m);
+  return out.str();
+}
+
+/// The message of a file that must be refused.
+std::string refusal(const std::string& text) {
+  try {
+    read_text(text);
+  } catch (const Error& e) {
+    CHECK(e.status == Status::bad_input);
+    return e.what();
+  }
+  return "";
+}
+
+/// Two tetrahedra on one face, regions 1 and 2.
+TetMesh two_tets() {
+  TetMesh m;
+  m.point = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  m.tet = {{0, 1, 2, 3}, {1, 2, 3, 4}};
+  m.region = {1, 2};
+  rebuild_triangles(m);
+  m.isovalue = 1.25;
+  m.source = "two tetrahedra";
+  m.creator = "VTK 9.1";
+  return m;
+}
+
+void check_same(const TetMesh& a, const TetMesh& b) {
+  CHECK(a.point == b.point);
+  CHECK(a.tet == b.tet);
+  CHECK(a.region == b.region);
+  CHECK(a.part == b.part);
+  CHECK(a.tri == b.tri);
+  CHECK(a.boundary == b.boundary);
+  CHECK(a.isovalue == b.isovalue);
+  CHECK(a.source == b.source);
+  CHECK(a.creator == b.creator);
+}
+
+/// Triangles as sets of rotations.
+std::vector<Tri> rotated(std::vector<Tri> t) {
+  for (Tri& x : t)
+    std::rotate(x.begin(), std::min_element(x.begin(), x.end()), x.end());
+  std::sort(t.begin(), t.end());
+  return t;
+}
+
+} // namespace
+
+TEST_CASE("what is written is read back exactly, and written again as the same bytes") {
+  TetMesh m = two_tets();
+  m.point[4] = {0x1.fffffffffffffp+3, -0.0, 1e-17};
+  m.isovalue = 0.1;
+  m.source = "caf\xc3\xa9 & <1tii>.pdb </AppendedData> _";
+  for (bool parts : {false, true}) {
+    m.part = parts ? std::vector<int32_t>{7, 0} : std::vector<int32_t>{};
+    formats::VtuNotes notes;
+    const std::string text = written(m);
+    const TetMesh back = read_text(text, &notes);
+    check_same(back, m);
+    CHECK(std::signbit(back.point[4].y));
+    CHECK(written(back) == text);
+    CHECK_FALSE(notes.region_missing);
+    CHECK_FALSE(notes.boundary_missing);
+  }
+}
+
+TEST_CASE("golden bytes of version 1") {
+  const TetMesh m = [] {
+    TetMesh golden = two_tets();
+    golden.part = {0, 1};
+    golden.creator = "molmesh 0.1.0";
+    return golden;
+  }();
+  CHECK(written(m) == content(folder("passed") / "molmesh-v1.vtu"));
+}
+
+TEST_CASE("foreign encodings of the same mesh read the same") {
+  const TetMesh expected = two_tets();
+  for (const fs::path& file : samples("passed")) {
+    INFO(file.filename());
+    formats::VtuNotes notes;
+    const TetMesh m = read_text(content(file), &notes);
+    const bool extra = file.stem().string().find("extra") != std::string::npos;
+    const bool no_labels = file.stem().string().find("no-labels") != std::string::npos;
+    CHECK(m.point == expected.point);
+    CHECK(m.tet == expected.tet);
+    CHECK(notes.dropped_cells == (extra || no_labels ? 3 : 0));
+    CHECK(notes.region_missing == no_labels);
+    CHECK(notes.boundary_missing == no_labels);
+    if (no_labels) {
+      CHECK(m.region == std::vector<int32_t>{1, 1});
+      CHECK(m.tri.size() == 6);
+      CHECK(m.boundary == std::vector<int32_t>(6, 1));
+    } else {
+      CHECK(m.region == expected.region);
+      CHECK(rotated(m.tri) == rotated(expected.tri));
+      CHECK(m.boundary == expected.boundary);
+    }
+  }
+}
+
+TEST_CASE("each failed sample breaks the rule in its name") {
+  for (const fs::path& file : samples("failed")) {
+    INFO(file.filename());
+    const std::string name = file.stem().string(), message = refusal(content(file));
+    INFO(message);
+    const std::string rule = name.substr(0, name.find('-'));
+    CHECK(message.rfind("x.vtu:", 0) == 0);
+    CHECK(message.find(": " + rule + ": ") != std::string::npos);
+    CHECK(message.find('\n') == std::string::npos);
+  }
+}
+
+TEST_CASE("lines in messages count from 1") {
+  CHECK(refusal(content(folder("failed") / "R5-not-a-number.vtu")).rfind("x.vtu:13: ", 0) == 0);
+  CHECK(refusal(content(folder("failed") / "R8-offsets-fall.vtu")).rfind("x.vtu:19: ", 0) == 0);
+}
+
+TEST_CASE("a file cut anywhere is refused, and so is one with a byte changed, or it reads as a mesh") {
+  std::mt19937_64 random(5);
+  for (const fs::path& file : samples("passed")) {
+    INFO(file.filename());
+    const std::string text = content(file);
+    const size_t whole = text.rfind("</VTKFile>") + 10;
+    for (size_t n = 0; n < whole; n += 1 + random() % 7) {
+      INFO(n);
+      CHECK_FALSE(refusal(text.substr(0, n)).empty());
+    }
+    for (int n = 0; n < 500; ++n) {
+      std::string changed = text;
+      for (int k = 0; k < 1 + n % 3; ++k)
+        changed[random() % changed.size()] = static_cast<char>(random());
+      try {
+        const TetMesh m = read_text(changed);
+        for (const Tet& t : m.tet)
+          for (int32_t v : t)
+            REQUIRE((v >= 0 && static_cast<size_t>(v) < m.point.size()));
+      } catch (const Error& e) {
+        REQUIRE(e.status == Status::bad_input);
+      }
+    }
+  }
+}
+
+TEST_CASE("a random mesh of some size survives the round trip") {
+  std::mt19937_64 random(6);
+  TetMesh m;
+  for (int i = 0; i < 30'000; ++i)
+    m.point.push_back({std::ldexp(double(random()), -60), double(random() % 100) / 7, -double(i)});
+  for (int i = 0; i < 50'000; ++i) {
+    m.tet.push_back({int32_t(random() % 30'000), int32_t(random() % 30'000), int32_t(i % 30'000), 0});
+    m.region.push_back(int32_t(random() % 3 + 1));
+    m.part.push_back(int32_t(random() % 64));
+  }
+  for (int i = 0; i < 10'001; ++i) {
+    m.tri.push_back({int32_t(i), int32_t(random() % 30'000), 1});
+    m.boundary.push_back(int32_t(random() % 7 + 1));
+  }
+  check_same(read_text(written(m)), m);
+}
