@@ -1,0 +1,70 @@
+// dynamic_mesh.hpp — tetrahedra that know their neighbours, labelled faces and constrained vertices.
+#pragma once
+#include "improve/quality.hpp"
+#include "mesh/tet_mesh.hpp"
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace molmesh::improve {
+
+/// What a vertex may do.
+enum class Kind : uint8_t {
+  interior, ///< on no labelled face: anything
+  surface,  ///< on one curved label: stays on the target
+  sliding,  ///< on axis planes alone (box walls): keeps the frozen coordinates
+  fixed,    ///< where labels or sharp edges meet: never moves, is never removed
+};
+
+struct Vertex {
+  Kind kind = Kind::interior;
+  uint8_t frozen = 0; ///< sliding: bit a set when coordinate a is kept
+  uint8_t label = 0;  ///< of a labelled face at the vertex (0 inside)
+};
+
+/// Face i is opposite v[i]; (v1 v2 v3), (v0 v3 v2), (v0 v1 v3), (v0 v2 v1) point out.
+struct Element {
+  std::array<int32_t, 4> v{-1, -1, -1, -1}; ///< positive volume; v[0] < 0: a free slot
+  std::array<int32_t, 4> n{-1, -1, -1, -1}; ///< element across face i; -1: none
+  std::array<uint8_t, 4> label{};           ///< of face i, an index into DynamicMesh::labels; 0: none
+  int32_t region = 0;
+  float q = 0; ///< tet_quality
+
+  bool alive() const { return v[0] >= 0; }
+  int find(int32_t vertex) const {
+    return v[0] == vertex ? 0 : v[1] == vertex ? 1 : v[2] == vertex ? 2 : v[3] == vertex ? 3 : -1;
+  }
+};
+
+inline constexpr std::array<std::array<int, 3>, 4> outward_face{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+struct Label {
+  int32_t name = 0;   ///< TetMesh::boundary
+  int axis = -1;      ///< all its triangles lie in one plane normal to this axis; -1: curved
+  bool reversed = false; ///< its triangles point into the lower of the two regions, or into the mesh
+  bool curved() const { return axis < 0; }
+};
+
+struct DynamicMesh {
+  std::vector<Vec3d> point;
+  std::vector<Vertex> vertex;
+  std::vector<int32_t> incident; ///< [vertices] an element at the vertex; -1: free slot
+  std::vector<Element> element;
+  std::vector<Label> labels; ///< [0] is no label
+
+  float quality(const std::array<int32_t, 4>& v) const {
+    return tet_quality(point[size_t(v[0])], point[size_t(v[1])], point[size_t(v[2])], point[size_t(v[3])]);
+  }
+};
+
+/// Edges of a curved label that bend by more than `sharp` degrees are kept: their ends are fixed.
+/// Throws Error(bad_input) naming the first element, face or triangle that makes the mesh no valid one: non-positive
+/// volume by exact sign, a face with three elements, two elements on one side of a face, triangles that are not exactly the
+/// faces between regions and on the outside.
+DynamicMesh build(const TetMesh& mesh, double sharp, int threads);
+
+/// Elements, vertices and triangles in slot order, unused slots squeezed out; triangles point as they did.
+/// isovalue, source and creator are the caller's.
+TetMesh extract(const DynamicMesh& mesh);
+
+} // namespace molmesh::improve

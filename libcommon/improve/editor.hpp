@@ -1,0 +1,107 @@
+// editor.hpp — local operations on one part of a mesh: cavity out, cavity in, and the worst element must rise.
+// Parts are sets of vertices. An operation changes only elements whose four vertices belong to its part, so editors of
+// different parts may run at the same time, and what they do does not depend on the order.
+#pragma once
+#include "improve/dynamic_mesh.hpp"
+#include "improve/target.hpp"
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace molmesh::improve {
+
+/// Operations done.
+struct Counts {
+  int64_t moves = 0, edge_removals = 0, surface_flips = 0, face_swaps = 0, contractions = 0, splits = 0;
+  Counts& operator+=(const Counts& o);
+  int64_t total() const { return moves + edge_removals + surface_flips + face_swaps + contractions + splits; }
+};
+
+/// How far a surface triangle may be from the target.
+struct Guard {
+  double angle = 32;      ///< degrees between its normal and the target's at its centroid
+  double distance = 0.12; ///< of its centroid, in spacings
+  double reach = 0.5;     ///< of a projection, in edge lengths: further, and pinches drop two points on one place
+};
+
+/// What one part may touch. Reserved slots are those of dead elements and vertices.
+struct PartRoom {
+  int32_t part = 0;
+  std::vector<int32_t> element, vertex;
+};
+
+/// New element of a cavity.
+struct Candidate {
+  std::array<int32_t, 4> v;
+  int32_t region;
+  float q;
+  std::array<uint8_t, 4> outside{}; ///< labels of faces that may come to lie on the outside, where they differ
+};
+
+/// Elements around the edge a b: element i is (a, b, vertex i, vertex i + 1), positive.
+struct Ring {
+  int32_t a = -1, b = -1;
+  bool closed = true;
+  std::vector<int32_t> element, vertex; ///< closed: as many; open: one vertex more
+  std::vector<int> border;              ///< positions of vertices w with a labelled face a b w
+  std::vector<uint8_t> label;           ///< of those faces
+};
+
+class Editor {
+public:
+  /// target may be null: then surface points stay. owner [vertices] is the part of each vertex; stamp [elements] is scratch,
+  /// zero where no editor has been since it was cleared.
+  Editor(DynamicMesh& mesh, const Target* target, const std::vector<int32_t>& owner, std::vector<uint32_t>& stamp,
+         PartRoom& room, Guard guard);
+
+  // Each tries its operation and tells whether it was done: the worst quality among the elements concerned has risen.
+  bool smooth(int32_t v, float goal);                 ///< moves v until its elements reach the goal
+  bool remove_edge(int32_t e, int i, int j);          ///< edge v[i] v[j] of element e; flips a surface edge
+  bool swap_face(int32_t e, int i);                   ///< face i: two elements become three
+  bool contract(int32_t e, int i, int j);             ///< v[i] goes to v[j]
+  bool split(int32_t e, int i, int j);                ///< a new vertex near the middle of the edge
+  /// Moves a surface vertex onto the target, all the way or part of it; no element falls under `floor`.
+  bool settle(int32_t v, float floor);
+
+  /// Elements made or changed by operations since the caller last cleared it.
+  std::vector<int32_t> changed;
+  Counts counts;
+
+private:
+  bool owned(int32_t e) const;
+  bool star(int32_t v, std::vector<int32_t>& out);
+  bool ring(int32_t e, int32_t a, int32_t b, Ring& r) const;
+  bool judge(Candidate& c, float above) const;
+  void replace(const std::vector<int32_t>& old, const std::vector<Candidate>& now);
+  bool has_room(size_t old, size_t now) const { return now <= old + room_.element.size(); }
+  double misfit(Vec3d a, Vec3d b, Vec3d c) const;
+  double misfit_face(const Element& e, size_t face, int32_t from, Vec3d at) const;
+  bool edge_is_labelled(int32_t a, int32_t b);
+  bool surface_link_holds(int32_t a, int32_t b, const Ring& r);
+  float worst(const std::vector<int32_t>& elements) const;
+  bool outward(const Element& e, size_t face) const;
+  bool constrain(int32_t v, Vec3d& x, double reach) const;
+
+  DynamicMesh& m_;
+  const Target* target_;
+  const std::vector<int32_t>& owner_;
+  std::vector<uint32_t>& stamp_;
+  PartRoom& room_;
+  Guard guard_;
+  uint32_t clock_ = 0;
+  struct FaceEntry {
+    int32_t a, b, c;
+    int32_t element;
+    uint8_t face, label;
+    bool open, outer;
+    uint32_t clock = 0;
+  };
+  std::vector<FaceEntry> table_;
+  uint32_t table_clock_ = 0;
+  FaceEntry& entry(int32_t a, int32_t b, int32_t c);
+  std::vector<int32_t> star_, star2_, old_;
+  std::vector<Candidate> now_;
+  Ring ring_;
+};
+
+} // namespace molmesh::improve

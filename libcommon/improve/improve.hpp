@@ -1,0 +1,36 @@
+// improve.hpp — quality improvement of a tetrahedral mesh: §5 of the paper and design §10.
+#pragma once
+#include "density/block_grid.hpp"
+#include "improve/editor.hpp"
+#include "mesh/tet_mesh.hpp"
+#include <functional>
+#include <string>
+
+namespace molmesh::improve {
+
+struct Options {
+  double min_dihedral = 28, max_dihedral = 134; ///< degrees aimed at; the work stops where they are reached
+  int iterations = 8;                           ///< rounds at most; 0 leaves the mesh as it is
+  int threads = 1;
+};
+
+struct Angles {
+  double min = 180, max = 0;        ///< degrees
+  int64_t below_25 = 0, above_140 = 0; ///< elements
+};
+
+struct Result {
+  Counts counts;
+  int rounds = 0;
+  Angles before, after;
+  int64_t off_surface = 0; ///< surface points that could not reach the isosurface (with a density)
+};
+
+/// Improves the mesh in place. With a density, points of the curved boundary labels are put on G = isovalue; without, they
+/// move on the surface that came in, whose edges that bend by more than 50° are kept. Regions, labels and the topology of
+/// every surface stay; the worst element never becomes worse (I9). Same result for any number of threads.
+/// phase(name), when given, is told what begins. Throws Error(bad_input) for a mesh that is not valid.
+Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
+               const std::function<void(const std::string&)>& phase = {});
+
+} // namespace molmesh::improve

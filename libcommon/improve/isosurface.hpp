@@ -1,0 +1,30 @@
+// isosurface.hpp — G = isovalue on a block grid, with log G trilinear in each cell.
+// Where G is exponential log G is nearly quadratic: its interpolant is closer to the field than G's.
+#pragma once
+#include "density/block_grid.hpp"
+#include "improve/target.hpp"
+#include <vector>
+
+namespace molmesh::improve {
+
+/// Known on cells whose eight corners are active. Keeps no reference to the grid.
+class Isosurface final : public Target {
+public:
+  Isosurface(const BlockGrid& grid, int threads);
+  bool project(Vec3d& p, double reach) const override;
+  bool probe(Vec3d p, double& distance, Vec3d& normal) const override;
+  double spacing() const override { return frame_.spacing; }
+  /// f = log(G / isovalue) and its gradient (1/Å). False where a corner is not active.
+  bool evaluate(Vec3d p, double& f, Vec3d& gradient) const;
+  /// Points are projected this far outside the isosurface (Å), so that chords enclose the isosurface's own volume.
+  void set_offset(double offset) { offset_ = offset; }
+  double offset() const { return offset_; }
+
+private:
+  GridFrame frame_;
+  BlockIndex index_;
+  std::vector<float> log_; ///< [512 n], NaN where not active
+  double offset_ = 0;
+};
+
+} // namespace molmesh::improve

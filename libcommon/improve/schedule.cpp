@@ -1,0 +1,176 @@
+// schedule.cpp — parts, their reserved slots, and the order of operations on one bad element.
+#include "improve/schedule.hpp"
+#include "par/par.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace molmesh::improve {
+namespace {
+
+constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+
+// One operation on a bad element, the cheap and local ones first. True when something was done.
+bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass& pass) {
+  const auto element = [&]() -> const Element& { return m.element[size_t(t)]; };
+  for (const auto& [i, j] : edges)
+    if (editor.remove_edge(t, i, j)) return true;
+  for (int f = 0; f < 4; ++f)
+    if (editor.swap_face(t, f)) return true;
+  const float q = element().q;
+  for (size_t i = 0; i < 4; ++i) {
+    editor.smooth(element().v[i], pass.goal);
+    if (element().q >= pass.goal) return true;
+  }
+  if (element().q > 1.05f * q) return true;
+  if (pass.contract)
+    for (const auto& [i, j] : edges)
+      if (editor.contract(t, i, j) || editor.contract(t, j, i)) return true;
+  if (pass.split)
+    for (const auto& [i, j] : edges)
+      if (editor.split(t, i, j)) return true;
+  return false;
+}
+
+} // namespace
+
+float Schedule::worst() const {
+  return par::reduce(
+      static_cast<int64_t>(m_.element.size()), threads_, 2.f,
+      [&](int64_t e) { return m_.element[size_t(e)].alive() ? m_.element[size_t(e)].q : 2.f; },
+      [](float a, float b) { return std::min(a, b); });
+}
+
+int64_t Schedule::below(float goal) const {
+  return par::reduce(
+      static_cast<int64_t>(m_.element.size()), threads_, int64_t{0},
+      [&](int64_t e) { return int64_t{m_.element[size_t(e)].alive() && m_.element[size_t(e)].q < goal}; },
+      [](int64_t a, int64_t b) { return a + b; });
+}
+
+void Schedule::set_owners() {
+  Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  for (size_t v = 0; v < m_.point.size(); ++v)
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], m_.point[v][a]);
+      high[a] = std::max(high[a], m_.point[v][a]);
+    }
+  // Halves along one, two or three axes in turn.
+  static constexpr int shifts[4] = {0, 7, 3, 5};
+  const int s = shifts[shift_++ % 4];
+  int64_t n[3];
+  double cell = cell_;
+  for (;; cell *= 2) {
+    double cells = 1;
+    for (int a = 0; a < 3; ++a) {
+      n[a] = static_cast<int64_t>((high[a] - low[a]) / cell) + 2;
+      cells *= double(n[a]);
+    }
+    if (cells < 1e8) break;
+  }
+  owner_.resize(m_.point.size());
+  par::for_n(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
+    int64_t part = 0;
+    for (int a = 0; a < 3; ++a)
+      part = part * n[a] + static_cast<int64_t>((m_.point[size_t(v)][a] - low[a]) / cell + (s >> a & 1 ? 0.5 : 0));
+    owner_[size_t(v)] = static_cast<int32_t>(part);
+  });
+  parts_ = static_cast<int32_t>(n[0] * n[1] * n[2]);
+}
+
+int32_t Schedule::part_of(const Element& e) const {
+  const int32_t p = owner_[size_t(e.v[0])];
+  return owner_[size_t(e.v[1])] == p && owner_[size_t(e.v[2])] == p && owner_[size_t(e.v[3])] == p ? p : -1;
+}
+
+// Items of one part, in order, go to one editor with slots of its own.
+Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
+                           const Work& work) {
+  struct Job {
+    PartRoom room;
+    std::vector<int32_t> items;
+    Counts counts;
+  };
+  std::vector<int32_t> job_of(static_cast<size_t>(parts_), -1);
+  std::vector<Job> jobs;
+  for (size_t i = 0; i < items.size(); ++i) {
+    if (part_of_item[i] < 0) continue;
+    int32_t& j = job_of[size_t(part_of_item[i])];
+    if (j < 0) {
+      j = static_cast<int32_t>(jobs.size());
+      jobs.push_back({});
+      jobs.back().room.part = part_of_item[i];
+    }
+    jobs[size_t(j)].items.push_back(items[i]);
+  }
+  for (Job& job : jobs) {
+    const size_t elements = 64 + 2 * job.items.size(), vertices = 16 + job.items.size() / 2;
+    const auto reserve = [](std::vector<int32_t>& pool, std::vector<int32_t>& room, size_t count, size_t& size) {
+      while (room.size() < count && !pool.empty()) room.push_back(pool.back()), pool.pop_back();
+      while (room.size() < count) room.push_back(static_cast<int32_t>(size++));
+    };
+    size_t element_size = m_.element.size(), vertex_size = m_.point.size();
+    reserve(free_element_, job.room.element, elements, element_size);
+    reserve(free_vertex_, job.room.vertex, vertices, vertex_size);
+    m_.element.resize(element_size);
+    m_.point.resize(vertex_size);
+    m_.vertex.resize(vertex_size);
+    m_.incident.resize(vertex_size, -1);
+    owner_.resize(vertex_size);
+    for (const int32_t v : job.room.vertex) owner_[size_t(v)] = job.room.part;
+  }
+  stamp_.assign(m_.element.size(), 0);
+  par::for_n(static_cast<int64_t>(jobs.size()), threads_, 1, [&](int64_t j) {
+    Job& job = jobs[size_t(j)];
+    Editor editor(m_, target_, owner_, stamp_, job.room, guard);
+    work(editor, job.items);
+    job.counts = editor.counts;
+  });
+  Counts sum;
+  for (Job& job : jobs) {
+    sum += job.counts;
+    free_element_.insert(free_element_.end(), job.room.element.begin(), job.room.element.end());
+    free_vertex_.insert(free_vertex_.end(), job.room.vertex.begin(), job.room.vertex.end());
+  }
+  return sum;
+}
+
+Counts Schedule::run(const Pass& pass) {
+  set_owners();
+  std::vector<int32_t> items, part;
+  for (size_t e = 0; e < m_.element.size(); ++e)
+    if (m_.element[e].alive() && m_.element[e].q < pass.goal) {
+      items.push_back(static_cast<int32_t>(e));
+      part.push_back(part_of(m_.element[e]));
+    }
+  return for_parts(items, part, pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
+    const auto bad = [&](int32_t e) { return m_.element[size_t(e)].alive() && m_.element[size_t(e)].q < pass.goal; };
+    for (int sweep = 0; sweep < 4 && !list.empty(); ++sweep) {
+      std::sort(list.begin(), list.end(), [&](int32_t a, int32_t b) {
+        const float qa = m_.element[size_t(a)].q, qb = m_.element[size_t(b)].q;
+        return qa != qb ? qa < qb : a < b;
+      });
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+      editor.changed.clear();
+      for (const int32_t e : list)
+        if (bad(e)) improve_element(editor, m_, e, pass);
+      list.clear();
+      for (const int32_t e : editor.changed)
+        if (bad(e)) list.push_back(e);
+    }
+  });
+}
+
+Counts Schedule::settle(float floor, const Guard& guard) {
+  set_owners();
+  std::vector<int32_t> items, part;
+  for (size_t v = 0; v < m_.point.size(); ++v)
+    if (m_.incident[v] >= 0 && m_.vertex[v].kind == Kind::surface) {
+      items.push_back(static_cast<int32_t>(v));
+      part.push_back(owner_[v]);
+    }
+  return for_parts(items, part, guard, [&](Editor& editor, std::vector<int32_t>& list) {
+    for (const int32_t v : list) editor.settle(v, floor);
+  });
+}
+
+} // namespace molmesh::improve

@@ -1,0 +1,49 @@
+// schedule.hpp — passes over the bad elements, part by part.
+#pragma once
+#include "improve/editor.hpp"
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace molmesh::improve {
+
+/// What a pass does with an element below its goal.
+struct Pass {
+  float goal = 0;      ///< quality
+  bool contract = true;
+  bool split = false;
+  Guard guard;
+};
+
+/// Runs passes over a mesh that lives as long as it.
+class Schedule {
+public:
+  Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads)
+      : m_(mesh), target_(target), cell_(cell), threads_(threads) {}
+  /// Every part works off its elements below the goal, worst first. Parts are the cells of a coarse lattice, shifted from
+  /// pass to pass: what lies across two parts now lies inside one the next time.
+  Counts run(const Pass& pass);
+  /// Puts surface vertices on the target where no element falls under `floor`.
+  Counts settle(float floor, const Guard& guard);
+  float worst() const;
+  int64_t below(float goal) const;
+
+private:
+  using Work = std::function<void(Editor&, std::vector<int32_t>&)>;
+  Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
+                   const Work& work);
+  void set_owners();
+  int32_t part_of(const Element& e) const;
+
+  DynamicMesh& m_;
+  const Target* target_;
+  double cell_;
+  int threads_;
+  int shift_ = 0;
+  int32_t parts_ = 0;
+  std::vector<int32_t> owner_;
+  std::vector<uint32_t> stamp_;
+  std::vector<int32_t> free_element_, free_vertex_;
+};
+
+} // namespace molmesh::improve
