@@ -23,9 +23,12 @@ struct Sorted {
 };
 Sorted sorted(int32_t a, int32_t b, int32_t c) {
   bool odd = false;
-  if (a > b) std::swap(a, b), odd = !odd;
-  if (b > c) std::swap(b, c), odd = !odd;
-  if (a > b) std::swap(a, b), odd = !odd;
+  if (a > b)
+    std::swap(a, b), odd = !odd;
+  if (b > c)
+    std::swap(b, c), odd = !odd;
+  if (a > b)
+    std::swap(a, b), odd = !odd;
   return {{a, b, c}, odd};
 }
 
@@ -65,8 +68,10 @@ void link(DynamicMesh& m, const Buckets& b, int threads) {
     for (auto f = first; f != last; ++f) {
       int others = 0;
       for (auto g = first; g != last; ++g) {
-        if (g == f || g->middle != f->middle || g->high != f->high) continue;
-        if (++others == 2) fail_input(name("tetrahedron", f->slot / 4) + " has a face shared by three, expected two at most");
+        if (g == f || g->middle != f->middle || g->high != f->high)
+          continue;
+        if (++others == 2)
+          fail_input(name("tetrahedron", f->slot / 4) + " has a face shared by three, expected two at most");
         if (g->odd == f->odd)
           fail_input(name("tetrahedron", f->slot / 4) + " overlaps " + name("tetrahedron", g->slot / 4) +
                      ", expected one on each side of a face");
@@ -83,23 +88,27 @@ void set_labels(DynamicMesh& m, const Buckets& b, const TetMesh& mesh) {
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
     const auto [entry, fresh] = index.try_emplace(mesh.boundary[t], static_cast<uint8_t>(m.labels.size()));
     if (fresh) {
-      if (m.labels.size() == 256) fail_input("more than 255 different boundary labels");
+      if (m.labels.size() == 256)
+        fail_input("more than 255 different boundary labels");
       m.labels.push_back({mesh.boundary[t], -1});
     }
     const Sorted s = sorted(mesh.tri[t][0], mesh.tri[t][1], mesh.tri[t][2]);
     int found = 0;
     for (int64_t f = b.begin[size_t(s.v[0])]; f < b.begin[size_t(s.v[0]) + 1]; ++f) {
       const Face& face = b.face[size_t(f)];
-      if (face.middle != s.v[1] || face.high != s.v[2]) continue;
+      if (face.middle != s.v[1] || face.high != s.v[2])
+        continue;
       uint8_t& label = m.element[size_t(face.slot / 4)].label[size_t(face.slot % 4)];
-      if (label != 0) fail_input(name("triangle", int64_t(t)) + " is a duplicate");
+      if (label != 0)
+        fail_input(name("triangle", int64_t(t)) + " is a duplicate");
       label = entry->second;
       ++found;
       const int32_t other = m.element[size_t(face.slot / 4)].n[size_t(face.slot % 4)];
       if (fresh && (other < 0 || m.element[size_t(other)].region > m.element[size_t(face.slot / 4)].region))
         m.labels.back().reversed = face.odd != s.odd;
     }
-    if (!found) fail_input(name("triangle", int64_t(t)) + " is no face of a tetrahedron");
+    if (!found)
+      fail_input(name("triangle", int64_t(t)) + " is no face of a tetrahedron");
   }
   for (size_t e = 0; e < m.element.size(); ++e)
     for (size_t i = 0; i < 4; ++i) {
@@ -107,15 +116,18 @@ void set_labels(DynamicMesh& m, const Buckets& b, const TetMesh& mesh) {
       const bool border = el.n[i] < 0 || m.element[size_t(el.n[i])].region != el.region;
       if (border != (el.label[i] != 0))
         fail_input(name("tetrahedron", int64_t(e)) +
-                   (border ? " has a face between regions or on the outside without a triangle" : " has a triangle inside its region"));
+                   (border ? " has a face between regions or on the outside without a triangle"
+                           : " has a triangle inside its region"));
     }
 }
 
 // A label is flat when all its triangles lie in one plane normal to an axis.
 void find_flat_labels(DynamicMesh& m, const TetMesh& mesh) {
-  std::vector<Vec3d> low(m.labels.size(), Vec3d{1e300, 1e300, 1e300}), high(m.labels.size(), Vec3d{-1e300, -1e300, -1e300});
+  std::vector<Vec3d> low(m.labels.size(), Vec3d{1e300, 1e300, 1e300}),
+      high(m.labels.size(), Vec3d{-1e300, -1e300, -1e300});
   std::map<int32_t, size_t> index;
-  for (size_t l = 1; l < m.labels.size(); ++l) index[m.labels[l].name] = l;
+  for (size_t l = 1; l < m.labels.size(); ++l)
+    index[m.labels[l].name] = l;
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
     const size_t l = index[mesh.boundary[t]];
     for (const int32_t v : mesh.tri[t])
@@ -126,7 +138,8 @@ void find_flat_labels(DynamicMesh& m, const TetMesh& mesh) {
   }
   for (size_t l = 1; l < m.labels.size(); ++l)
     for (int a = 0; a < 3; ++a)
-      if (low[l][a] == high[l][a]) m.labels[l].axis = a;
+      if (low[l][a] == high[l][a])
+        m.labels[l].axis = a;
 }
 
 // Sliding needs planes of distinct axes, surface one curved label that is a 2-manifold without sharp edges here.
@@ -141,35 +154,45 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, double sharp) {
   std::vector<Edge> edges;
   edges.reserve(3 * mesh.tri.size());
   std::map<int32_t, uint8_t> index;
-  for (size_t l = 1; l < m.labels.size(); ++l) index[m.labels[l].name] = static_cast<uint8_t>(l);
+  for (size_t l = 1; l < m.labels.size(); ++l)
+    index[m.labels[l].name] = static_cast<uint8_t>(l);
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
     const uint8_t label = index[mesh.boundary[t]];
     for (size_t i = 0; i < 3; ++i) {
       const int32_t v = mesh.tri[t][i], w = mesh.tri[t][(i + 1) % 3];
       auto& s = seen[size_t(v)];
       size_t k = 0;
-      while (k < 3 && s[k] != 0 && s[k] != label) ++k;
-      if (k == 3) many[size_t(v)] = 1;
-      else s[k] = label;
+      while (k < 3 && s[k] != 0 && s[k] != label)
+        ++k;
+      if (k == 3)
+        many[size_t(v)] = 1;
+      else
+        s[k] = label;
       edges.push_back({std::min(v, w), std::max(v, w), label, static_cast<int32_t>(t)});
     }
   }
   for (size_t v = 0; v < m.point.size(); ++v) {
     Vertex& x = m.vertex[v];
     const auto& s = seen[v];
-    if (s[0] == 0) continue;
+    if (s[0] == 0)
+      continue;
     x = {Kind::fixed, 0, s[0]};
-    if (many[v]) continue;
-    if (s[1] == 0 && m.labels[s[0]].curved()) x.kind = Kind::surface;
+    if (many[v])
+      continue;
+    if (s[1] == 0 && m.labels[s[0]].curved())
+      x.kind = Kind::surface;
     bool flat = true;
     int frozen = 0, planes = 0;
     for (const uint8_t l : s) {
-      if (l == 0) continue;
+      if (l == 0)
+        continue;
       flat = flat && !m.labels[l].curved();
-      if (flat) frozen |= 1 << m.labels[l].axis, ++planes;
+      if (flat)
+        frozen |= 1 << m.labels[l].axis, ++planes;
     }
     const int bits = (frozen & 1) + (frozen >> 1 & 1) + (frozen >> 2 & 1);
-    if (flat && bits == planes && bits < 3) x.kind = Kind::sliding, x.frozen = static_cast<uint8_t>(frozen);
+    if (flat && bits == planes && bits < 3)
+      x.kind = Kind::sliding, x.frozen = static_cast<uint8_t>(frozen);
   }
   const auto normal = [&](int32_t t) {
     const Tri& f = mesh.tri[size_t(t)];
@@ -182,11 +205,13 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, double sharp) {
     return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.tri < y.tri;
   });
   for (size_t i = 0, j; i < edges.size(); i = j) {
-    for (j = i; j < edges.size() && edges[j].a == edges[i].a && edges[j].b == edges[i].b;) ++j;
+    for (j = i; j < edges.size() && edges[j].a == edges[i].a && edges[j].b == edges[i].b;)
+      ++j;
     bool keep = j - i != 2;
     if (!keep && edges[i].label == edges[i + 1].label && m.labels[edges[i].label].curved())
       keep = dot(normal(edges[i].tri), normal(edges[i + 1].tri)) < limit;
-    if (keep) m.vertex[size_t(edges[i].a)].kind = m.vertex[size_t(edges[i].b)].kind = Kind::fixed;
+    if (keep)
+      m.vertex[size_t(edges[i].a)].kind = m.vertex[size_t(edges[i].b)].kind = Kind::fixed;
   }
 }
 
@@ -201,7 +226,8 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   for (size_t e = 0; e < mesh.tet.size(); ++e) {
     m.element[e].v = mesh.tet[e];
     m.element[e].region = mesh.region[e];
-    for (const int32_t v : mesh.tet[e]) m.incident[size_t(v)] = static_cast<int32_t>(e);
+    for (const int32_t v : mesh.tet[e])
+      m.incident[size_t(v)] = static_cast<int32_t>(e);
   }
   par::for_n(static_cast<int64_t>(mesh.tet.size()), threads, [&](int64_t e) {
     Element& el = m.element[size_t(e)];
@@ -228,14 +254,17 @@ TetMesh extract(const DynamicMesh& m) {
       out.point.push_back(m.point[v]);
     }
   for (const Element& e : m.element) {
-    if (!e.alive()) continue;
+    if (!e.alive())
+      continue;
     out.tet.push_back({id[size_t(e.v[0])], id[size_t(e.v[1])], id[size_t(e.v[2])], id[size_t(e.v[3])]});
     out.region.push_back(e.region);
     for (size_t i = 0; i < 4; ++i) {
-      if (e.label[i] == 0 || (e.n[i] >= 0 && m.element[size_t(e.n[i])].region < e.region)) continue;
+      if (e.label[i] == 0 || (e.n[i] >= 0 && m.element[size_t(e.n[i])].region < e.region))
+        continue;
       const auto& o = outward_face[i];
       Tri t{id[size_t(e.v[size_t(o[0])])], id[size_t(e.v[size_t(o[1])])], id[size_t(e.v[size_t(o[2])])]};
-      if (m.labels[e.label[i]].reversed) std::swap(t[1], t[2]);
+      if (m.labels[e.label[i]].reversed)
+        std::swap(t[1], t[2]);
       out.tri.push_back(t);
       out.boundary.push_back(m.labels[e.label[i]].name);
     }

@@ -39,8 +39,8 @@ struct Element {
 inline constexpr std::array<std::array<int, 3>, 4> outward_face{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 struct Label {
-  int32_t name = 0;   ///< TetMesh::boundary
-  int axis = -1;      ///< all its triangles lie in one plane normal to this axis; -1: curved
+  int32_t name = 0;      ///< TetMesh::boundary
+  int axis = -1;         ///< all its triangles lie in one plane normal to this axis; -1: curved
   bool reversed = false; ///< its triangles point into the lower of the two regions, or into the mesh
   bool curved() const { return axis < 0; }
 };
@@ -58,9 +58,9 @@ struct DynamicMesh {
 };
 
 /// Edges of a curved label that bend by more than `sharp` degrees are kept: their ends are fixed.
-/// Throws Error(bad_input) naming the first element, face or triangle that makes the mesh no valid one: non-positive
-/// volume by exact sign, a face with three elements, two elements on one side of a face, triangles that are not exactly the
-/// faces between regions and on the outside.
+/// Throws Error(bad_input) naming the first element, face or triangle that makes the mesh no valid one:
+/// non-positive volume by exact sign, a face with three elements, two elements on one side of a face, triangles
+/// that are not exactly the faces between regions and on the outside.
 DynamicMesh build(const TetMesh& mesh, double sharp, int threads);
 
 /// Elements, vertices and triangles in slot order, unused slots squeezed out; triangles point as they did.

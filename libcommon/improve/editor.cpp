@@ -32,15 +32,18 @@ bool Editor::star(int32_t v, std::vector<int32_t>& out) {
   out.clear();
   ++clock_;
   const int32_t first = m_.incident[size_t(v)];
-  if (!owned(first)) return false;
+  if (!owned(first))
+    return false;
   stamp_[size_t(first)] = clock_;
   out.push_back(first);
   for (size_t i = 0; i < out.size(); ++i) {
     const Element& e = m_.element[size_t(out[i])];
     for (size_t f = 0; f < 4; ++f) {
       const int32_t n = e.n[f];
-      if (e.v[f] == v || n < 0 || stamp_[size_t(n)] == clock_) continue;
-      if (!owned(n)) return false;
+      if (e.v[f] == v || n < 0 || stamp_[size_t(n)] == clock_)
+        continue;
+      if (!owned(n))
+        return false;
       stamp_[size_t(n)] = clock_;
       out.push_back(n);
     }
@@ -55,19 +58,22 @@ bool Editor::ring(int32_t e, int32_t a, int32_t b, Ring& r) const {
     const Element& el = m_.element[size_t(t)];
     const int i = el.find(a), j = el.find(b);
     int k = 0;
-    while (k == i || k == j) ++k;
+    while (k == i || k == j)
+      ++k;
     const int l = 6 - i - j - k;
     c = el.v[size_t(k)];
     d = el.v[size_t(l)];
     const bool odd = ((i > j) + (i > k) + (i > l) + (j > k) + (j > l) + (k > l)) & 1;
-    if (odd) std::swap(c, d);
+    if (odd)
+      std::swap(c, d);
   };
   r.a = a;
   r.b = b;
   r.closed = true;
   int32_t start = e, c, d;
   for (size_t steps = 0;; ++steps) { // back to the outside, or once around
-    if (steps > longest || !owned(start)) return false;
+    if (steps > longest || !owned(start))
+      return false;
     others(start, c, d);
     const Element& el = m_.element[size_t(start)];
     const int32_t before = el.n[size_t(el.find(d))];
@@ -75,7 +81,8 @@ bool Editor::ring(int32_t e, int32_t a, int32_t b, Ring& r) const {
       r.closed = false;
       break;
     }
-    if (before == e) break;
+    if (before == e)
+      break;
     start = before;
   }
   r.element.clear();
@@ -99,7 +106,8 @@ bool Editor::ring(int32_t e, int32_t a, int32_t b, Ring& r) const {
       r.vertex.push_back(d);
       return true;
     }
-    if (next == start) return true;
+    if (next == start)
+      return true;
     t = next;
   }
 }
@@ -107,15 +115,18 @@ bool Editor::ring(int32_t e, int32_t a, int32_t b, Ring& r) const {
 // Sets the quality; false unless it is above `above` and the volume is positive.
 bool Editor::judge(Candidate& c, float above) const {
   c.q = m_.quality(c.v);
-  if (!(c.q > above)) return false;
-  if (c.q > 1e-6f) return true;
+  if (!(c.q > above))
+    return false;
+  if (c.q > 1e-6f)
+    return true;
   const auto p = [&](size_t i) { return m_.point[size_t(c.v[i])]; };
   return orient3d(p(0), p(1), p(2), p(3)) > 0;
 }
 
 float Editor::worst(const std::vector<int32_t>& elements) const {
   float w = 2;
-  for (const int32_t e : elements) w = std::min(w, m_.element[size_t(e)].q);
+  for (const int32_t e : elements)
+    w = std::min(w, m_.element[size_t(e)].q);
   return w;
 }
 
@@ -125,11 +136,13 @@ bool Editor::outward(const Element& e, size_t face) const {
   return lower != m_.labels[e.label[face]].reversed;
 }
 
-// At most 1 when the guard is kept. A triangle where the target is not known is bad, but not worse than another such one.
+// At most 1 when the guard is kept. A triangle where the target is not known is bad, but not worse than another
+// such one.
 double Editor::misfit(Vec3d a, Vec3d b, Vec3d c) const {
   double distance;
   Vec3d normal;
-  if (!target_->probe((a + b + c) / 3., distance, normal)) return 10;
+  if (!target_->probe((a + b + c) / 3., distance, normal))
+    return 10;
   const Vec3d n = cross(b - a, c - a);
   const double cosine = dot(n, normal) / std::max(norm(n), 1e-300);
   const double limit = std::cos(guard_.angle * 3.14159265358979323846 / 180);
@@ -138,7 +151,8 @@ double Editor::misfit(Vec3d a, Vec3d b, Vec3d c) const {
 
 // Of a labelled face with vertex `from` put at `at`; 0 for flat labels and without a target.
 double Editor::misfit_face(const Element& e, size_t face, int32_t from, Vec3d at) const {
-  if (!target_ || !m_.labels[e.label[face]].curved()) return 0;
+  if (!target_ || !m_.labels[e.label[face]].curved())
+    return 0;
   std::array<Vec3d, 3> p;
   for (size_t i = 0; i < 3; ++i) {
     const int32_t v = e.v[size_t(outward_face[face][i])];
@@ -150,21 +164,28 @@ double Editor::misfit_face(const Element& e, size_t face, int32_t from, Vec3d at
 bool Editor::constrain(int32_t v, Vec3d& x, double reach) const {
   const Vertex& k = m_.vertex[size_t(v)];
   switch (k.kind) {
-  case Kind::interior: return true;
-  case Kind::surface: return target_ && target_->project(x, reach);
+  case Kind::interior:
+    return true;
+  case Kind::surface:
+    return target_ && target_->project(x, reach);
   case Kind::sliding:
     for (int a = 0; a < 3; ++a)
-      if (k.frozen >> a & 1) x[a] = m_.point[size_t(v)][a];
+      if (k.frozen >> a & 1)
+        x[a] = m_.point[size_t(v)][a];
     return true;
-  case Kind::fixed: break;
+  case Kind::fixed:
+    break;
   }
   return false;
 }
 
 Editor::FaceEntry& Editor::entry(int32_t a, int32_t b, int32_t c) {
-  if (a > b) std::swap(a, b);
-  if (b > c) std::swap(b, c);
-  if (a > b) std::swap(a, b);
+  if (a > b)
+    std::swap(a, b);
+  if (b > c)
+    std::swap(b, c);
+  if (a > b)
+    std::swap(a, b);
   const uint64_t h = (uint64_t(uint32_t(a)) * 0x9E3779B97F4A7C15u) ^ (uint64_t(uint32_t(b)) * 0xC2B2AE3D27D4EB4Fu) ^
                      (uint64_t(uint32_t(c)) * 0x165667B19E3779F9u);
   const size_t mask = table_.size() - 1;
@@ -174,16 +195,20 @@ Editor::FaceEntry& Editor::entry(int32_t a, int32_t b, int32_t c) {
       f = {a, b, c, -1, 0, 0, false, false, table_clock_};
       return f;
     }
-    if (f.a == a && f.b == b && f.c == c) return f;
+    if (f.a == a && f.b == b && f.c == c)
+      return f;
   }
 }
 
-// The new elements fill the old ones' place up to faces on the outside that changed: those get the label of the ones that went.
+// The new elements fill the old ones' place up to faces on the outside that changed: those get the label of the
+// ones that went.
 void Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidate>& now) {
-  while (table_.size() < 16 * (old.size() + now.size())) table_.resize(2 * table_.size());
+  while (table_.size() < 16 * (old.size() + now.size()))
+    table_.resize(2 * table_.size());
   ++table_clock_;
   ++clock_;
-  for (const int32_t e : old) stamp_[size_t(e)] = clock_;
+  for (const int32_t e : old)
+    stamp_[size_t(e)] = clock_;
   uint8_t inner = 0, outside = 0;
   int64_t open = 0;
   const auto face_of = [](const Element& e, size_t f) {
@@ -195,7 +220,8 @@ void Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
     for (size_t f = 0; f < 4; ++f) {
       const int32_t n = e.n[f];
       if (n >= 0 && stamp_[size_t(n)] == clock_) {
-        if (e.label[f] != 0) inner = e.label[f];
+        if (e.label[f] != 0)
+          inner = e.label[f];
         continue;
       }
       const auto v = face_of(e, f);
@@ -204,10 +230,12 @@ void Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
       x.label = e.label[f];
       x.open = x.outer = true;
       ++open;
-      if (n < 0) continue;
+      if (n < 0)
+        continue;
       const Element& beyond = m_.element[size_t(n)];
       for (size_t g = 0; g < 4; ++g)
-        if (beyond.n[g] == t) x.face = static_cast<uint8_t>(g);
+        if (beyond.n[g] == t)
+          x.face = static_cast<uint8_t>(g);
     }
   }
   size_t reused = 0;
@@ -215,8 +243,10 @@ void Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
   made.clear();
   for (const Candidate& c : now) {
     int32_t id;
-    if (reused < old.size()) id = old[reused++];
-    else id = room_.element.back(), room_.element.pop_back();
+    if (reused < old.size())
+      id = old[reused++];
+    else
+      id = room_.element.back(), room_.element.pop_back();
     made.push_back(id);
     Element& e = m_.element[size_t(id)];
     e = {};
@@ -224,7 +254,8 @@ void Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
     e.region = c.region;
     e.q = c.q;
     e.label = c.outside;
-    for (const int32_t v : c.v) m_.incident[size_t(v)] = id;
+    for (const int32_t v : c.v)
+      m_.incident[size_t(v)] = id;
   }
   for (; reused < old.size(); ++reused) {
     m_.element[size_t(old[reused])] = {};
@@ -249,18 +280,23 @@ void Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
       }
       x.open = false;
       --open;
-      if (x.element >= 0) join(id, f, x.element, x.face, x.label != 0 ? x.label : inner);
-      else m_.element[size_t(id)].label[f] = x.label;
+      if (x.element >= 0)
+        join(id, f, x.element, x.face, x.label != 0 ? x.label : inner);
+      else
+        m_.element[size_t(id)].label[f] = x.label;
     }
   // What stays open: old outside faces that went, and new ones.
   for (int pass = 0; open > 0 && pass < 2; ++pass)
     for (FaceEntry& x : table_) {
-      if (x.clock != table_clock_ || !x.open) continue;
-      if (pass == 0 && x.outer && x.element < 0) outside = x.label;
+      if (x.clock != table_clock_ || !x.open)
+        continue;
+      if (pass == 0 && x.outer && x.element < 0)
+        outside = x.label;
       if (pass == 1 && x.element >= 0) {
         Element& e = m_.element[size_t(x.element)];
         e.n[x.face] = -1;
-        if (e.label[x.face] == 0) e.label[x.face] = outside;
+        if (e.label[x.face] == 0)
+          e.label[x.face] = outside;
       }
     }
   changed.insert(changed.end(), made.begin(), made.end());

@@ -1,6 +1,6 @@
 // editor.hpp — local operations on one part of a mesh: cavity out, cavity in, and the worst element must rise.
-// Parts are sets of vertices. An operation changes only elements whose four vertices belong to its part, so editors of
-// different parts may run at the same time, and what they do does not depend on the order.
+// Parts are sets of vertices. An operation changes only elements whose four vertices belong to its part, so editors
+// of different parts may run at the same time, and what they do does not depend on the order.
 #pragma once
 #include "improve/dynamic_mesh.hpp"
 #include "improve/target.hpp"
@@ -49,17 +49,18 @@ struct Ring {
 
 class Editor {
 public:
-  /// target may be null: then surface points stay. owner [vertices] is the part of each vertex; stamp [elements] is scratch,
-  /// zero where no editor has been since it was cleared.
+  /// target may be null: then surface points stay. owner [vertices] is the part of each vertex; stamp [elements] is
+  /// scratch, zero where no editor has been since it was cleared.
   Editor(DynamicMesh& mesh, const Target* target, const std::vector<int32_t>& owner, std::vector<uint32_t>& stamp,
          PartRoom& room, Guard guard);
 
-  // Each tries its operation and tells whether it was done: the worst quality among the elements concerned has risen.
-  bool smooth(int32_t v, float goal);                 ///< moves v until its elements reach the goal
-  bool remove_edge(int32_t e, int i, int j);          ///< edge v[i] v[j] of element e; flips a surface edge
-  bool swap_face(int32_t e, int i);                   ///< face i: two elements become three
-  bool contract(int32_t e, int i, int j);             ///< v[i] goes to v[j]
-  bool split(int32_t e, int i, int j);                ///< a new vertex near the middle of the edge
+  // Each tries its operation and tells whether it was done: the worst quality among the elements concerned has
+  // risen.
+  bool smooth(int32_t v, float goal);        ///< moves v until its elements reach the goal
+  bool remove_edge(int32_t e, int i, int j); ///< edge v[i] v[j] of element e; flips a surface edge
+  bool swap_face(int32_t e, int i);          ///< face i: two elements become three
+  bool contract(int32_t e, int i, int j);    ///< v[i] goes to v[j]
+  bool split(int32_t e, int i, int j);       ///< a new vertex near the middle of the edge
   /// Moves a surface vertex onto the target, all the way or part of it; no element falls under `floor`.
   bool settle(int32_t v, float floor);
 

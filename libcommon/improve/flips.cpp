@@ -19,7 +19,8 @@ public:
   template <class Judge>
   bool solve(int vertices, float above, Judge&& judge) {
     n_ = vertices;
-    if (n_ > longest) return false;
+    if (n_ > longest)
+      return false;
     for (int span = 1; span < n_; ++span)
       for (int i = 0; i + span < n_; ++i) {
         const int j = i + span;
@@ -27,16 +28,19 @@ public:
         c = {span == 1 ? 2.f : -1.f, -1};
         for (int k = i + 1; k < j; ++k) {
           const float sides = std::min(cell(i, k).q, cell(k, j).q);
-          if (sides <= above || sides <= c.q) continue;
+          if (sides <= above || sides <= c.q)
+            continue;
           const float q = std::min(sides, judge(i, k, j, std::max(above, c.q)));
-          if (q > c.q) c = {q, k};
+          if (q > c.q)
+            c = {q, k};
         }
       }
     return cell(0, n_ - 1).q > above;
   }
   template <class F>
   void triangles(F&& f) {
-    if (n_ > 2) walk(0, n_ - 1, f);
+    if (n_ > 2)
+      walk(0, n_ - 1, f);
   }
 
 private:
@@ -48,7 +52,8 @@ private:
   template <class F>
   void walk(int i, int j, F& f) {
     const int k = cell(i, j).k;
-    if (k < 0) return;
+    if (k < 0)
+      return;
     f(i, k, j);
     walk(i, k, f);
     walk(k, j, f);
@@ -60,24 +65,30 @@ private:
 } // namespace
 
 bool Editor::edge_is_labelled(int32_t a, int32_t b) {
-  if (!star(a, star_)) return true;
+  if (!star(a, star_))
+    return true;
   for (const int32_t t : star_) {
     const Element& e = m_.element[size_t(t)];
     const int i = e.find(a), j = e.find(b);
-    if (j < 0) continue;
+    if (j < 0)
+      continue;
     for (int f = 0; f < 4; ++f)
-      if (f != i && f != j && e.label[size_t(f)] != 0) return true;
+      if (f != i && f != j && e.label[size_t(f)] != 0)
+        return true;
   }
   return false;
 }
 
 bool Editor::remove_edge(int32_t e, int i, int j) {
   const int32_t a = m_.element[size_t(e)].v[size_t(i)], b = m_.element[size_t(e)].v[size_t(j)];
-  if (!ring(e, a, b, ring_)) return false;
+  if (!ring(e, a, b, ring_))
+    return false;
   const int m = static_cast<int>(ring_.vertex.size());
   const bool surface = !ring_.border.empty();
-  if (surface && (ring_.border.size() != 2 || ring_.label[0] != ring_.label[1])) return false;
-  if (!surface && (m < 3 || m > longest)) return false;
+  if (surface && (ring_.border.size() != 2 || ring_.label[0] != ring_.label[1]))
+    return false;
+  if (!surface && (m < 3 || m > longest))
+    return false;
   const float above = aim(worst(ring_.element));
   const auto vertex = [&](int k) { return ring_.vertex[size_t(k % m)]; };
   const auto element = [&](int k) -> const Element& { return m_.element[size_t(ring_.element[size_t(k % m)])]; };
@@ -97,7 +108,8 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
           float q = 2;
           for (const auto& v : pair_of(f, x, y, z)) {
             Candidate c{v, 0, 0, {}};
-            if (!judge(c, floor)) return -1.f;
+            if (!judge(c, floor))
+              return -1.f;
             q = std::min(q, c.q);
           }
           return q;
@@ -105,7 +117,8 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
       return false;
     const int32_t region = element(f).region;
     polygon[size_t(side)].triangles([&](int x, int y, int z) {
-      for (const auto& v : pair_of(f, x, y, z)) now_.push_back({v, region, m_.quality(v), {}});
+      for (const auto& v : pair_of(f, x, y, z))
+        now_.push_back({v, region, m_.quality(v), {}});
     });
   }
   if (surface) {
@@ -114,27 +127,33 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
     const Element &after = element(s), &before = element(t - 1);
     const size_t face_s = size_t(after.find(vertex(s + 1))), face_t = size_t(before.find(vertex(t - 1 + (t == s))));
     if (label.curved()) {
-      if (!target_) return false;
+      if (!target_)
+        return false;
       const double limit = std::max({1., misfit_face(after, face_s, -1, {}), misfit_face(before, face_t, -1, {})});
       const auto p = [&](int32_t v) { return m_.point[size_t(v)]; };
       const bool out = outward(after, face_s);
       const double fit = out ? std::max(misfit(p(vs), p(b), p(vt)), misfit(p(vs), p(vt), p(a)))
                              : std::max(misfit(p(vt), p(b), p(vs)), misfit(p(vt), p(vs), p(a)));
-      if (fit > limit) return false;
+      if (fit > limit)
+        return false;
     }
     // Where one side has a single element it goes altogether: its other faces must be free to take the label.
     for (int side = 0; side < sides; ++side)
       if (vertices[side] == 2) {
         const Element& flat = element(first[side]);
         const size_t fa = size_t(flat.find(a)), fb = size_t(flat.find(b));
-        if (flat.label[fa] != 0 || flat.label[fb] != 0 || flat.n[fa] < 0 || flat.n[fb] < 0) return false;
+        if (flat.label[fa] != 0 || flat.label[fb] != 0 || flat.n[fa] < 0 || flat.n[fb] < 0)
+          return false;
       }
-    if (edge_is_labelled(vs, vt)) return false;
+    if (edge_is_labelled(vs, vt))
+      return false;
     if (!ring_.closed && m > 2) // an edge on the outside must be new
       for (const int32_t x : star_)
-        if (m_.element[size_t(x)].find(vt) >= 0) return false;
+        if (m_.element[size_t(x)].find(vt) >= 0)
+          return false;
   }
-  if (!has_room(ring_.element.size(), now_.size())) return false;
+  if (!has_room(ring_.element.size(), now_.size()))
+    return false;
   old_ = ring_.element;
   replace(old_, now_);
   ++(surface ? counts.surface_flips : counts.edge_removals);
@@ -144,21 +163,25 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
 bool Editor::swap_face(int32_t e, int i) {
   const Element& el = m_.element[size_t(e)];
   const int32_t n = el.n[size_t(i)];
-  if (n < 0 || el.label[size_t(i)] != 0 || !owned(e) || !owned(n)) return false;
+  if (n < 0 || el.label[size_t(i)] != 0 || !owned(e) || !owned(n))
+    return false;
   const Element& other = m_.element[size_t(n)];
   const int32_t a = el.v[size_t(i)];
   int32_t b = -1;
   for (size_t k = 0; k < 4; ++k)
-    if (other.n[k] == e) b = other.v[k];
+    if (other.n[k] == e)
+      b = other.v[k];
   const float above = aim(std::min(el.q, other.q));
   now_.clear();
   for (size_t k = 0; k < 3; ++k) {
     const auto& o = outward_face[size_t(i)];
     Candidate c{{a, b, el.v[size_t(o[k])], el.v[size_t(o[(k + 1) % 3])]}, el.region, 0, {}};
-    if (!judge(c, above)) return false;
+    if (!judge(c, above))
+      return false;
     now_.push_back(c);
   }
-  if (!has_room(2, 3)) return false;
+  if (!has_room(2, 3))
+    return false;
   old_ = {e, n};
   replace(old_, now_);
   ++counts.face_swaps;

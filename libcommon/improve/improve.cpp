@@ -1,4 +1,5 @@
-// improve.cpp — the order of passes: settle on the surface, raise the goal by steps, release the guard at the very end.
+// improve.cpp — the order of passes: settle on the surface, raise the goal by steps, release the guard at the very
+// end.
 #include "improve/improve.hpp"
 #include "improve/isosurface.hpp"
 #include "improve/reference_surface.hpp"
@@ -24,7 +25,8 @@ Angles measure(const TetMesh& mesh, int threads) {
         Angles a;
         for (size_t i = 0; i < 4; ++i)
           for (size_t j = i + 1; j < 4; ++j) {
-            const double angle = std::atan2(norm(cross(n[i], n[j])), -dot(n[i], n[j])) * 180 / 3.14159265358979323846;
+            const double angle =
+                std::atan2(norm(cross(n[i], n[j])), -dot(n[i], n[j])) * 180 / 3.14159265358979323846;
             a.min = std::min(a.min, angle);
             a.max = std::max(a.max, angle);
           }
@@ -45,7 +47,8 @@ std::vector<uint8_t> curved_triangles(const DynamicMesh& m, const TetMesh& mesh)
   std::vector<uint8_t> take(mesh.tri.size());
   for (size_t t = 0; t < mesh.tri.size(); ++t)
     for (const Label& l : m.labels)
-      if (l.name == mesh.boundary[t] && l.curved()) take[t] = 1;
+      if (l.name == mesh.boundary[t] && l.curved())
+        take[t] = 1;
   return take;
 }
 
@@ -54,18 +57,22 @@ std::vector<uint8_t> curved_triangles(const DynamicMesh& m, const TetMesh& mesh)
 Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
                const std::function<void(const std::string&)>& phase) {
   const auto begin = [&](const char* name) {
-    if (phase) phase(name);
+    if (phase)
+      phase(name);
   };
   Result result;
   begin("adjacency");
   DynamicMesh m = build(mesh, density ? 180 : 50, options.threads);
   result.before = result.after = measure(mesh, options.threads);
-  if (options.iterations == 0 || mesh.tet.empty()) return result;
+  if (options.iterations == 0 || mesh.tet.empty())
+    return result;
 
   begin("target");
   std::unique_ptr<Target> target;
-  if (density) target = std::make_unique<Isosurface>(*density, options.threads);
-  else target = std::make_unique<ReferenceSurface>(mesh, curved_triangles(m, mesh));
+  if (density)
+    target = std::make_unique<Isosurface>(*density, options.threads);
+  else
+    target = std::make_unique<ReferenceSurface>(mesh, curved_triangles(m, mesh));
   Schedule schedule(m, target.get(), 32 * target->spacing(), options.threads);
 
   begin("improve");
@@ -86,10 +93,13 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     pass.split = round >= 2;
     for (int repeat = 0; repeat < 2; ++repeat) {
       result.counts += schedule.run(pass);
-      if (density) result.counts += schedule.settle(std::min(pass.goal, schedule.worst()), pass.guard);
+      if (density)
+        result.counts += schedule.settle(std::min(pass.goal, schedule.worst()), pass.guard);
     }
     ++result.rounds;
   }
+  if (result.counts.total() == 0)
+    return result; // the file that came in, in its own order
   begin("result");
   TetMesh out = extract(m);
   out.isovalue = mesh.isovalue;

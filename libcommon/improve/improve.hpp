@@ -15,7 +15,7 @@ struct Options {
 };
 
 struct Angles {
-  double min = 180, max = 0;        ///< degrees
+  double min = 180, max = 0;           ///< degrees
   int64_t below_25 = 0, above_140 = 0; ///< elements
 };
 
@@ -26,10 +26,10 @@ struct Result {
   int64_t off_surface = 0; ///< surface points that could not reach the isosurface (with a density)
 };
 
-/// Improves the mesh in place. With a density, points of the curved boundary labels are put on G = isovalue; without, they
-/// move on the surface that came in, whose edges that bend by more than 50° are kept. Regions, labels and the topology of
-/// every surface stay; the worst element never becomes worse (I9). Same result for any number of threads.
-/// phase(name), when given, is told what begins. Throws Error(bad_input) for a mesh that is not valid.
+/// Improves the mesh in place. With a density, points of the curved boundary labels are put on G = isovalue;
+/// without, they move on the surface that came in, whose edges that bend by more than 50° are kept. Regions, labels
+/// and the topology of every surface stay; the worst element never becomes worse (I9). Same result for any number
+/// of threads. phase(name), when given, is told what begins. Throws Error(bad_input) for a mesh that is not valid.
 Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
                const std::function<void(const std::string&)>& phase = {});
 

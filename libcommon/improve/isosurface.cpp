@@ -21,20 +21,24 @@ Isosurface::Isosurface(const BlockGrid& grid, int threads)
 
 bool Isosurface::evaluate(Vec3d p, double& f, Vec3d& gradient) const {
   const Vec3d u = (p - frame_.origin) / frame_.spacing;
-  if (!(std::abs(u.x) < 1e9 && std::abs(u.y) < 1e9 && std::abs(u.z) < 1e9)) return false;
+  if (!(std::abs(u.x) < 1e9 && std::abs(u.y) < 1e9 && std::abs(u.z) < 1e9))
+    return false;
   const Vec3i c{static_cast<int32_t>(std::floor(u.x)), static_cast<int32_t>(std::floor(u.y)),
                 static_cast<int32_t>(std::floor(u.z))};
   double v[8];
   if ((c.x & 7) < 7 && (c.y & 7) < 7 && (c.z & 7) < 7) {
     const int64_t b = index_.find(c);
-    if (b < 0) return false;
+    if (b < 0)
+      return false;
     const float* q = &log_[static_cast<size_t>(512 * b + slot(c))];
-    for (int k = 0; k < 8; ++k) v[k] = q[64 * (k >> 2) + 8 * (k >> 1 & 1) + (k & 1)];
+    for (int k = 0; k < 8; ++k)
+      v[k] = q[64 * (k >> 2) + 8 * (k >> 1 & 1) + (k & 1)];
   } else {
     for (int k = 0; k < 8; ++k) {
       const Vec3i corner = c + Vec3i{k >> 2, k >> 1 & 1, k & 1};
       const int64_t b = index_.find(corner);
-      if (b < 0) return false;
+      if (b < 0)
+        return false;
       v[k] = log_[static_cast<size_t>(512 * b + slot(corner))];
     }
   }
@@ -52,9 +56,11 @@ bool Isosurface::evaluate(Vec3d p, double& f, Vec3d& gradient) const {
 bool Isosurface::probe(Vec3d p, double& distance, Vec3d& normal) const {
   double f;
   Vec3d g;
-  if (!evaluate(p, f, g)) return false;
+  if (!evaluate(p, f, g))
+    return false;
   const double length = norm(g);
-  if (!(length > 0)) return false;
+  if (!(length > 0))
+    return false;
   distance = -f / length - offset_;
   normal = g / -length;
   return true;
@@ -65,9 +71,12 @@ bool Isosurface::project(Vec3d& p, double reach) const {
   double distance;
   Vec3d normal;
   for (int step = 0; step < 8; ++step) {
-    if (!probe(p, distance, normal)) return false;
-    if (std::abs(distance) < 1e-3 * frame_.spacing) return norm2(p - from) <= reach * reach;
-    if (std::abs(distance) > reach) return false;
+    if (!probe(p, distance, normal))
+      return false;
+    if (std::abs(distance) < 1e-3 * frame_.spacing)
+      return norm2(p - from) <= reach * reach;
+    if (std::abs(distance) > reach)
+      return false;
     p += -distance * normal;
   }
   return false;

@@ -16,13 +16,14 @@ inline double angle_quality(double degrees) {
 }
 
 /// Smallest angle_quality of the six dihedral angles; -1 when the volume is not positive in floating point.
-/// With face normals n of length twice the area and D six times the volume, sin²θ at edge e between faces i and j is
-/// D² |e|² / (|n_i|² |n_j|²), accurate for flat elements too.
+/// With face normals n of length twice the area and D six times the volume, sin²θ at edge e between faces i and j
+/// is D² |e|² / (|n_i|² |n_j|²), accurate for flat elements too.
 HD inline float tet_quality(Vec3d p0, Vec3d p1, Vec3d p2, Vec3d p3) {
   const Vec3d a = p1 - p0, b = p2 - p0, c = p3 - p0;
   const Vec3d n1 = cross(c, b), n2 = cross(a, c), n3 = cross(b, a);
   const double det = -dot(a, n1);
-  if (!(det > 0)) return -1;
+  if (!(det > 0))
+    return -1;
   const Vec3d n0 = -(n1 + n2 + n3);
   const double w = obtuse_weight * obtuse_weight;
   const double r0 = 1 / norm2(n0), r1 = 1 / norm2(n1), r2 = 1 / norm2(n2), r3 = 1 / norm2(n3);

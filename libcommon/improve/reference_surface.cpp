@@ -10,16 +10,23 @@ namespace {
 // Closest point of triangle a b c to p, by the regions of its corners, edges and face (Ericson 2005, 5.1.5).
 Vec3d closest_on(Vec3d a, Vec3d b, Vec3d c, Vec3d p) {
   const Vec3d ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
-  if (d1 <= 0 && d2 <= 0) return a;
-  if (d3 >= 0 && d4 <= d3) return b;
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
+               d6 = dot(ac, cp);
+  if (d1 <= 0 && d2 <= 0)
+    return a;
+  if (d3 >= 0 && d4 <= d3)
+    return b;
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
-  if (d6 >= 0 && d5 <= d6) return c;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0)
+    return a + d1 / (d1 - d3) * ab;
+  if (d6 >= 0 && d5 <= d6)
+    return c;
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0)
+    return a + d2 / (d2 - d6) * ac;
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+    return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
   return a + vb / (va + vb + vc) * ab + vc / (va + vb + vc) * ac;
 }
 
@@ -40,18 +47,21 @@ CellRange range(Vec3d low, Vec3d high, double cell) {
 ReferenceSurface::ReferenceSurface(const TetMesh& mesh, const std::vector<uint8_t>& take) {
   double edges = 0;
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
-    if (!take[t]) continue;
+    if (!take[t])
+      continue;
     const auto p = [&](size_t i) { return mesh.point[size_t(mesh.tri[t][i])]; };
     const Vec3d n = cross(p(1) - p(0), p(2) - p(0));
     triangle_.push_back({p(0), p(1), p(2), n / std::max(norm(n), 1e-300)});
     edges += norm(p(1) - p(0)) + norm(p(2) - p(1)) + norm(p(0) - p(2));
   }
-  if (triangle_.empty()) return;
+  if (triangle_.empty())
+    return;
   const double edge = edges / (3. * double(triangle_.size()));
   spacing_ = 0.8 * edge; // a dual-contouring surface has edges of 1.2 h
   cell_ = std::max(edge, 1e-300);
   uint64_t buckets = 16;
-  while (buckets < 2 * triangle_.size()) buckets *= 2;
+  while (buckets < 2 * triangle_.size())
+    buckets *= 2;
   mask_ = buckets - 1;
   begin_.assign(buckets + 1, 0);
   const auto each = [&](auto&& f) {
@@ -65,7 +75,8 @@ ReferenceSurface::ReferenceSurface(const TetMesh& mesh, const std::vector<uint8_
       const CellRange r = range(low, high, cell_);
       for (int64_t i = r.low[0]; i <= r.high[0]; ++i)
         for (int64_t j = r.low[1]; j <= r.high[1]; ++j)
-          for (int64_t k = r.low[2]; k <= r.high[2]; ++k) f(bucket(i, j, k), static_cast<int32_t>(t));
+          for (int64_t k = r.low[2]; k <= r.high[2]; ++k)
+            f(bucket(i, j, k), static_cast<int32_t>(t));
     }
   };
   each([&](uint64_t b, int32_t) { ++begin_[b]; });
@@ -75,14 +86,16 @@ ReferenceSurface::ReferenceSurface(const TetMesh& mesh, const std::vector<uint8_
 }
 
 uint64_t ReferenceSurface::bucket(int64_t x, int64_t y, int64_t z) const {
-  const uint64_t h = uint64_t(x) * 0x9E3779B97F4A7C15u ^ uint64_t(y) * 0xC2B2AE3D27D4EB4Fu ^ uint64_t(z) * 0x165667B19E3779F9u;
+  const uint64_t h =
+      uint64_t(x) * 0x9E3779B97F4A7C15u ^ uint64_t(y) * 0xC2B2AE3D27D4EB4Fu ^ uint64_t(z) * 0x165667B19E3779F9u;
   return (h ^ h >> 29) & mask_;
 }
 
 bool ReferenceSurface::closest(Vec3d p, double reach, Vec3d& point, int32_t& triangle) const {
   double best = reach * reach;
   triangle = -1;
-  if (triangle_.empty()) return false;
+  if (triangle_.empty())
+    return false;
   const CellRange r = range(p - Vec3d{reach, reach, reach}, p + Vec3d{reach, reach, reach}, cell_);
   for (int64_t i = r.low[0]; i <= r.high[0]; ++i)
     for (int64_t j = r.low[1]; j <= r.high[1]; ++j)
@@ -92,7 +105,8 @@ bool ReferenceSurface::closest(Vec3d p, double reach, Vec3d& point, int32_t& tri
           const int32_t t = entry_[size_t(x)];
           const Vec3d q = closest_on(triangle_[size_t(t)].a, triangle_[size_t(t)].b, triangle_[size_t(t)].c, p);
           const double d = norm2(q - p);
-          if (d < best || (d == best && triangle >= 0 && t < triangle)) best = d, point = q, triangle = t;
+          if (d < best || (d == best && triangle >= 0 && t < triangle))
+            best = d, point = q, triangle = t;
         }
       }
   return triangle >= 0;
@@ -107,7 +121,8 @@ bool ReferenceSurface::project(Vec3d& p, double reach) const {
 bool ReferenceSurface::probe(Vec3d p, double& distance, Vec3d& normal) const {
   int32_t t;
   Vec3d q;
-  if (!closest(p, 0.5 * cell_, q, t)) return false;
+  if (!closest(p, 0.5 * cell_, q, t))
+    return false;
   normal = triangle_[size_t(t)].normal;
   const double length = norm(p - q);
   distance = dot(p - q, normal) < 0 ? -length : length;

@@ -13,21 +13,27 @@ constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {0, 2}, {0, 3}, {1, 2
 bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass& pass) {
   const auto element = [&]() -> const Element& { return m.element[size_t(t)]; };
   for (const auto& [i, j] : edges)
-    if (editor.remove_edge(t, i, j)) return true;
+    if (editor.remove_edge(t, i, j))
+      return true;
   for (int f = 0; f < 4; ++f)
-    if (editor.swap_face(t, f)) return true;
+    if (editor.swap_face(t, f))
+      return true;
   const float q = element().q;
   for (size_t i = 0; i < 4; ++i) {
     editor.smooth(element().v[i], pass.goal);
-    if (element().q >= pass.goal) return true;
+    if (element().q >= pass.goal)
+      return true;
   }
-  if (element().q > 1.05f * q) return true;
+  if (element().q > 1.05f * q)
+    return true;
   if (pass.contract)
     for (const auto& [i, j] : edges)
-      if (editor.contract(t, i, j) || editor.contract(t, j, i)) return true;
+      if (editor.contract(t, i, j) || editor.contract(t, j, i))
+        return true;
   if (pass.split)
     for (const auto& [i, j] : edges)
-      if (editor.split(t, i, j)) return true;
+      if (editor.split(t, i, j))
+        return true;
   return false;
 }
 
@@ -65,7 +71,8 @@ void Schedule::set_owners() {
       n[a] = static_cast<int64_t>((high[a] - low[a]) / cell) + 2;
       cells *= double(n[a]);
     }
-    if (cells < 1e8) break;
+    if (cells < 1e8)
+      break;
   }
   owner_.resize(m_.point.size());
   par::for_n(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
@@ -83,8 +90,8 @@ int32_t Schedule::part_of(const Element& e) const {
 }
 
 // Items of one part, in order, go to one editor with slots of its own.
-Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
-                           const Work& work) {
+Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item,
+                           const Guard& guard, const Work& work) {
   struct Job {
     PartRoom room;
     std::vector<int32_t> items;
@@ -93,7 +100,8 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
   std::vector<int32_t> job_of(static_cast<size_t>(parts_), -1);
   std::vector<Job> jobs;
   for (size_t i = 0; i < items.size(); ++i) {
-    if (part_of_item[i] < 0) continue;
+    if (part_of_item[i] < 0)
+      continue;
     int32_t& j = job_of[size_t(part_of_item[i])];
     if (j < 0) {
       j = static_cast<int32_t>(jobs.size());
@@ -105,8 +113,10 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
   for (Job& job : jobs) {
     const size_t elements = 64 + 2 * job.items.size(), vertices = 16 + job.items.size() / 2;
     const auto reserve = [](std::vector<int32_t>& pool, std::vector<int32_t>& room, size_t count, size_t& size) {
-      while (room.size() < count && !pool.empty()) room.push_back(pool.back()), pool.pop_back();
-      while (room.size() < count) room.push_back(static_cast<int32_t>(size++));
+      while (room.size() < count && !pool.empty())
+        room.push_back(pool.back()), pool.pop_back();
+      while (room.size() < count)
+        room.push_back(static_cast<int32_t>(size++));
     };
     size_t element_size = m_.element.size(), vertex_size = m_.point.size();
     reserve(free_element_, job.room.element, elements, element_size);
@@ -116,7 +126,8 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     m_.vertex.resize(vertex_size);
     m_.incident.resize(vertex_size, -1);
     owner_.resize(vertex_size);
-    for (const int32_t v : job.room.vertex) owner_[size_t(v)] = job.room.part;
+    for (const int32_t v : job.room.vertex)
+      owner_[size_t(v)] = job.room.part;
   }
   stamp_.assign(m_.element.size(), 0);
   par::for_n(static_cast<int64_t>(jobs.size()), threads_, 1, [&](int64_t j) {
@@ -143,7 +154,9 @@ Counts Schedule::run(const Pass& pass) {
       part.push_back(part_of(m_.element[e]));
     }
   return for_parts(items, part, pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
-    const auto bad = [&](int32_t e) { return m_.element[size_t(e)].alive() && m_.element[size_t(e)].q < pass.goal; };
+    const auto bad = [&](int32_t e) {
+      return m_.element[size_t(e)].alive() && m_.element[size_t(e)].q < pass.goal;
+    };
     for (int sweep = 0; sweep < 4 && !list.empty(); ++sweep) {
       std::sort(list.begin(), list.end(), [&](int32_t a, int32_t b) {
         const float qa = m_.element[size_t(a)].q, qb = m_.element[size_t(b)].q;
@@ -152,10 +165,12 @@ Counts Schedule::run(const Pass& pass) {
       list.erase(std::unique(list.begin(), list.end()), list.end());
       editor.changed.clear();
       for (const int32_t e : list)
-        if (bad(e)) improve_element(editor, m_, e, pass);
+        if (bad(e))
+          improve_element(editor, m_, e, pass);
       list.clear();
       for (const int32_t e : editor.changed)
-        if (bad(e)) list.push_back(e);
+        if (bad(e))
+          list.push_back(e);
     }
   });
 }
@@ -169,7 +184,8 @@ Counts Schedule::settle(float floor, const Guard& guard) {
       part.push_back(owner_[v]);
     }
   return for_parts(items, part, guard, [&](Editor& editor, std::vector<int32_t>& list) {
-    for (const int32_t v : list) editor.settle(v, floor);
+    for (const int32_t v : list)
+      editor.settle(v, floor);
   });
 }
 

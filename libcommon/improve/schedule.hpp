@@ -9,7 +9,7 @@ namespace molmesh::improve {
 
 /// What a pass does with an element below its goal.
 struct Pass {
-  float goal = 0;      ///< quality
+  float goal = 0; ///< quality
   bool contract = true;
   bool split = false;
   Guard guard;
@@ -20,8 +20,8 @@ class Schedule {
 public:
   Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads)
       : m_(mesh), target_(target), cell_(cell), threads_(threads) {}
-  /// Every part works off its elements below the goal, worst first. Parts are the cells of a coarse lattice, shifted from
-  /// pass to pass: what lies across two parts now lies inside one the next time.
+  /// Every part works off its elements below the goal, worst first. Parts are the cells of a coarse lattice,
+  /// shifted from pass to pass: what lies across two parts now lies inside one the next time.
   Counts run(const Pass& pass);
   /// Puts surface vertices on the target where no element falls under `floor`.
   Counts settle(float floor, const Guard& guard);

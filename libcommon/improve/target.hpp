@@ -8,9 +8,11 @@ namespace molmesh::improve {
 class Target {
 public:
   virtual ~Target() = default;
-  /// Moves p onto the surface. False (p undefined) when that takes more than `reach` (Å) or the surface is not known there.
+  /// Moves p onto the surface. False (p undefined) when that takes more than `reach` (Å) or the surface is not
+  /// known there.
   virtual bool project(Vec3d& p, double reach) const = 0;
-  /// Signed distance of p (Å, positive outside) to first order and the unit normal, pointing out. False when not known.
+  /// Signed distance of p (Å, positive outside) to first order and the unit normal, pointing out. False when not
+  /// known.
   virtual bool probe(Vec3d p, double& distance, Vec3d& normal) const = 0;
   /// Length that distances are measured against: the grid spacing, or the mean edge of the surface (Å).
   virtual double spacing() const = 0;

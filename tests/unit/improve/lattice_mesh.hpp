@@ -1,5 +1,5 @@
-// lattice_mesh.hpp — a dual-contouring mesh of a field on a cubic lattice, slow and plain: what tetsmooth gets in practice.
-// Both regions in a box, the field's grid with it. No ambiguous cells are treated: choose fields without.
+// lattice_mesh.hpp — a dual-contouring mesh of a field on a cubic lattice, slow and plain: what tetsmooth gets in
+// practice. Both regions in a box, the field's grid with it. No ambiguous cells are treated: choose fields without.
 #pragma once
 #include "density/block_grid.hpp"
 #include "mesh/tet_mesh.hpp"
@@ -14,9 +14,12 @@ namespace molmesh::test {
 
 using Field = std::function<double(Vec3d)>; // G, isovalue 1
 
-inline double volume6(Vec3d a, Vec3d b, Vec3d c, Vec3d d) { return dot(cross(b - a, c - a), d - a); }
+inline double volume6(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
+  return dot(cross(b - a, c - a), d - a);
+}
 
-/// Grid points (i, j, k), 0 ≤ i, j, k ≤ n, at h·(i, j, k) + origin; active are the corners of cells that meet the band.
+/// Grid points (i, j, k), 0 ≤ i, j, k ≤ n, at h·(i, j, k) + origin; active are the corners of cells that meet the
+/// band.
 inline BlockGrid lattice_grid(const Field& field, Vec3d origin, double h, int n) {
   BlockGrid g;
   g.frame = {origin, h, {0, 0, 0}, {n + 1, n + 1, n + 1}};
@@ -31,14 +34,16 @@ inline BlockGrid lattice_grid(const Field& field, Vec3d origin, double h, int n)
           low = std::min(low, v);
           high = std::max(high, v);
         }
-        if (high < 0.9f || low > 1.1f) continue;
+        if (high < 0.9f || low > 1.1f)
+          continue;
         for (int c = 0; c < 8; ++c) {
           const Vec3i p = Vec3i{i, j, k} + Vec3i{c >> 2, c >> 1 & 1, c & 1};
           active[p] = at(p);
         }
       }
   std::set<Vec3i> corners;
-  for (const auto& [p, v] : active) corners.insert(block_corner(p));
+  for (const auto& [p, v] : active)
+    corners.insert(block_corner(p));
   g.corner.assign(corners.begin(), corners.end());
   g.value.assign(512 * g.corner.size(), 0);
   g.active.assign(8 * g.corner.size(), 0);
@@ -64,7 +69,8 @@ inline TetMesh lattice_mesh(const Field& field, Vec3d origin, double h, int n, i
   std::map<Vec3i, double> value;
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j <= n; ++j)
-      for (int k = 0; k <= n; ++k) value[{i, j, k}] = std::log(double(float(field(position({i, j, k})))));
+      for (int k = 0; k <= n; ++k)
+        value[{i, j, k}] = std::log(double(float(field(position({i, j, k})))));
   const auto inside = [&](Vec3i p) { return value.at(p) > 0; };
   const auto crossing = [&](Vec3i p, Vec3i q) {
     const double a = value.at(p), b = value.at(q);
@@ -73,12 +79,14 @@ inline TetMesh lattice_mesh(const Field& field, Vec3d origin, double h, int n, i
   std::map<Vec3i, int32_t> grid_id, dual_id;
   const auto grid_vertex = [&](Vec3i p) {
     const auto [e, fresh] = grid_id.try_emplace(p, static_cast<int32_t>(mesh.point.size()));
-    if (fresh) mesh.point.push_back(position(p));
+    if (fresh)
+      mesh.point.push_back(position(p));
     return e->second;
   };
   const auto dual_vertex = [&](Vec3i c) {
     const auto [e, fresh] = dual_id.try_emplace(c, static_cast<int32_t>(mesh.point.size()));
-    if (!fresh) return e->second;
+    if (!fresh)
+      return e->second;
     Vec3d sum;
     int count = 0;
     for (int a = 0; a < 3; ++a)
@@ -87,15 +95,18 @@ inline TetMesh lattice_mesh(const Field& field, Vec3d origin, double h, int n, i
         p[(a + 1) % 3] += k >> 1;
         p[(a + 2) % 3] += k & 1;
         step[a] = 1;
-        if (inside(p) != inside(p + step)) sum += crossing(p, p + step), ++count;
+        if (inside(p) != inside(p + step))
+          sum += crossing(p, p + step), ++count;
       }
     mesh.point.push_back(count ? sum / double(count) : position(c) + Vec3d{h / 2, h / 2, h / 2});
     return e->second;
   };
   const auto add = [&](Vec3i owner, int32_t a, int32_t b, int32_t c, int32_t d) {
     const int region = inside(owner) ? 1 : 2;
-    if (keep != 0 && region != keep) return;
-    if (volume6(mesh.point[size_t(a)], mesh.point[size_t(b)], mesh.point[size_t(c)], mesh.point[size_t(d)]) < 0) std::swap(c, d);
+    if (keep != 0 && region != keep)
+      return;
+    if (volume6(mesh.point[size_t(a)], mesh.point[size_t(b)], mesh.point[size_t(c)], mesh.point[size_t(d)]) < 0)
+      std::swap(c, d);
     mesh.tet.push_back({a, b, c, d});
     mesh.region.push_back(region);
   };
@@ -110,10 +121,12 @@ inline TetMesh lattice_mesh(const Field& field, Vec3d origin, double h, int n, i
             const Vec3i p{i, j, k};
             Vec3i q = p, low = p;
             q[a] += sign;
-            if (sign < 0) low = q;
+            if (sign < 0)
+              low = q;
             const bool wall = q[a] < 1 || q[a] >= n;
             const bool surface = !wall && inside(p) != inside(q);
-            if (!wall && sign < 0) continue;
+            if (!wall && sign < 0)
+              continue;
             int32_t d[4]; // counter-clockwise around +a
             for (int s = 0; s < 4; ++s) {
               Vec3i c = low;
@@ -123,7 +136,8 @@ inline TetMesh lattice_mesh(const Field& field, Vec3d origin, double h, int n, i
             }
             const int32_t vp = grid_vertex(p);
             if (!wall && !surface) {
-              for (int s = 0; s < 4; ++s) add(p, vp, grid_vertex(q), d[s], d[(s + 1) % 4]);
+              for (int s = 0; s < 4; ++s)
+                add(p, vp, grid_vertex(q), d[s], d[(s + 1) % 4]);
               continue;
             }
             if (wall) {
@@ -135,15 +149,18 @@ inline TetMesh lattice_mesh(const Field& field, Vec3d origin, double h, int n, i
             bool done = false;
             for (int s = 0; s < 2 && !done; ++s) {
               const int32_t w[4] = {d[s], d[s + 1], d[(s + 2) % 4], d[(s + 3) % 4]};
-              if (!(vol(vp, w[0], w[1], w[2]) > 1e-9 && vol(vp, w[0], w[2], w[3]) > 1e-9)) continue;
-              if (!(vol(vq, w[0], w[2], w[1]) > 1e-9 && vol(vq, w[0], w[3], w[2]) > 1e-9)) continue;
+              if (!(vol(vp, w[0], w[1], w[2]) > 1e-9 && vol(vp, w[0], w[2], w[3]) > 1e-9))
+                continue;
+              if (!(vol(vq, w[0], w[2], w[1]) > 1e-9 && vol(vq, w[0], w[3], w[2]) > 1e-9))
+                continue;
               add(p, vp, w[0], w[1], w[2]);
               add(p, vp, w[0], w[2], w[3]);
               add(q, vq, w[0], w[2], w[1]);
               add(q, vq, w[0], w[3], w[2]);
               done = true;
             }
-            if (done) continue;
+            if (done)
+              continue;
             const auto m = static_cast<int32_t>(mesh.point.size());
             mesh.point.push_back(crossing(p, q));
             for (int s = 0; s < 4; ++s) {
@@ -162,9 +179,11 @@ inline TetMesh lattice_mesh(const Field& field, Vec3d origin, double h, int n, i
     }
   const Vec3d low = origin + Vec3d{h / 2, h / 2, h / 2}, high = origin + (n - 0.5) * Vec3d{h, h, h};
   for (const auto& [key, at] : faces) {
-    if (at.size() == 2 && mesh.region[at[0].first] == mesh.region[at[1].first]) continue;
+    if (at.size() == 2 && mesh.region[at[0].first] == mesh.region[at[1].first])
+      continue;
     size_t s = 0;
-    if (at.size() == 2 && mesh.region[at[1].first] < mesh.region[at[0].first]) s = 1;
+    if (at.size() == 2 && mesh.region[at[1].first] < mesh.region[at[0].first])
+      s = 1;
     const Tet& t = mesh.tet[at[s].first];
     const int* o = face[at[s].second];
     Tri tri{t[size_t(o[0])], t[size_t(o[1])], t[size_t(o[2])]};
@@ -174,10 +193,13 @@ inline TetMesh lattice_mesh(const Field& field, Vec3d origin, double h, int n, i
         for (int side = 0; side < 2; ++side) {
           const double wall = side ? high[a] : low[a];
           bool on = true;
-          for (const int32_t v : tri) on = on && std::abs(mesh.point[size_t(v)][a] - wall) < 1e-9;
-          if (on) label = 2 + 2 * a + side;
+          for (const int32_t v : tri)
+            on = on && std::abs(mesh.point[size_t(v)][a] - wall) < 1e-9;
+          if (on)
+            label = 2 + 2 * a + side;
         }
-    if (label == surface && mesh.region[at[s].first] == 2) std::swap(tri[1], tri[2]);
+    if (label == surface && mesh.region[at[s].first] == 2)
+      std::swap(tri[1], tri[2]);
     mesh.tri.push_back(tri);
     mesh.boundary.push_back(label);
   }
@@ -186,11 +208,13 @@ inline TetMesh lattice_mesh(const Field& field, Vec3d origin, double h, int n, i
   std::vector<Vec3d> used;
   for (Tet& t : mesh.tet)
     for (int32_t& v : t) {
-      if (id[size_t(v)] < 0) id[size_t(v)] = static_cast<int32_t>(used.size()), used.push_back(mesh.point[size_t(v)]);
+      if (id[size_t(v)] < 0)
+        id[size_t(v)] = static_cast<int32_t>(used.size()), used.push_back(mesh.point[size_t(v)]);
       v = id[size_t(v)];
     }
   for (Tri& t : mesh.tri)
-    for (int32_t& v : t) v = id[size_t(v)];
+    for (int32_t& v : t)
+      v = id[size_t(v)];
   mesh.point = used;
   return mesh;
 }

@@ -1,0 +1,165 @@
+// improve_test.cpp — the whole of tetsmooth's library on dual-contouring meshes of sums of Gaussians.
+#include "error.hpp"
+#include "improve/improve.hpp"
+#include "improve/isosurface.hpp"
+#include "lattice_mesh.hpp"
+#include <catch2/catch.hpp>
+
+using namespace molmesh;
+using namespace molmesh::test;
+
+namespace {
+
+// G = Σ exp(-0.3 (|x - c|² - r²)): three atoms that overlap, no ambiguous cells at h = 0.5 Å.
+double three_atoms(Vec3d p) {
+  const Vec3d centre[] = {{4.1, 4.2, 4.3}, {5.6, 4.9, 4.0}, {5.2, 6.1, 5.5}};
+  double sum = 1e-30;
+  for (const Vec3d& c : centre)
+    sum += std::exp(-0.3 * (norm2(p - c) - 1.7 * 1.7));
+  return sum;
+}
+constexpr double h = 0.5;
+constexpr int n = 20;
+
+struct Measure {
+  std::map<int32_t, double> volume;   // by region
+  std::map<int32_t, double> area;     // by label
+  int64_t euler = 0;                  // of label `surface`
+  double min = 180, max = 0, off = 0; // angles; largest distance of a surface point, in h
+};
+
+Measure measure(const TetMesh& mesh, const BlockGrid* grid) {
+  Measure m;
+  for (size_t t = 0; t < mesh.tet.size(); ++t) {
+    std::array<Vec3d, 4> p;
+    for (size_t i = 0; i < 4; ++i)
+      p[i] = mesh.point[size_t(mesh.tet[t][i])];
+    const double v = volume6(p[0], p[1], p[2], p[3]) / 6;
+    REQUIRE(v > 0);
+    m.volume[mesh.region[t]] += v;
+    for (size_t i = 0; i < 4; ++i)
+      for (size_t j = i + 1; j < 4; ++j) {
+        const size_t k = i == 0 ? (j == 1 ? 2 : 1) : 0, l = 6 - i - j - k;
+        const Vec3d e = (p[l] - p[k]) / norm(p[l] - p[k]);
+        const Vec3d a = p[i] - p[k], b = p[j] - p[k], x = a - dot(a, e) * e, y = b - dot(b, e) * e;
+        const double angle =
+            std::acos(std::clamp(dot(x, y) / norm(x) / norm(y), -1., 1.)) * 180 / 3.14159265358979323846;
+        m.min = std::min(m.min, angle);
+        m.max = std::max(m.max, angle);
+      }
+  }
+  std::set<int32_t> vertices;
+  std::set<std::pair<int32_t, int32_t>> edges;
+  for (size_t t = 0; t < mesh.tri.size(); ++t) {
+    const Tri& f = mesh.tri[t];
+    const Vec3d a = mesh.point[size_t(f[0])];
+    m.area[mesh.boundary[t]] += norm(cross(mesh.point[size_t(f[1])] - a, mesh.point[size_t(f[2])] - a)) / 2;
+    if (mesh.boundary[t] != surface)
+      continue;
+    ++m.euler;
+    for (size_t i = 0; i < 3; ++i) {
+      vertices.insert(f[i]);
+      edges.insert({std::min(f[i], f[(i + 1) % 3]), std::max(f[i], f[(i + 1) % 3])});
+    }
+  }
+  m.euler += int64_t(vertices.size()) - int64_t(edges.size());
+  if (grid) {
+    const improve::Isosurface iso(*grid, 1);
+    for (const int32_t v : vertices) {
+      double distance = 1e30;
+      Vec3d normal;
+      REQUIRE(iso.probe(mesh.point[size_t(v)], distance, normal));
+      m.off = std::max(m.off, std::abs(distance) / h);
+    }
+  }
+  return m;
+}
+
+bool same(const TetMesh& a, const TetMesh& b) {
+  return a.point == b.point && a.tet == b.tet && a.region == b.region && a.tri == b.tri && a.boundary == b.boundary;
+}
+
+} // namespace
+
+TEST_CASE("improvement keeps regions, walls and topology, and puts the surface on the isosurface") {
+  const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  const int keep = GENERATE(0, 1, 2);
+  const bool with_density = GENERATE(true, false);
+  TetMesh mesh = lattice_mesh(three_atoms, {0, 0, 0}, h, n, keep);
+  const Measure before = measure(mesh, nullptr);
+  CAPTURE(keep, with_density, before.min, before.max);
+  REQUIRE(before.euler == 2);
+
+  const improve::Result r = improve::improve(mesh, with_density ? &grid : nullptr, {});
+  const Measure after = measure(mesh, with_density ? &grid : nullptr);
+  CHECK_NOTHROW(improve::build(mesh, 180, 1)); // still a valid mesh
+  CHECK(after.min >= 15);
+  CHECK(after.max <= 155);
+  CHECK(r.after.min == Approx(after.min).epsilon(1e-6));
+  CHECK(r.after.max == Approx(after.max).epsilon(1e-6));
+  CHECK(after.euler == 2);
+  CHECK(after.off <= 0.02);
+  double total = 0, total_before = 0;
+  for (const auto& [region, v] : before.volume) {
+    REQUIRE(after.volume.count(region) == 1);
+    CHECK(after.volume.at(region) == Approx(v).epsilon(0.02));
+    total_before += v;
+    total += after.volume.at(region);
+  }
+  if (keep == 0)
+    CHECK(total == Approx(total_before).epsilon(1e-12));
+  for (const auto& [label, area] : before.area)
+    if (label != surface)
+      CHECK(after.area.at(label) == Approx(area).epsilon(1e-12));
+}
+
+TEST_CASE("the same mesh at any number of threads") {
+  const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  TetMesh one = lattice_mesh(three_atoms, {0, 0, 0}, h, n), more = one;
+  improve::Options options;
+  improve::improve(one, &grid, options);
+  options.threads = 3;
+  improve::improve(more, &grid, options);
+  CHECK(same(one, more));
+}
+
+TEST_CASE("a mesh that is good enough, and no rounds at all, leave everything as it is") {
+  TetMesh mesh = lattice_mesh([](Vec3d) { return 0.5; }, {0, 0, 0}, 1, 5), copy = mesh;
+  const improve::Result r = improve::improve(mesh, nullptr, {});
+  CHECK(r.before.min == Approx(45)); // the body-centred lattice's elements, halved at the walls
+  CHECK(r.counts.total() == 0);
+  CHECK(same(mesh, copy));
+  improve::Options none;
+  none.iterations = 0;
+  mesh = copy = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
+  improve::improve(mesh, nullptr, none);
+  CHECK(same(mesh, copy));
+}
+
+TEST_CASE("a mesh that is not valid is refused") {
+  const TetMesh good = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
+  const auto refused = [](const TetMesh& bad) {
+    TetMesh mesh = bad;
+    try {
+      improve::improve(mesh, nullptr, {});
+    } catch (const Error& e) {
+      return e.status == Status::bad_input && same(mesh, bad);
+    }
+    return false;
+  };
+  TetMesh bad = good;
+  std::swap(bad.tet[7][0], bad.tet[7][1]);
+  CHECK(refused(bad)); // negative volume
+  bad = good;
+  bad.tet.push_back(bad.tet[7]);
+  bad.region.push_back(bad.region[7]);
+  CHECK(refused(bad)); // a duplicate
+  bad = good;
+  bad.tri.pop_back();
+  bad.boundary.pop_back();
+  CHECK(refused(bad)); // a face without its triangle
+  bad = good;
+  bad.tri.push_back({bad.tet[7][0], bad.tet[7][1], bad.tet[7][2]});
+  bad.boundary.push_back(1);
+  CHECK(refused(bad)); // a triangle inside a region, or a duplicate
+}

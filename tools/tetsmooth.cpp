@@ -1,0 +1,98 @@
+// tetsmooth.cpp — tetrahedral mesh (.vtu) to a better one: every element good enough to solve on.
+#include "cli/file.hpp"
+#include "cli/run.hpp"
+#include "formats/vdb/vdb.hpp"
+#include "formats/vtu/vtu.hpp"
+#include "improve/improve.hpp"
+#include <optional>
+#include <sstream>
+
+using namespace molmesh;
+
+namespace {
+
+struct Options : cli::Common {
+  std::string density;
+  int iterations = 10;
+  double min_dihedral = 0, max_dihedral = 180; // degrees asked for
+};
+
+void describe(CLI::App& app, Options& o) {
+  app.add_option("--density", o.density, "density grid (.vdb): surface points are kept on its isosurface")
+      ->type_name("FILE");
+  app.add_option("--iterations", o.iterations, "rounds at most; 0 leaves the mesh as it is")
+      ->check(CLI::Range(0, 1000));
+  app.add_option("--min-dihedral", o.min_dihedral, "quality asked for, degrees: status 5 when an angle is smaller")
+      ->check(CLI::Range(0., 70.5));
+  app.add_option("--max-dihedral", o.max_dihedral, "quality asked for, degrees: status 5 when an angle is larger")
+      ->check(CLI::Range(70.6, 180.));
+}
+
+std::string text(const improve::Angles& a) {
+  std::ostringstream s;
+  s.precision(4);
+  s << a.min << "° to " << a.max << "°, " << a.below_25 << " elements under 25°, " << a.above_140 << " over 140°";
+  return s.str();
+}
+
+nlohmann::ordered_json json(const improve::Angles& a) {
+  return {{"min_dihedral", a.min}, {"max_dihedral", a.max}, {"below_25", a.below_25}, {"above_140", a.above_140}};
+}
+
+Status run_tool(const Options& o, cli::Run& run) {
+  const int threads = o.resolved_threads();
+  run.phase("read");
+  std::optional<BlockGrid> grid;
+  if (!o.density.empty()) {
+    cli::InputFile file(o.density);
+    grid = formats::read_vdb(file.stream(), file.name());
+  }
+  cli::InputFile input(o.input);
+  TetMesh mesh = formats::read_vtu(input.stream(), input.name());
+  run.counts["elements_before"] = mesh.tet.size();
+  run.counts["points_before"] = mesh.point.size();
+
+  improve::Options options;
+  options.iterations = o.iterations;
+  options.threads = threads;
+  options.min_dihedral = std::max(options.min_dihedral, o.min_dihedral);
+  options.max_dihedral = std::min(options.max_dihedral, o.max_dihedral);
+  improve::Result result;
+  try {
+    result = improve::improve(mesh, grid ? &*grid : nullptr, options, [&](const std::string& p) { run.phase(p); });
+  } catch (const Error& e) {
+    fail(e.status, input.name() + ": " + e.what());
+  }
+  const improve::Counts& c = result.counts;
+  run.counts["elements"] = mesh.tet.size();
+  run.counts["points"] = mesh.point.size();
+  run.counts["rounds"] = result.rounds;
+  run.counts["moves"] = c.moves;
+  run.counts["edge_removals"] = c.edge_removals;
+  run.counts["surface_flips"] = c.surface_flips;
+  run.counts["face_swaps"] = c.face_swaps;
+  run.counts["contractions"] = c.contractions;
+  run.counts["splits"] = c.splits;
+  run.counts["quality_before"] = json(result.before);
+  run.counts["quality_after"] = json(result.after);
+
+  run.phase("write");
+  mesh.creator = cli::creator("tetsmooth");
+  cli::OutputFile output(o.output);
+  formats::write_vtu(output.stream(), mesh);
+  output.commit();
+  run.end_phase();
+  if (run.verbose)
+    run.note("dihedral angles " + text(result.before) + "; now " + text(result.after));
+  if (result.after.min >= o.min_dihedral && result.after.max <= o.max_dihedral)
+    return Status::good;
+  run.note("below the quality asked for: dihedral angles " + text(result.after));
+  return Status::below_quality;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  return cli::run_main<Options>("tetsmooth", "Improves a tetrahedral mesh (.vtu): swaps, contracts, moves, splits.",
+                                argc, argv, describe, run_tool);
+}
