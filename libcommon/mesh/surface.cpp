@@ -1,0 +1,133 @@
+// surface.cpp — half edges paired by their ends, fans walked around each point.
+#include "mesh/surface.hpp"
+#include "geom/tet_measures.hpp"
+#include "mesh/group.hpp"
+#include <numeric>
+
+namespace molmesh {
+namespace {
+
+// Half edge 3 t + i runs from corner i of triangle t to the next corner; it also names that corner.
+constexpr int64_t next_half(int64_t h) {
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
+constexpr int64_t previous_half(int64_t h) {
+  return h % 3 == 0 ? h + 2 : h - 1;
+}
+
+enum Kind : uint8_t { none, good, open, crowded };
+
+struct HalfEdges {
+  std::vector<int32_t> mate;   ///< [halves] the half edge on the other side, or -1
+  std::vector<uint8_t> edge;   ///< [halves] Kind of the edge, at its first half; none elsewhere
+  std::vector<uint8_t> corner; ///< [halves] Kind of the point, at its first corner; crowded: several fans
+};
+
+class Walker {
+public:
+  explicit Walker(const std::vector<int32_t>& mate) : mate_(mate) {}
+  /// Corners in the fan of c.
+  int64_t fan(int64_t c) const {
+    int64_t n = 1, h = c;
+    while ((h = mate_[static_cast<size_t>(h)]) >= 0 && (h = next_half(h)) != c)
+      ++n;
+    if (h >= 0)
+      return n; // closed
+    for (h = c; (h = mate_[static_cast<size_t>(previous_half(h))]) >= 0;)
+      ++n;
+    return n;
+  }
+
+private:
+  const std::vector<int32_t>& mate_;
+};
+
+HalfEdges pair_halves(const std::vector<Tri>& tri, const std::vector<int32_t>& label, int64_t points, int threads) {
+  const auto halves = static_cast<int64_t>(3 * tri.size());
+  const auto from = [&](int64_t h) { return tri[static_cast<size_t>(h / 3)][static_cast<size_t>(h % 3)]; };
+  const auto to = [&](int64_t h) { return from(next_half(h)); };
+  const auto label_bits = [&](int64_t h) { return uint64_t(uint32_t(label[static_cast<size_t>(h / 3)])) << 32; };
+  HalfEdges e;
+  e.mate.assign(static_cast<size_t>(halves), -1);
+  e.edge.assign(static_cast<size_t>(halves), none);
+  e.corner.assign(static_cast<size_t>(halves), none);
+  for_each_group(
+      halves, points, threads,
+      [&](int64_t h) {
+        const int32_t a = from(h), b = to(h);
+        return GroupKey{std::min(a, b), label_bits(h) | uint32_t(std::max(a, b))};
+      },
+      [&](const uint32_t* h, int n) {
+        if (n == 2 && from(h[0]) != from(h[1])) {
+          e.mate[h[0]] = static_cast<int32_t>(h[1]);
+          e.mate[h[1]] = static_cast<int32_t>(h[0]);
+        }
+        e.edge[h[0]] = n == 1 ? open : n == 2 && from(h[0]) != from(h[1]) ? good : crowded;
+      });
+  const Walker walker(e.mate);
+  for_each_group(
+      halves, points, threads,
+      [&](int64_t h) {
+        return GroupKey{from(h), label_bits(h)};
+      },
+      [&](const uint32_t* c, int n) { e.corner[c[0]] = walker.fan(c[0]) == n ? good : crowded; });
+  return e;
+}
+
+int32_t root(std::vector<int32_t>& parent, int32_t t) {
+  while (parent[static_cast<size_t>(t)] != t)
+    t = parent[static_cast<size_t>(t)] = parent[static_cast<size_t>(parent[static_cast<size_t>(t)])];
+  return t;
+}
+
+} // namespace
+
+std::vector<SurfaceSummary> summarize_surfaces(const std::vector<Vec3d>& point, const std::vector<Tri>& tri,
+                                               const std::vector<int32_t>& label, int32_t labels, int threads) {
+  std::vector<SurfaceSummary> summary(static_cast<size_t>(labels));
+  if (tri.empty())
+    return summary;
+  const HalfEdges e = pair_halves(tri, label, static_cast<int64_t>(point.size()), threads);
+
+  std::vector<int32_t> parent(tri.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  for (size_t h = 0; h < e.mate.size(); ++h) {
+    if (e.mate[h] < 0)
+      continue;
+    const int32_t a = root(parent, static_cast<int32_t>(h / 3)), b = root(parent, e.mate[h] / 3);
+    if (a != b)
+      parent[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
+  }
+
+  const Vec3d origin = point[static_cast<size_t>(tri[0][0])]; // volumes cancel less when seen from nearby
+  for (size_t t = 0; t < tri.size(); ++t) {
+    SurfaceSummary& s = summary[static_cast<size_t>(label[t])];
+    const Vec3d a = point[static_cast<size_t>(tri[t][0])], b = point[static_cast<size_t>(tri[t][1])],
+                c = point[static_cast<size_t>(tri[t][2])];
+    ++s.triangles;
+    s.components += parent[t] == static_cast<int32_t>(t);
+    s.area += tri_area(a, b, c);
+    s.volume += dot(cross(a - origin, b - origin), c - origin) / 6;
+    for (size_t i = 0; i < 3; ++i) {
+      const size_t h = 3 * t + i;
+      const std::array<int32_t, 2> ends{tri[t][i], tri[t][(i + 1) % 3]};
+      s.edges += e.edge[h] != none;
+      s.points += e.corner[h] != none;
+      if (e.edge[h] == open && s.faults.open_edges++ == 0)
+        s.faults.open_edge = ends;
+      if (e.edge[h] == crowded && s.faults.crowded_edges++ == 0)
+        s.faults.crowded_edge = ends;
+      if (e.corner[h] == crowded && s.faults.pinched_points++ == 0)
+        s.faults.pinched_point = tri[t][i];
+    }
+  }
+  for (SurfaceSummary& s : summary)
+    s.euler = s.points - s.edges + s.triangles;
+  return summary;
+}
+
+SurfaceSummary summarize_surface(const std::vector<Vec3d>& point, const std::vector<Tri>& tri, int threads) {
+  return summarize_surfaces(point, tri, std::vector<int32_t>(tri.size(), 0), 1, threads)[0];
+}
+
+} // namespace molmesh

@@ -1,0 +1,363 @@
+// validity.cpp — the rules one after another, each over all of its items.
+#include "mesh/validity.hpp"
+#include "geom/predicates.hpp"
+#include "mesh/adjacency.hpp"
+#include "mesh/group.hpp"
+#include <bit>
+#include <cmath>
+
+namespace molmesh {
+namespace {
+
+struct Tally {
+  int64_t count = 0, first = -1;
+};
+template <class Broken>
+Tally tally(int64_t n, int threads, Broken broken) {
+  return par::reduce(
+      n, threads, Tally{},
+      [&](int64_t i) {
+        return broken(i) ? Tally{1, i} : Tally{};
+      },
+      [](Tally a, Tally b) {
+        return Tally{a.count + b.count, a.first >= 0 ? a.first : b.first};
+      });
+}
+
+template <class Cell>
+std::string described(const char* what, int64_t i, const Cell& cell) {
+  std::string s = what + (' ' + std::to_string(i)) + " (points";
+  for (int32_t v : cell)
+    s += ' ' + std::to_string(v);
+  return s + ')';
+}
+
+class Checker {
+public:
+  Checker(const TetMesh& m, int threads) : m_(m), threads_(threads) {}
+
+  Validity check() {
+    if (!check_indices())
+      return std::move(v_);
+    check_tets();
+    check_points();
+    across_ = face_neighbors(m_, threads_);
+    check_faces();
+    collect_boundaries();
+    check_triangles();
+    check_regions();
+    check_box();
+    return std::move(v_);
+  }
+
+private:
+  std::string tet(int64_t i) const { return described("tet", i, m_.tet[static_cast<size_t>(i)]); }
+  std::string tri(int64_t i) const { return described("triangle", i, m_.tri[static_cast<size_t>(i)]); }
+  std::string face(int64_t i) const { return described("face of tet", i / 4, face_points(m_, i)); }
+  void fault(const char* rule, int64_t count, const std::string& example) {
+    if (count > 0)
+      v_.faults.push_back({rule, count, example});
+  }
+  template <class Describe>
+  void fault(const char* rule, Tally t, Describe describe) {
+    if (t.count > 0)
+      fault(rule, t.count, describe(t.first));
+  }
+  Vec3d point(int32_t i) const { return m_.point[static_cast<size_t>(i)]; }
+  int64_t tets() const { return static_cast<int64_t>(m_.tet.size()); }
+  int64_t tris() const { return static_cast<int64_t>(m_.tri.size()); }
+  int64_t points() const { return static_cast<int64_t>(m_.point.size()); }
+
+  bool check_indices() {
+    const auto outside = [&](const auto& cell) {
+      for (int32_t v : cell)
+        if (v < 0 || v >= points())
+          return true;
+      return false;
+    };
+    fault("index", tally(tets(), threads_, [&](int64_t i) { return outside(m_.tet[static_cast<size_t>(i)]); }),
+          [&](int64_t i) { return tet(i); });
+    if (!v_.valid())
+      return false;
+    fault("index", tally(tris(), threads_, [&](int64_t i) { return outside(m_.tri[static_cast<size_t>(i)]); }),
+          [&](int64_t i) { return tri(i); });
+    return v_.valid();
+  }
+
+  void check_tets() {
+    const auto flat = [&](int64_t i) {
+      const Tet& t = m_.tet[static_cast<size_t>(i)];
+      return orient3d(point(t[0]), point(t[1]), point(t[2]), point(t[3])) <= 0;
+    };
+    fault("volume", tally(tets(), threads_, flat), [&](int64_t i) { return tet(i); });
+  }
+
+  void check_points() {
+    // Equal coordinates share a bucket; 0 and -0 are equal.
+    const auto bits = [](double x) { return std::bit_cast<uint64_t>(x + 0.0); };
+    const auto mix = [](uint64_t h) {
+      h ^= h >> 32;
+      h *= 0x9e3779b97f4a7c15;
+      return h ^ h >> 29;
+    };
+    std::vector<int32_t> twin(m_.point.size(), -1);
+    for_each_group(
+        points(), points(), threads_,
+        [&](int64_t i) {
+          const Vec3d p = m_.point[static_cast<size_t>(i)];
+          const uint64_t h = mix(mix(mix(bits(p.x)) + bits(p.y)) + bits(p.z));
+          return GroupKey{static_cast<int32_t>((h >> 32) * static_cast<uint64_t>(points()) >> 32), h};
+        },
+        [&](const uint32_t* p, int n) {
+          for (int i = 1; i < n; ++i)
+            for (int k = 0; k < i && twin[p[i]] < 0; ++k)
+              if (m_.point[p[i]] == m_.point[p[k]])
+                twin[p[i]] = static_cast<int32_t>(p[k]);
+        });
+    fault("duplicate_point",
+          tally(points(), threads_, [&](int64_t i) { return twin[static_cast<size_t>(i)] >= 0; }), [&](int64_t i) {
+            return "points " + std::to_string(twin[static_cast<size_t>(i)]) + " and " + std::to_string(i);
+          });
+    std::vector<uint8_t> used(m_.point.size(), 0);
+    for (const Tet& t : m_.tet)
+      for (int32_t i : t)
+        used[static_cast<size_t>(i)] = 1;
+    fault("unused_point", tally(points(), threads_, [&](int64_t i) { return !used[static_cast<size_t>(i)]; }),
+          [&](int64_t i) { return "point " + std::to_string(i); });
+  }
+
+  void check_faces() {
+    // Two faces cover all four points: tetrahedra that share two are the same. Those with crowded faces are few.
+    const auto neighbor = [&](int64_t face) { return across_[static_cast<size_t>(face)]; };
+    std::vector<std::pair<Tet, int64_t>> crowded;
+    for (int64_t i = 0; i < tets(); ++i) {
+      int n = 0;
+      for (int f = 0; f < 4; ++f)
+        n += neighbor(4 * i + f) == crowded_face;
+      if (n < 2)
+        continue;
+      crowded.emplace_back(m_.tet[static_cast<size_t>(i)], i);
+      std::sort(crowded.back().first.begin(), crowded.back().first.end());
+    }
+    std::sort(crowded.begin(), crowded.end());
+    std::vector<int64_t> copies;
+    for (size_t i = 1; i < crowded.size(); ++i)
+      if (crowded[i].first == crowded[i - 1].first)
+        copies.push_back(crowded[i].second);
+    std::sort(copies.begin(), copies.end());
+    const auto copy = [&](int64_t i) {
+      for (int f = 1; f < 4; ++f)
+        for (int g = 0; g < f; ++g)
+          if (const int32_t a = neighbor(4 * i + f), b = neighbor(4 * i + g);
+              a >= 0 && b >= 0 && a / 4 == b / 4 && a / 4 < i)
+            return true;
+      return std::binary_search(copies.begin(), copies.end(), i);
+    };
+    fault("duplicate_tet", tally(tets(), threads_, copy), [&](int64_t i) { return tet(i); });
+    fault("crowded_face", tally(4 * tets(), threads_, [&](int64_t f) { return neighbor(f) == crowded_face; }),
+          [&](int64_t f) { return face(f); });
+    const auto folded = [&](int64_t f) {
+      return neighbor(f) > f && same_turn(face_points(m_, f), face_points(m_, neighbor(f)));
+    };
+    fault("folded_face", tally(4 * tets(), threads_, folded), [&](int64_t f) { return face(f); });
+  }
+
+  /// Two triangles on the same points: do they go round the same way?
+  static bool same_turn(const Tri& a, const Tri& b) {
+    const size_t shift = a[0] == b[0] ? 0 : a[0] == b[1] ? 1 : 2;
+    return a[1] == b[(shift + 1) % 3];
+  }
+
+  int32_t other_region(int64_t face) const {
+    const int32_t f = across_[static_cast<size_t>(face)];
+    return f < 0 ? 0 : m_.region[static_cast<size_t>(f) / 4];
+  }
+
+  /// Faces towards another region or nothing, each from both of its sides.
+  void collect_boundaries() {
+    constexpr int64_t chunk = 1 << 16;
+    const int64_t faces = 4 * tets(), chunks = (faces + chunk - 1) / chunk;
+    std::vector<std::vector<int64_t>> part(static_cast<size_t>(chunks));
+    par::for_n(chunks, threads_, 1, [&](int64_t c) {
+      for (int64_t f = c * chunk; f < std::min(faces, (c + 1) * chunk); ++f)
+        if (across_[static_cast<size_t>(f)] != crowded_face &&
+            other_region(f) != m_.region[static_cast<size_t>(f / 4)])
+          part[static_cast<size_t>(c)].push_back(f);
+    });
+    for (const auto& p : part)
+      side_.insert(side_.end(), p.begin(), p.end());
+  }
+
+  void check_triangles() {
+    std::vector<int64_t> owner; // one side of each
+    for (int64_t f : side_)
+      if (const int32_t other = other_region(f); other == 0 || m_.region[static_cast<size_t>(f / 4)] < other)
+        owner.push_back(f);
+    const auto n = static_cast<int64_t>(owner.size());
+    const auto corners = [&](int64_t i) {
+      return i < n ? face_points(m_, owner[static_cast<size_t>(i)]) : m_.tri[static_cast<size_t>(i - n)];
+    };
+    enum : uint8_t { good, missing, stray, twice, turned };
+    std::vector<uint8_t> kind(static_cast<size_t>(n + tris()), good);
+    std::vector<uint8_t> on_box(static_cast<size_t>(tris()), 0); // with one tetrahedron
+    for_each_group(
+        n + tris(), points(), threads_,
+        [&](int64_t i) {
+          Tri t = corners(i);
+          std::sort(t.begin(), t.end());
+          return GroupKey{t[0], uint64_t(uint32_t(t[1])) << 32 | uint32_t(t[2])};
+        },
+        [&](const uint32_t* item, int size) {
+          if (item[0] >= n) {
+            for (int i = 0; i < size; ++i)
+              kind[item[i]] = i == 0 ? stray : twice;
+            return;
+          }
+          if (size == 1)
+            kind[item[0]] = missing;
+          const int64_t f = owner[item[0]];
+          const int32_t region = m_.region[static_cast<size_t>(f / 4)], other = other_region(f);
+          for (int i = 1; i < size; ++i) {
+            const auto t = static_cast<size_t>(item[i] - n);
+            const bool looks_out = same_turn(m_.tri[t], face_points(m_, f));
+            kind[item[i]] = i > 1                                                            ? twice
+                            : looks_out != triangle_looks_out(region, other, m_.boundary[t]) ? turned
+                                                                                             : good;
+            on_box[t] = other == 0;
+          }
+        });
+    const auto count = [&](const char* rule, uint8_t broken) {
+      fault(rule, tally(n + tris(), threads_, [&](int64_t i) { return kind[static_cast<size_t>(i)] == broken; }),
+            [&](int64_t i) { return i < n ? face(owner[static_cast<size_t>(i)]) : tri(i - n); });
+    };
+    count("missing_triangle", missing);
+    count("stray_triangle", stray);
+    count("duplicate_triangle", twice);
+    count("triangle_orientation", turned);
+    one_sided_ = std::move(on_box);
+  }
+
+  void check_regions() {
+    std::vector<int32_t> names = m_.region;
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    const auto index = [&](int32_t region) {
+      return static_cast<int32_t>(std::lower_bound(names.begin(), names.end(), region) - names.begin());
+    };
+    std::vector<Tri> boundary;
+    std::vector<int32_t> label;
+    for (int64_t f : side_) {
+      boundary.push_back(face_points(m_, f));
+      label.push_back(index(m_.region[static_cast<size_t>(f / 4)]));
+    }
+    const auto summaries =
+        summarize_surfaces(m_.point, boundary, label, static_cast<int32_t>(names.size()), threads_);
+    for (size_t r = 0; r < names.size(); ++r)
+      v_.region.push_back({names[r], 0, 0, summaries[r]});
+    std::vector<double> lost(names.size()); // by rounding: the sums must tell a box from its volumes
+    for (size_t i = 0; i < m_.tet.size(); ++i) {
+      const Tet& t = m_.tet[i];
+      const auto k = static_cast<size_t>(index(m_.region[i]));
+      const TwoTerms sum =
+          two_sum(v_.region[k].volume, tet_volume(point(t[0]), point(t[1]), point(t[2]), point(t[3])));
+      ++v_.region[k].tets;
+      v_.region[k].volume = sum.sum;
+      lost[k] += sum.error;
+    }
+    for (size_t r = 0; r < names.size(); ++r)
+      v_.region[r].volume += lost[r];
+    SurfaceFaults all;
+    std::string open, crowded, pinched;
+    for (const RegionSummary& r : v_.region) {
+      const SurfaceFaults& f = r.boundary.faults;
+      const std::string of = " of region " + std::to_string(r.region);
+      const auto edge = [&](std::array<int32_t, 2> e) {
+        return "edge (points " + std::to_string(e[0]) + ' ' + std::to_string(e[1]) + ')' + of;
+      };
+      if (all.open_edges == 0 && f.open_edges)
+        open = edge(f.open_edge);
+      if (all.crowded_edges == 0 && f.crowded_edges)
+        crowded = edge(f.crowded_edge);
+      if (all.pinched_points == 0 && f.pinched_points)
+        pinched = "point " + std::to_string(f.pinched_point) + of;
+      all.open_edges += f.open_edges;
+      all.crowded_edges += f.crowded_edges;
+      all.pinched_points += f.pinched_points;
+      v_.volume += r.volume;
+    }
+    fault("open_edge", all.open_edges, open);
+    fault("crowded_edge", all.crowded_edges, crowded);
+    fault("pinched_point", all.pinched_points, pinched);
+    std::vector<Tri> surface;
+    for (size_t t = 0; t < m_.tri.size(); ++t)
+      if (m_.boundary[t] == Boundary::surface)
+        surface.push_back(m_.tri[t]);
+    v_.surface = summarize_surface(m_.point, surface, threads_);
+  }
+
+  void check_box() {
+    if (m_.point.empty())
+      return;
+    v_.low = v_.high = m_.point[0];
+    for (const Vec3d& p : m_.point)
+      for (int k = 0; k < 3; ++k) {
+        v_.low[k] = std::min(v_.low[k], p[k]);
+        v_.high[k] = std::max(v_.high[k], p[k]);
+      }
+    const auto within = [](const std::vector<int32_t>& labels, int32_t last) {
+      return std::all_of(labels.begin(), labels.end(), [&](int32_t l) { return l >= 1 && l <= last; });
+    };
+    if (!within(m_.region, Region::cavity) || !within(m_.boundary, Boundary::box_z1))
+      return;
+    const auto side = [&](int64_t t) { return m_.boundary[static_cast<size_t>(t)] - Boundary::box_x0; };
+    int sides = 0;
+    bool closed = true; // by the box alone
+    for (int64_t t = 0; t < tris(); ++t) {
+      if (side(t) >= 0)
+        sides |= 1 << side(t);
+      else if (one_sided_[static_cast<size_t>(t)])
+        closed = false;
+    }
+    const auto in_plane = [&](int64_t t, int s) {
+      const double plane = s % 2 == 0 ? v_.low[s / 2] : v_.high[s / 2];
+      for (int32_t i : m_.tri[static_cast<size_t>(t)])
+        if (point(i)[s / 2] != plane)
+          return false;
+      return true;
+    };
+    const auto wrong_label = [&](int64_t t) {
+      if (side(t) >= 0)
+        return !one_sided_[static_cast<size_t>(t)];
+      for (int s = 0; s < 6; ++s)
+        if ((sides >> s & 1) && one_sided_[static_cast<size_t>(t)] && in_plane(t, s))
+          return true;
+      return false;
+    };
+    fault("box_label", tally(tris(), threads_, wrong_label), [&](int64_t t) { return tri(t); });
+    fault("box_plane", tally(tris(), threads_, [&](int64_t t) { return side(t) >= 0 && !in_plane(t, side(t)); }),
+          [&](int64_t t) { return tri(t); });
+    if (sides != 63 || !closed)
+      return;
+    const Vec3d extent = v_.high - v_.low;
+    const double box = extent.x * extent.y * extent.z;
+    constexpr double tolerance = 1e-12; // what rounding of each volume can add up to is well below
+    if (!(std::fabs(v_.volume - box) <= tolerance * box))
+      fault("box_volume", 1,
+            "volumes add up to " + std::to_string(v_.volume) + " Å³, the box has " + std::to_string(box) + " Å³");
+  }
+
+  const TetMesh& m_;
+  int threads_;
+  Validity v_;
+  std::vector<int32_t> across_;
+  std::vector<int64_t> side_;
+  std::vector<uint8_t> one_sided_; ///< [tris] on a face with one tetrahedron
+};
+
+} // namespace
+
+Validity check_validity(const TetMesh& m, int threads) {
+  return Checker(m, threads).check();
+}
+
+} // namespace molmesh

@@ -1,0 +1,52 @@
+// validity.hpp — every point of I6: is this a conforming mesh whose regions are bounded by closed 2-manifolds?
+#pragma once
+#include "mesh/surface.hpp"
+
+namespace molmesh {
+
+/// Rules, in the order in which they are reported. Names are part of `tetstat --json`.
+///   index                a corner names no point
+///   volume               a tetrahedron without positive volume (exact)
+///   duplicate_point      two points with the same coordinates (exact)
+///   unused_point         a point of no tetrahedron
+///   duplicate_tet        two tetrahedra with the same four points
+///   crowded_face         a face in more than two tetrahedra
+///   folded_face          two tetrahedra on the same side of their common face
+///   missing_triangle     a face between regions, or with one tetrahedron, without a triangle
+///   stray_triangle       a triangle on no such face
+///   duplicate_triangle   two triangles on one face
+///   triangle_orientation a triangle that points the wrong way (adjacency.hpp)
+///   open_edge            an edge in one triangle of a region's boundary
+///   crowded_edge         an edge in more than two, or in two that run along it the same way
+///   pinched_point        a point with several fans of triangles of a region's boundary
+///   box_label            a box triangle between two tetrahedra, or a surface triangle in the plane of a box side
+///   box_plane            box triangles of one side not in one plane, to the last bit, or points beyond it
+///   box_volume           volumes that do not add up to the box
+/// The box rules apply where regions are 1 to 3 and labels 1 to 7; box_volume, where all six sides have triangles
+/// and every face with one tetrahedron is on one of them.
+struct Fault {
+  std::string rule;
+  int64_t count = 0;
+  std::string example; ///< "tet 412 (points 3 17 9 20)"
+};
+
+struct RegionSummary {
+  int32_t region = 0;
+  int64_t tets = 0;
+  double volume = 0;       ///< Å³, sum over the tetrahedra
+  SurfaceSummary boundary; ///< all its faces towards other regions or nothing, pointing out
+};
+
+struct Validity {
+  std::vector<Fault> faults;         ///< none: valid
+  std::vector<RegionSummary> region; ///< ascending
+  SurfaceSummary surface;            ///< triangles with label 1
+  double volume = 0;                 ///< Å³
+  Vec3d low, high;                   ///< bounding box, Å
+  bool valid() const { return faults.empty(); }
+};
+
+/// Same result at any number of threads. Coordinates are finite.
+Validity check_validity(const TetMesh& m, int threads);
+
+} // namespace molmesh
