@@ -51,7 +51,7 @@ HD inline DihedralTrig dihedral_trig(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
   return t;
 }
 
-/// Dihedral angles in degrees, in the order of tet_edge: 0 to 180, negative where the volume is.
+/// Dihedral angles in degrees, in the order of tet_edge: 0 to 180, negative where the volume is (not -0).
 struct Dihedrals {
   double degree[6];
 };
@@ -59,7 +59,7 @@ HD inline Dihedrals dihedrals(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
   const DihedralTrig t = dihedral_trig(a, b, c, d);
   Dihedrals angle;
   for (int e = 0; e < 6; ++e)
-    angle.degree[e] = std::atan2(t.sine[e], t.cosine[e]) * (180 / 3.14159265358979323846);
+    angle.degree[e] = std::atan2(t.sine[e] + 0.0, t.cosine[e]) * (180 / 3.14159265358979323846);
   return angle;
 }
 

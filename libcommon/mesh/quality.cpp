@@ -1,0 +1,103 @@
+// quality.cpp — one pass over the tetrahedra, a map of regions for each chunk, chunks merged in order.
+#include "mesh/quality.hpp"
+#include "geom/tet_measures.hpp"
+#include "par/par.hpp"
+#include <map>
+
+namespace molmesh {
+namespace {
+
+struct Sum : Distribution {
+  double sum = 0;
+  int64_t count = 0;
+  Sum(double first, double step, size_t bins) {
+    low = first;
+    width = step;
+    bin.assign(bins, 0);
+  }
+  void add(double v, int64_t tet) {
+    if (count == 0 || v < min)
+      min = v, min_tet = tet;
+    if (count == 0 || v > max)
+      max = v, max_tet = tet;
+    sum += v;
+    ++count;
+    const double place = (v - low) / width;
+    ++bin[place < 1 ? 0 : place < double(bin.size()) ? static_cast<size_t>(place) : bin.size() - 1];
+  }
+  void add(const Sum& later) {
+    if (later.count == 0)
+      return;
+    if (count == 0 || later.min < min)
+      min = later.min, min_tet = later.min_tet;
+    if (count == 0 || later.max > max)
+      max = later.max, max_tet = later.max_tet;
+    sum += later.sum;
+    count += later.count;
+    for (size_t i = 0; i < bin.size(); ++i)
+      bin[i] += later.bin[i];
+  }
+  Distribution done() const {
+    Distribution d = *this;
+    d.mean = count > 0 ? sum / double(count) : 0;
+    return d;
+  }
+};
+
+struct Sums {
+  int64_t tets = 0;
+  Sum dihedral{0, 5, 36}, q{0, 0.05, 20}, eta{0, 0.05, 20}, ratio{1, 0.5, 20};
+
+  void add(Vec3d a, Vec3d b, Vec3d c, Vec3d d, int64_t tet) {
+    ++tets;
+    const Dihedrals angles = dihedrals(a, b, c, d);
+    for (int e = 0; e < 6; ++e) // NaN: half of the angles of a flat tetrahedron are 0, half are 180
+      dihedral.add(angles.degree[e] == angles.degree[e] ? angles.degree[e] : e % 2 * 180.0, tet);
+    const double sum2 = edge_sum2(a, b, c, d), joe_liu = sum2 > 0 ? joe_liu_q(six_volume(a, b, c, d), sum2) : 0;
+    q.add(joe_liu, tet);
+    eta.add(joe_liu_eta(joe_liu), tet);
+    const double r = edge_ratio(a, b, c, d);
+    ratio.add(r == r ? r : HUGE_VAL, tet);
+  }
+  void add(const Sums& later) {
+    tets += later.tets;
+    dihedral.add(later.dihedral);
+    q.add(later.q);
+    eta.add(later.eta);
+    ratio.add(later.ratio);
+  }
+  Quality done() const { return {tets, dihedral.done(), q.done(), eta.done(), ratio.done()}; }
+};
+
+using ByRegion = std::map<int32_t, Sums>;
+
+} // namespace
+
+MeshQuality measure_quality(const TetMesh& m, int threads) {
+  constexpr int64_t chunk = 1 << 14;
+  const auto tets = static_cast<int64_t>(m.tet.size()), chunks = (tets + chunk - 1) / chunk;
+  std::vector<ByRegion> part(static_cast<size_t>(chunks));
+  par::for_n(chunks, threads, 1, [&](int64_t c) {
+    ByRegion& mine = part[static_cast<size_t>(c)];
+    for (int64_t i = c * chunk; i < std::min(tets, (c + 1) * chunk); ++i) {
+      const Tet& t = m.tet[static_cast<size_t>(i)];
+      const auto p = [&](size_t k) { return m.point[static_cast<size_t>(t[k])]; };
+      mine[m.region[static_cast<size_t>(i)]].add(p(0), p(1), p(2), p(3), i);
+    }
+  });
+  ByRegion regions;
+  for (const ByRegion& later : part)
+    for (const auto& [region, sums] : later)
+      regions[region].add(sums);
+  MeshQuality quality;
+  Sums all;
+  for (const auto& [region, sums] : regions) {
+    quality.region.push_back(region);
+    quality.of.push_back(sums.done());
+    all.add(sums);
+  }
+  quality.all = all.done();
+  return quality;
+}
+
+} // namespace molmesh
