@@ -1,0 +1,215 @@
+// keep.cpp — models, alternative locations, waters, hydrogens, hetero atoms, the user's selection; in this order.
+#include "formats/pdb/keep.hpp"
+#include "error.hpp"
+#include "formats/pdb/selection.hpp"
+#include <algorithm>
+#include <array>
+#include <gemmi/polyheur.hpp>
+#include <map>
+
+namespace molmesh::formats {
+namespace {
+
+int64_t count_atoms(const gemmi::Model& model) {
+  int64_t n = 0;
+  for (const gemmi::Chain& chain : model.chains)
+    for (const gemmi::Residue& residue : chain.residues)
+      n += static_cast<int64_t>(residue.atoms.size());
+  return n;
+}
+
+/// Removes residues, chains and models without atoms.
+void prune(gemmi::Structure& st) {
+  for (gemmi::Model& model : st.models) {
+    for (gemmi::Chain& chain : model.chains)
+      gemmi::vector_remove_if(chain.residues, [](const gemmi::Residue& r) { return r.atoms.empty(); });
+    gemmi::vector_remove_if(model.chains, [](const gemmi::Chain& c) { return c.residues.empty(); });
+  }
+  gemmi::vector_remove_if(st.models, [](const gemmi::Model& m) { return m.chains.empty(); });
+}
+
+/// Removes the atoms for which drop(model, chain, residue)(atom) holds; returns how many.
+template <class Drop>
+int64_t drop_atoms(gemmi::Structure& st, Drop drop) {
+  int64_t dropped = 0;
+  for (gemmi::Model& model : st.models)
+    for (gemmi::Chain& chain : model.chains)
+      for (gemmi::Residue& residue : chain.residues) {
+        const auto before = static_cast<int64_t>(residue.atoms.size());
+        gemmi::vector_remove_if(residue.atoms, drop(model, chain, residue));
+        dropped += before - static_cast<int64_t>(residue.atoms.size());
+      }
+  prune(st);
+  return dropped;
+}
+
+void keep_models(gemmi::Structure& st, const std::string& file, const std::string& wanted, PdbReport& report) {
+  prune(st);
+  report.models_read = static_cast<int64_t>(st.models.size());
+  for (const gemmi::Model& model : st.models)
+    report.read += count_atoms(model);
+  if (wanted == "all")
+    return;
+  if (wanted == "first") {
+    st.models.resize(std::min<size_t>(st.models.size(), 1), gemmi::Model(""));
+  } else {
+    std::string names;
+    for (size_t m = 0; m < st.models.size() && m < 8; ++m)
+      names += (m ? ", " : "") + st.models[m].name;
+    if (st.models.size() > 8)
+      names += ", …";
+    gemmi::vector_remove_if(st.models, [&](const gemmi::Model& m) { return m.name != wanted; });
+    if (st.models.empty())
+      fail_input(file + ": found no model " + wanted + ", expected one of " + names);
+  }
+  report.other_models = report.read;
+  for (const gemmi::Model& model : st.models)
+    report.other_models -= count_atoms(model);
+}
+
+/// Residues of one place in the chain: the same number, more than one where the sequence itself has alternatives.
+using Place = std::vector<gemmi::Residue*>;
+
+/// The conformer of a place: the preferred letter where it is there, otherwise the highest occupancy summed over
+/// the place's atoms, the first among equals.
+char conformer(const Place& place, const std::string& altloc) {
+  std::string letters;
+  std::map<char, double> occupancy;
+  for (const gemmi::Residue* residue : place)
+    for (const gemmi::Atom& a : residue->atoms)
+      if (a.altloc != '\0') {
+        if (letters.find(a.altloc) == std::string::npos)
+          letters += a.altloc;
+        occupancy[a.altloc] += static_cast<double>(a.occ);
+      }
+  if (letters.empty())
+    return '\0';
+  if (altloc.size() == 1 && letters.find(altloc[0]) != std::string::npos)
+    return altloc[0];
+  if (altloc == "first")
+    return letters[0];
+  char best = letters[0];
+  for (const char letter : letters)
+    if (occupancy[letter] > occupancy[best] + 1e-6)
+      best = letter;
+  return best;
+}
+
+/// One conformer a place. An atom that the place's conformer lacks stays in its own best one.
+int64_t keep_conformer(const Place& place, const std::string& altloc) {
+  const char chosen = conformer(place, altloc);
+  if (chosen == '\0')
+    return 0;
+  // Of a place with several residues, those that the conformer does not name go as a whole.
+  bool named = false;
+  for (const gemmi::Residue* residue : place)
+    for (const gemmi::Atom& a : residue->atoms)
+      named = named || a.altloc == chosen;
+  int64_t dropped = 0;
+  for (gemmi::Residue* residue : place) {
+    std::vector<gemmi::Atom>& atoms = residue->atoms;
+    const bool has =
+        std::any_of(atoms.begin(), atoms.end(), [&](const gemmi::Atom& a) { return a.altloc == chosen; });
+    const bool all_alternative =
+        std::all_of(atoms.begin(), atoms.end(), [](const gemmi::Atom& a) { return a.altloc != '\0'; });
+    std::vector<gemmi::Atom> kept;
+    if (place.size() == 1 || has || !all_alternative || !named) {
+      std::map<std::string, const gemmi::Atom*> best;
+      for (const gemmi::Atom& a : atoms) {
+        if (a.altloc == '\0')
+          continue;
+        const gemmi::Atom*& b = best[a.name];
+        if (b == nullptr || (b->altloc != chosen && (a.altloc == chosen || (altloc != "first" && a.occ > b->occ))))
+          b = &a;
+      }
+      for (const gemmi::Atom& a : atoms)
+        if (a.altloc == '\0' || best[a.name] == &a)
+          kept.push_back(a);
+    }
+    dropped += static_cast<int64_t>(atoms.size() - kept.size());
+    atoms = std::move(kept);
+  }
+  return dropped;
+}
+
+int64_t keep_conformers(gemmi::Structure& st, const std::string& altloc) {
+  int64_t dropped = 0;
+  for (gemmi::Model& model : st.models)
+    for (gemmi::Chain& chain : model.chains)
+      for (size_t r = 0; r < chain.residues.size();) {
+        Place place;
+        const gemmi::SeqId id = chain.residues[r].seqid;
+        for (; r < chain.residues.size() && chain.residues[r].seqid == id; ++r)
+          place.push_back(&chain.residues[r]);
+        dropped += keep_conformer(place, altloc);
+      }
+  prune(st);
+  return dropped;
+}
+
+/// Waters by their names in the PDB and in the files of molecular dynamics.
+bool is_water(const gemmi::Residue& residue) {
+  static constexpr std::array<const char*, 17> names = {"HOH", "DOD", "WAT",  "H2O",  "HOD", "OH2",
+                                                        "TIP", "TP3", "TP4",  "TP5",  "T3P", "T4P",
+                                                        "SOL", "SPC", "TIP3", "TIP4", "TIP5"};
+  if (std::none_of(names.begin(), names.end(), [&](const char* n) { return residue.name == n; }))
+    return false;
+  return std::all_of(residue.atoms.begin(), residue.atoms.end(), [](const gemmi::Atom& a) {
+    return a.is_hydrogen() || a.element == gemmi::El::O || a.element == gemmi::El::X;
+  });
+}
+
+} // namespace
+
+void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, PdbReport& report) {
+  gemmi::Structure& st = parsed.structure;
+  st.merge_chain_parts();
+  for (gemmi::Model& model : st.models)
+    for (gemmi::Chain& chain : model.chains)
+      if (chain.name.empty())
+        chain.name = "_";
+  keep_models(st, file, options.model, report);
+  if (options.altloc != "all")
+    report.altlocs = keep_conformers(st, options.altloc);
+  using Model = const gemmi::Model&;
+  using Chain = const gemmi::Chain&;
+  using Residue = const gemmi::Residue&;
+  using Atom = const gemmi::Atom&;
+  if (!options.waters)
+    report.waters =
+        drop_atoms(st, [](Model, Chain, Residue r) { return [water = is_water(r)](Atom) { return water; }; });
+  if (!options.hydrogens)
+    report.hydrogens = drop_atoms(st, [](Model, Chain, Residue) { return [](Atom a) { return a.is_hydrogen(); }; });
+  if (!options.hetatm)
+    report.hetatms =
+        drop_atoms(st, [](Model, Chain, Residue r) { return [het = r.het_flag == 'H'](Atom) { return het; }; });
+  if (options.select != "*") {
+    const Selection selection(options.select, "--select");
+    if (selection.needs_entities())
+      gemmi::setup_entities(st);
+    report.unselected = drop_atoms(st, [&](Model m, Chain c, Residue r) {
+      const bool inside = selection.model(m) && selection.chain(c.name, c.name) && selection.residue(r);
+      return [&selection, inside](Atom a) { return !(inside && selection.atom(a)); };
+    });
+  }
+  if (!parsed.pqr.empty() && options.own_radii)
+    report.no_radius = drop_atoms(st, [&](Model, Chain, Residue) {
+      return [&](Atom a) { return parsed.pqr[static_cast<size_t>(a.serial)].radius == 0; };
+    });
+  if (!st.models.empty())
+    return;
+  std::string dropped;
+  const auto add = [&](int64_t n, const char* what) {
+    if (n > 0)
+      dropped += (dropped.empty() ? " (dropped: " : ", ") + std::to_string(n) + " " + what;
+  };
+  add(report.waters, "of waters");
+  add(report.hydrogens, "hydrogens");
+  add(report.hetatms, "hetero atoms");
+  add(report.unselected, "outside --select");
+  add(report.no_radius, "of radius 0");
+  fail_input(file + ": found no atom that is kept" + dropped + (dropped.empty() ? "" : ")") +
+             ", expected at least one");
+}
+
+} // namespace molmesh::formats

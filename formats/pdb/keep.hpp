@@ -1,0 +1,12 @@
+// keep.hpp — which models, conformers, waters, hydrogens and hetero atoms stay.
+#pragma once
+#include "formats/pdb/parse.hpp"
+#include "formats/pdb/pdb.hpp"
+
+namespace molmesh::formats {
+
+/// Removes from the structure what the options drop, and counts it. Blank chain names become "_". Throws
+/// Error(bad_input) when nothing remains or the model is not there.
+void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, PdbReport& report);
+
+} // namespace molmesh::formats

@@ -1,0 +1,213 @@
+// mmcif.cpp — mmCIF and mmJSON through gemmi: only the categories that matter, missing columns filled in.
+#include "error.hpp"
+#include "formats/pdb/parse.hpp"
+#include <algorithm>
+#include <cmath>
+#include <gemmi/cif.hpp>
+#include <gemmi/json.hpp>
+#include <gemmi/mmcif.hpp>
+
+namespace molmesh::formats {
+namespace {
+namespace cif = gemmi::cif;
+
+const std::string prefix = "_atom_site.";
+
+bool starts_with(const std::string& text, const char* start) {
+  return text.rfind(start, 0) == 0;
+}
+
+/// gemmi's message in one line; "FILE:12:5(…): what" loses its column.
+std::string one_line(const std::string& file, std::string what) {
+  what = what.substr(0, what.find('\n'));
+  if (starts_with(what, (file + ":").c_str())) {
+    size_t end = file.size() + 1;
+    while (end < what.size() && what[end] >= '0' && what[end] <= '9')
+      ++end;
+    const std::string line = what.substr(0, end);
+    const size_t text = what.find(": ", end);
+    return line + ": " + (text == std::string::npos ? what.substr(end) : what.substr(text + 2)) +
+           ", expected mmCIF";
+  }
+  return file + ": " + what;
+}
+
+const std::string& tag_of(const cif::Item& item) {
+  static const std::string none;
+  if (item.type == cif::ItemType::Pair)
+    return item.pair[0];
+  if (item.type == cif::ItemType::Loop && !item.loop.tags.empty())
+    return item.loop.tags[0];
+  return none;
+}
+
+/// The first block that has atoms; null when none has.
+cif::Block* coordinates(cif::Document& document) {
+  for (cif::Block& block : document.blocks)
+    for (const cif::Item& item : block.items)
+      if (starts_with(gemmi::to_lower(tag_of(item)), prefix.c_str()))
+        return &block;
+  return nullptr;
+}
+
+/// A category that has its rows as name-value pairs has one row: gemmi reads both, here only loops remain.
+cif::Item* atom_loop(cif::Block& block) {
+  cif::Item loop{cif::LoopArg{}};
+  loop.line_number = 0;
+  for (cif::Item& item : block.items) {
+    if (!starts_with(gemmi::to_lower(tag_of(item)), prefix.c_str()))
+      continue;
+    if (item.type == cif::ItemType::Loop)
+      return &item;
+    if (loop.line_number == 0)
+      loop.line_number = item.line_number;
+    loop.loop.tags.push_back(item.pair[0]);
+    loop.loop.values.push_back(item.pair[1]);
+    item.erase();
+  }
+  block.items.push_back(std::move(loop));
+  return &block.items.back();
+}
+
+class AtomColumns {
+public:
+  explicit AtomColumns(cif::Loop& loop) : loop_(loop) {
+    for (std::string& tag : loop_.tags)
+      tag = canonical(tag);
+  }
+
+  int find(const std::string& name) const {
+    const auto at = std::find(loop_.tags.begin(), loop_.tags.end(), prefix + name);
+    return at == loop_.tags.end() ? -1 : static_cast<int>(at - loop_.tags.begin());
+  }
+
+  /// Adds the column where it is missing: a copy of the first of `like` that is there, or `value`.
+  void complete(const std::string& name, const std::vector<std::string>& like, const std::string& value) {
+    if (find(name) >= 0)
+      return;
+    int from = -1;
+    for (const std::string& other : like)
+      if (from < 0)
+        from = find(other);
+    const size_t width = loop_.width(), rows = loop_.length();
+    std::vector<std::string> values;
+    values.reserve(loop_.values.size() + rows);
+    for (size_t r = 0; r < rows; ++r) {
+      for (size_t c = 0; c < width; ++c)
+        values.push_back(std::move(loop_.values[r * width + c]));
+      values.push_back(from < 0 ? value : values[values.size() - width + static_cast<size_t>(from)]);
+    }
+    loop_.tags.push_back(prefix + name);
+    loop_.values = std::move(values);
+  }
+
+private:
+  /// mmCIF tags are case-insensitive, gemmi's are not.
+  static std::string canonical(const std::string& tag) {
+    static const char* const known[] = {"group_PDB",      "Cartn_x",           "Cartn_y",           "Cartn_z",
+                                        "B_iso_or_equiv", "pdbx_PDB_ins_code", "pdbx_PDB_model_num"};
+    const std::string lower = gemmi::to_lower(tag);
+    for (const char* name : known)
+      if (lower == prefix + gemmi::to_lower(name))
+        return prefix + name;
+    return lower;
+  }
+  cif::Loop& loop_;
+};
+
+/// The line of a row when the rows stand one a line, otherwise the loop's.
+int64_t line_of_row(std::string_view text, int64_t loop_line, size_t tags, size_t row, const std::string& value) {
+  const int64_t guess = loop_line + static_cast<int64_t>(tags + row) + 1;
+  int64_t result = loop_line;
+  for_each_line(text, [&](std::string_view line, int64_t number) {
+    if (number == guess && line.find(value) != std::string_view::npos)
+      result = number;
+  });
+  return result;
+}
+
+void check_coordinates(const cif::Loop& loop, const AtomColumns& columns, std::string_view text,
+                       const std::string& where, int64_t line) {
+  const size_t width = loop.width();
+  for (const char* axis : {"Cartn_x", "Cartn_y", "Cartn_z"}) {
+    const auto column = static_cast<size_t>(columns.find(axis));
+    for (size_t i = column, row = 0; i < loop.values.size(); i += width, ++row)
+      if (!std::isfinite(cif::as_number(loop.values[i])))
+        fail_input(where + ":" + std::to_string(line_of_row(text, line, loop.tags.size(), row, loop.values[i])) +
+                   ": found " + in_quotes(loop.values[i]) + " as " + axis + ", expected a coordinate (Å)");
+  }
+}
+
+Parsed from_document(cif::Document& document, std::string_view text, const std::string& file, const char* format) {
+  Parsed parsed;
+  parsed.format = format;
+  cif::Block* block = coordinates(document);
+  if (block == nullptr) {
+    const auto lines = std::max<std::ptrdiff_t>(std::count(text.begin(), text.end(), '\n'), 1);
+    fail_input(file + ":" + std::to_string(lines) + ": found no _atom_site category, expected " + format +
+               " with atoms");
+  }
+  cif::Item* item = atom_loop(*block);
+  const std::string where = file + ":" + std::to_string(std::max(item->line_number, 1));
+  cif::Loop& loop = item->loop;
+  AtomColumns columns(loop);
+  for (const char* name : {"Cartn_x", "Cartn_y", "Cartn_z"})
+    if (columns.find(name) < 0)
+      fail_input(where + ": found atoms without _atom_site." + name + ", expected coordinates");
+  if (columns.find("label_atom_id") < 0 && columns.find("auth_atom_id") < 0)
+    fail_input(where + ": found atoms without _atom_site.label_atom_id, expected names");
+  if (loop.length() == 0)
+    fail_input(where + ": found an empty _atom_site category, expected atoms");
+  check_coordinates(loop, columns, text, file, item->line_number);
+  columns.complete("id", {}, "1");
+  columns.complete("type_symbol", {}, "X");
+  columns.complete("label_alt_id", {}, ".");
+  columns.complete("label_asym_id", {"auth_asym_id"}, "A");
+  columns.complete("label_comp_id", {"auth_comp_id"}, "UNK");
+  columns.complete("occupancy", {}, "1");
+  columns.complete("B_iso_or_equiv", {}, "0");
+  columns.complete("auth_seq_id", {"label_seq_id"}, "1");
+
+  // Other categories cost time and can only fail: _atom_site_anisotrop, _struct_conn, _pdbx_sifts_…
+  cif::Block needed(block->name);
+  for (cif::Item& other : block->items) {
+    const std::string& tag = tag_of(other);
+    for (const char* kept : {"_atom_site.", "_entity.", "_entity_poly.", "_entity_poly_seq.", "_struct_asym.",
+                             "_pdbx_struct_assembly.", "_pdbx_struct_assembly_gen.", "_pdbx_struct_oper_list."})
+      if (starts_with(tag, kept)) {
+        needed.items.push_back(std::move(other));
+        break;
+      }
+  }
+  try {
+    parsed.structure = gemmi::make_structure_from_block(needed);
+  } catch (const std::exception& e) {
+    fail_input(where + ": " + std::string(e.what()).substr(0, std::string_view(e.what()).find('\n')));
+  }
+  return parsed;
+}
+
+} // namespace
+
+Parsed parse_mmcif(std::string_view text, const std::string& file) {
+  cif::Document document;
+  try {
+    document = cif::read_memory(text.data(), text.size(), file.c_str());
+  } catch (const std::exception& e) {
+    fail_input(one_line(file, e.what()));
+  }
+  return from_document(document, text, file, "mmCIF");
+}
+
+Parsed parse_mmjson(std::string& text, const std::string& file) {
+  cif::Document document;
+  try {
+    document = cif::read_mmjson_insitu(text.data(), text.size(), file);
+  } catch (const std::exception& e) {
+    const std::string what = e.what();
+    fail_input(one_line(file, what.empty() ? "found JSON that is no mmJSON" : what));
+  }
+  return from_document(document, {}, file, "mmJSON");
+}
+
+} // namespace molmesh::formats

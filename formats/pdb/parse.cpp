@@ -1,0 +1,104 @@
+// parse.cpp — which format it is, and what no format may hold.
+#include "formats/pdb/parse.hpp"
+#include "error.hpp"
+#include "molecule/words.hpp"
+#include <algorithm>
+
+namespace molmesh::formats {
+namespace {
+
+bool ends_with(std::string_view name, std::string_view ending) {
+  if (name.size() < ending.size())
+    return false;
+  return std::equal(ending.begin(), ending.end(), name.end() - static_cast<std::ptrdiff_t>(ending.size()),
+                    [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
+}
+
+/// Byte order mark away, line ends to line feeds; refuses binary data.
+void normalize(std::string& text, const std::string& file) {
+  if (text.compare(0, 3, "\xEF\xBB\xBF") == 0)
+    text.erase(0, 3);
+  if (const size_t nul = text.find('\0'); nul != std::string::npos) {
+    const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n') + 1;
+    fail_input(file + ":" + std::to_string(line) + ": found a NUL byte, expected text");
+  }
+  if (text.find('\r') != std::string::npos) {
+    if (text.find('\n') == std::string::npos)
+      std::replace(text.begin(), text.end(), '\r', '\n');
+    else
+      text.erase(std::remove(text.begin(), text.end(), '\r'), text.end());
+  }
+  if (!text.empty() && text.back() != '\n')
+    text += '\n';
+}
+
+/// Columns of the PDB format: decimal points of %8.3f coordinates.
+bool looks_like_pdb(std::string_view line) {
+  return line.size() >= 54 && line[34] == '.' && line[42] == '.' && line[50] == '.';
+}
+
+bool looks_like_pqr(std::string_view line) {
+  const std::vector<std::string_view> word = words(line);
+  if (word.size() < 9)
+    return false;
+  return std::all_of(word.end() - 5, word.end(), [](std::string_view w) { return decimal(w).has_value(); });
+}
+
+std::string detect(std::string_view text, const std::string& file) {
+  std::string_view name(file);
+  if (ends_with(name, ".gz"))
+    name.remove_suffix(3);
+  const size_t first = text.find_first_not_of(" \t\n");
+  if (first == std::string_view::npos)
+    fail_input(file + ":1: found an empty file, expected a structure");
+  if (text[first] == '{')
+    return "mmjson";
+  if (ends_with(name, ".pqr"))
+    return "pqr";
+  std::string format;
+  for_each_line(text, [&](std::string_view line, int64_t) {
+    if (!format.empty())
+      return;
+    const std::string_view start = trimmed(line);
+    if (is_record(start, "DATA_") || start == "loop_")
+      format = "mmcif";
+    if (is_atom_record(line))
+      format = !looks_like_pdb(line) && looks_like_pqr(line) ? "pqr" : "pdb";
+  });
+  if (format.empty() && (ends_with(name, ".cif") || ends_with(name, ".mmcif")))
+    return "mmcif";
+  return format.empty() ? "pdb" : format;
+}
+
+} // namespace
+
+bool is_record(std::string_view line, std::string_view name) {
+  return line.size() >= name.size() && std::equal(name.begin(), name.end(), line.begin(), [](char a, char b) {
+           return a == (b >= 'a' && b <= 'z' ? b - 'a' + 'A' : b);
+         });
+}
+
+bool is_atom_record(std::string_view line) {
+  return is_record(line, "ATOM") || is_record(line, "HETATM");
+}
+
+std::string in_quotes(std::string_view text) {
+  std::string s = "'";
+  for (const char c : text.substr(0, 40))
+    s += c >= ' ' && c < 0x7F ? c : '?';
+  return s + "'";
+}
+
+Parsed parse_structure(std::string text, const std::string& file, const std::string& format) {
+  normalize(text, file);
+  const std::string kind = format == "auto" ? detect(text, file) : format;
+  if (kind == "mmcif")
+    return parse_mmcif(text, file);
+  if (kind == "mmjson")
+    return parse_mmjson(text, file);
+  if (kind == "pqr")
+    return parse_pqr(text, file);
+  return parse_pdb(text, file);
+}
+
+} // namespace molmesh::formats

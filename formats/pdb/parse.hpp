@@ -1,0 +1,48 @@
+// parse.hpp — the text of a structure file into gemmi's structure.
+#pragma once
+#include <gemmi/model.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace molmesh::formats {
+
+struct Parsed {
+  gemmi::Structure structure;
+  std::string format; ///< "PDB", "mmCIF", "mmJSON", "PQR"
+  /// PQR only, by gemmi::Atom::serial, which is then the index of the atom in the file.
+  struct Values {
+    double charge, radius; ///< e, Å
+  };
+  std::vector<Values> pqr;
+  std::vector<std::string> notes; ///< what the user should know about how the file was read
+};
+
+/// format: auto, pdb, mmcif, mmjson or pqr; auto looks at the contents, and at the name where PDB and PQR look
+/// alike. Throws Error(bad_input) "FILE:LINE: …" when there is no atom, or a coordinate is not a finite number.
+Parsed parse_structure(std::string text, const std::string& file, const std::string& format);
+
+/// The single formats; `text` holds no NUL byte and ends its lines with a line feed.
+Parsed parse_pdb(std::string_view text, const std::string& file);
+Parsed parse_mmcif(std::string_view text, const std::string& file);
+Parsed parse_mmjson(std::string& text, const std::string& file);
+Parsed parse_pqr(std::string_view text, const std::string& file);
+
+/// Calls take(line, number) for each line, without its end.
+template <class Take>
+void for_each_line(std::string_view text, Take take) {
+  int64_t number = 0;
+  while (!text.empty()) {
+    const size_t end = text.find('\n');
+    take(text.substr(0, end), ++number);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+}
+/// Does the line begin with the record's name, in any case? name: upper case, at most six characters.
+bool is_record(std::string_view line, std::string_view name);
+/// Is it an ATOM or HETATM line?
+bool is_atom_record(std::string_view line);
+/// The text without what does not print, quoted, for messages.
+std::string in_quotes(std::string_view text);
+
+} // namespace molmesh::formats

@@ -1,0 +1,183 @@
+// pdb_text.cpp — the PDB format: our own strict look at each line, then gemmi's reader on the records that matter.
+#include "error.hpp"
+#include "formats/pdb/parse.hpp"
+#include "molecule/words.hpp"
+#include <gemmi/pdb.hpp>
+#include <set>
+
+namespace molmesh::formats {
+namespace {
+
+constexpr size_t first_x = 30, width = 8; // columns 31-38, 39-46, 47-54
+
+bool is_coordinate(std::string_view field) {
+  field = trimmed(field);
+  if (!field.empty() && field[0] == '+')
+    field.remove_prefix(1);
+  return decimal(field).has_value();
+}
+
+/// Where columns 77-78 hold no element: in amino acids and nucleotides the first letter of the atom's name ("CA  "
+/// is no calcium there), elsewhere gemmi decides, unless all that it finds is X.
+bool set_element(std::string& line) {
+  const auto letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
+  if (line.size() > 77 && (letter(line[76]) || letter(line[77])))
+    return false;
+  const std::string name = line.substr(12, 4), residue(trimmed(std::string_view(line).substr(17, 3)));
+  const size_t first = name.find_first_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz");
+  if (first == std::string::npos)
+    return false;
+  const gemmi::ResidueInfo info = gemmi::find_tabulated_residue(residue);
+  const bool polymer = (info.is_amino_acid() || info.is_nucleic_acid()) && name.find("SE") == std::string::npos;
+  if (!polymer && gemmi::Element(name.c_str()) != gemmi::El::X)
+    return false;
+  line.resize(78, ' ');
+  line[76] = ' ';
+  line[77] = name[first];
+  return true;
+}
+
+/// Three %8.3f fields that begin one column late, as some programs write residue numbers of five digits.
+bool is_shifted(std::string_view line) {
+  if (line.size() < first_x + 3 * width + 1 || line[first_x] != ' ')
+    return false;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const std::string_view field = line.substr(first_x + 1 + axis * width, width);
+    if (field[4] != '.' || !is_coordinate(field))
+      return false;
+  }
+  return true;
+}
+
+class PdbLines {
+public:
+  explicit PdbLines(const std::string& file) : file_(file) {}
+
+  void take(std::string_view line, int64_t number) {
+    line_ = number;
+    if (ended_)
+      after_end_ += is_atom_record(line);
+    else if (is_atom_record(line))
+      atom(line);
+    else if (is_record(line, "MODEL"))
+      model(line);
+    else if (is_record(line, "ENDMDL"))
+      in_model_ = false;
+    else if (is_record(line, "END") && (line.size() == 3 || line[3] == ' '))
+      ended_ = true;
+    else if (is_record(line, "TER") || is_record(line, "SEQRES") || is_record(line, "REMARK 350"))
+      text.append(line);
+    text += '\n';
+  }
+
+  void finish(Parsed& parsed) const {
+    if (atoms_ == 0)
+      fail_input(file_ + ":" + std::to_string(std::max<int64_t>(line_, 1)) +
+                 ": found the end without an ATOM or HETATM record, expected a structure");
+    const auto note = [&](int64_t count, const std::string& what) {
+      if (count > 0)
+        parsed.notes.push_back(std::to_string(count) + " " + what);
+    };
+    note(shifted_, "atom lines with coordinates one column to the right, read there");
+    note(guessed_, "atoms without an element, taken from the name");
+    note(after_end_, "atom lines after END, not read");
+    note(renumbered_, "models without a number of their own, numbered in order");
+  }
+
+  std::string text;                ///< the records that matter, checked, for gemmi
+  std::vector<std::string> models; ///< names, in order
+
+private:
+  [[noreturn]] void refuse(const std::string& what) const {
+    fail_input(file_ + ":" + std::to_string(line_) + ": " + what);
+  }
+
+  void atom(std::string_view line) {
+    if (!in_model_)
+      open_model("");
+    ++atoms_;
+    const bool shifted = is_shifted(line) && !is_standard(line);
+    shifted_ += shifted;
+    if (!shifted)
+      check_coordinates(line);
+    record_ = line.substr(0, first_x);
+    record_ +=
+        line.substr(first_x + (shifted ? 1 : 0), 48); // up to column 78: the formal charge behind is not used
+    guessed_ += set_element(record_);
+    text += record_;
+  }
+
+  static bool is_standard(std::string_view line) {
+    for (size_t at = first_x; at < first_x + 3 * width; at += width)
+      if (!is_coordinate(line.substr(at, width)))
+        return false;
+    return true;
+  }
+
+  void check_coordinates(std::string_view line) const {
+    if (line.size() < first_x + 3 * width)
+      refuse("found an atom line of " + std::to_string(line.size()) +
+             " columns, expected coordinates in columns 31-54");
+    for (size_t at = first_x; at < first_x + 3 * width; at += width)
+      if (!is_coordinate(line.substr(at, width)))
+        refuse("found " + in_quotes(line.substr(at, width)) + " in columns " + std::to_string(at + 1) + "-" +
+               std::to_string(at + width) + ", expected a coordinate (Å)");
+  }
+
+  void model(std::string_view line) {
+    const std::vector<std::string_view> word = words(line);
+    open_model(word.size() > 1 && decimal(word[1]) &&
+                       word[1].find_first_not_of("0123456789") == std::string_view::npos
+                   ? std::string(word[1])
+                   : "");
+  }
+
+  /// name: empty, or already taken: the next free number.
+  void open_model(std::string name) {
+    in_model_ = true;
+    if (name.empty() || seen_.count(name) != 0) {
+      renumbered_ += !models.empty() || !name.empty();
+      size_t next = models.size() + 1;
+      while (seen_.count(std::to_string(next)) != 0)
+        ++next;
+      name = std::to_string(next);
+    }
+    seen_.insert(name);
+    models.push_back(name);
+    // gemmi reads four digits and wants ENDMDL and distinct numbers; the names come back afterwards.
+    if (models.size() > 9999)
+      refuse("found more than 9999 models, expected fewer");
+    if (models.size() > 1)
+      text += "ENDMDL\n";
+    std::string number = std::to_string(models.size());
+    text += "MODEL     " + std::string(4 - number.size(), ' ') + number + "\n";
+  }
+
+  const std::string& file_;
+  std::string record_;
+  std::set<std::string> seen_;
+  int64_t line_ = 0, atoms_ = 0, shifted_ = 0, after_end_ = 0, renumbered_ = 0, guessed_ = 0;
+  bool in_model_ = false, ended_ = false;
+};
+
+} // namespace
+
+Parsed parse_pdb(std::string_view text, const std::string& file) {
+  PdbLines lines(file);
+  lines.text.reserve(text.size());
+  for_each_line(text, [&](std::string_view line, int64_t number) { lines.take(line, number); });
+  Parsed parsed;
+  parsed.format = "PDB";
+  lines.finish(parsed);
+  gemmi::Structure& st = parsed.structure;
+  try {
+    st = gemmi::read_pdb_from_memory(lines.text.data(), lines.text.size(), "pdb");
+  } catch (const std::runtime_error& e) {
+    fail_input(file + ": " + std::string(e.what()).substr(0, std::string_view(e.what()).find('\n')));
+  }
+  for (size_t m = 0; m < st.models.size(); ++m)
+    st.models[m].name = lines.models.at(m);
+  return parsed;
+}
+
+} // namespace molmesh::formats

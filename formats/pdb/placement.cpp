@@ -1,0 +1,160 @@
+// placement.cpp — flat arrays; assemblies from REMARK 350 and pdbx_struct_assembly.
+#include "formats/pdb/placement.hpp"
+#include "error.hpp"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace molmesh::formats {
+namespace {
+
+/// Unique names: NAME, or NAME_1, NAME_2, … for chains that come more than once.
+void name_copies(const Flat& flat, std::vector<Placed>& placed) {
+  std::map<std::string, int> times, seen;
+  std::set<std::string> taken;
+  for (const Placed& p : placed)
+    ++times[flat.chain[p.chain].source->name];
+  for (const auto& [name, n] : times)
+    if (n == 1)
+      taken.insert(name);
+  for (Placed& p : placed) {
+    const std::string& name = flat.chain[p.chain].source->name;
+    p.name = name;
+    if (times[name] == 1)
+      continue;
+    do
+      p.name = name + "_" + std::to_string(++seen[name]);
+    while (!taken.insert(p.name).second);
+  }
+}
+
+using Numbers = std::array<double, 12>;
+
+Numbers numbers(const gemmi::Transform& t) {
+  return {t.mat[0][0], t.mat[0][1], t.mat[0][2], t.vec.x,     t.mat[1][0], t.mat[1][1],
+          t.mat[1][2], t.vec.y,     t.mat[2][0], t.mat[2][1], t.mat[2][2], t.vec.z};
+}
+
+bool is_finite(const Numbers& n) {
+  return std::all_of(n.begin(), n.end(), [](double v) { return std::isfinite(v); });
+}
+
+/// The residues of a chain that a generator names: all of them (PDB: by chain), or those of its subchains (mmCIF).
+std::vector<int64_t> generated(const Flat& flat, const Flat::Chain& chain, const gemmi::Assembly::Gen& gen) {
+  std::vector<int64_t> residues;
+  const bool whole = gemmi::in_vector(chain.source->name == "_" ? std::string() : chain.source->name, gen.chains);
+  for (int64_t r = chain.begin; r < chain.end; ++r)
+    if (whole || gemmi::in_vector(flat.residue[static_cast<size_t>(r)].source->subchain, gen.subchains))
+      residues.push_back(r);
+  return residues;
+}
+
+} // namespace
+
+Vec3d Placed::position(Vec3d p) const {
+  if (!moved)
+    return p;
+  const gemmi::Vec3 v = transform.apply(gemmi::Vec3(p.x, p.y, p.z));
+  // As many decimals as coordinates have in the files that assemblies come from.
+  const auto rounded = [](double x) { return std::abs(x) < 1e9 ? std::round(x * 1000) / 1000 : x; };
+  return {rounded(v.x), rounded(v.y), rounded(v.z)};
+}
+
+Flat flatten(const Parsed& parsed, const std::string& file, const PdbOptions& options, PdbReport& report) {
+  Flat flat;
+  std::string refused;
+  for (const gemmi::Model& model : parsed.structure.models)
+    for (const gemmi::Chain& chain : model.chains) {
+      const auto first_residue = static_cast<int64_t>(flat.residue.size());
+      for (const gemmi::Residue& residue : chain.residues) {
+        const auto first_atom = static_cast<int64_t>(flat.atom.size());
+        for (const gemmi::Atom& a : residue.atoms) {
+          Atom atom;
+          atom.center = {a.pos.x, a.pos.y, a.pos.z};
+          atom.name = flat.names.add(a.name.empty() ? "X" : a.name);
+          atom.element = flat.names.add(a.element.name());
+          const Parsed::Values* own = parsed.pqr.empty() ? nullptr : &parsed.pqr[static_cast<size_t>(a.serial)];
+          if (own != nullptr)
+            atom.charge = own->charge;
+          if (own != nullptr && options.own_radii) {
+            atom.radius = own->radius;
+          } else if (const auto radius = options.radii.find(residue.name, a.name, a.element.name())) {
+            atom.radius = *radius;
+          } else {
+            ++report.unknown_elements[a.element.name()];
+            atom.radius = options.unknown_radius;
+            if (refused.empty())
+              refused = "found atom " + a.name + " of " + residue.name + " " + chain.name + "/" +
+                        residue.seqid.str() + ", element " + a.element.name();
+          }
+          flat.atom.push_back(atom);
+        }
+        flat.residue.push_back({&residue, first_atom, static_cast<int64_t>(flat.atom.size())});
+      }
+      flat.chain.push_back({&model, &chain, first_residue, static_cast<int64_t>(flat.residue.size())});
+    }
+  if (!refused.empty() && !(options.unknown_radius > 0))
+    fail_input(file + ": " + refused + ", expected an element with a radius");
+  return flat;
+}
+
+std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const std::string& file,
+                          const std::string& assembly, PdbReport& report) {
+  std::vector<Placed> placed;
+  if (assembly == "none") {
+    for (size_t c = 0; c < flat.chain.size(); ++c) {
+      auto residues = std::make_shared<std::vector<int64_t>>();
+      for (int64_t r = flat.chain[c].begin; r < flat.chain[c].end; ++r)
+        residues->push_back(r);
+      placed.push_back({c, "", 1, false, {}, residues});
+    }
+    name_copies(flat, placed);
+    return placed;
+  }
+  const auto found = std::find_if(st.assemblies.begin(), st.assemblies.end(),
+                                  [&](const gemmi::Assembly& a) { return a.name == assembly; });
+  if (found == st.assemblies.end()) {
+    std::string names;
+    for (const gemmi::Assembly& a : st.assemblies)
+      names += (names.empty() ? "" : ", ") + a.name;
+    fail_input(file + ": found no assembly " + assembly + ", expected " +
+               (names.empty() ? "none: the file lists no assemblies" : "one of " + names));
+  }
+  std::map<Numbers, int> copies;                     // by transform, from 1
+  std::map<std::pair<int, size_t>, size_t> of_chain; // copy and chain: where in `placed`
+  for (const gemmi::Assembly::Gen& gen : found->generators) {
+    std::vector<std::shared_ptr<const std::vector<int64_t>>> parts;
+    for (const Flat::Chain& chain : flat.chain)
+      parts.push_back(std::make_shared<std::vector<int64_t>>(generated(flat, chain, gen)));
+    for (const gemmi::Assembly::Operator& op : gen.operators) {
+      if (!is_finite(numbers(op.transform)))
+        fail_input(file + ": found operator " + op.name + " of assembly " + assembly +
+                   " with a number that is not finite");
+      const int copy = copies.try_emplace(numbers(op.transform), static_cast<int>(copies.size()) + 1).first->second;
+      for (size_t c = 0; c < flat.chain.size(); ++c) {
+        if (parts[c]->empty())
+          continue;
+        const auto [part, is_new] = of_chain.try_emplace({copy, c}, placed.size());
+        if (is_new) {
+          placed.push_back({c, "", copy, !op.transform.is_identity(), op.transform, parts[c]});
+          continue;
+        }
+        std::vector<int64_t> merged;
+        const std::vector<int64_t>& before = *placed[part->second].residues;
+        std::set_union(before.begin(), before.end(), parts[c]->begin(), parts[c]->end(),
+                       std::back_inserter(merged));
+        placed[part->second].residues = std::make_shared<std::vector<int64_t>>(std::move(merged));
+      }
+    }
+  }
+  if (placed.empty())
+    fail_input(file + ": found no atom in assembly " + assembly + ", expected at least one");
+  std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.copy < b.copy; });
+  report.copies = static_cast<int64_t>(copies.size());
+  name_copies(flat, placed);
+  return placed;
+}
+
+} // namespace molmesh::formats

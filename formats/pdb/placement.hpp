@@ -1,0 +1,47 @@
+// placement.hpp — the kept atoms in flat arrays, and where copies of each chain stand.
+#pragma once
+#include "formats/pdb/parse.hpp"
+#include "formats/pdb/pdb.hpp"
+#include "molecule/hierarchy.hpp"
+#include <memory>
+
+namespace molmesh::formats {
+
+/// The atoms of the file, without copies.
+struct Flat {
+  struct Residue {
+    const gemmi::Residue* source;
+    int64_t begin, end; ///< atoms
+  };
+  struct Chain {
+    const gemmi::Model* model;
+    const gemmi::Chain* source;
+    int64_t begin, end; ///< residues
+  };
+  std::vector<Chain> chain;
+  std::vector<Residue> residue;
+  std::vector<Atom> atom;
+  Names names;
+};
+
+/// One copy of one chain, whole or in part.
+struct Placed {
+  size_t chain;     ///< in Flat::chain
+  std::string name; ///< unique in the output
+  int copy;         ///< which operator of the assembly, from 1
+  bool moved;       ///< is the transform other than the identity?
+  gemmi::Transform transform;
+  std::shared_ptr<const std::vector<int64_t>> residues; ///< indices into Flat::residue, ascending
+  Vec3d position(Vec3d p) const;
+};
+
+/// Radii and charges are resolved here; counts unknown elements. Throws Error(bad_input) when they are to be
+/// refused.
+Flat flatten(const Parsed& parsed, const std::string& file, const PdbOptions& options, PdbReport& report);
+
+/// Every chain once, or as the assembly says. Chains that come more than once (in copies, in models) are named
+/// NAME_1, NAME_2, …. Throws Error(bad_input) when the assembly is not there.
+std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const std::string& file,
+                          const std::string& assembly, PdbReport& report);
+
+} // namespace molmesh::formats

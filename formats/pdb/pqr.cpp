@@ -1,0 +1,181 @@
+// pqr.cpp — PQR: atoms with charge and radius. Fields between blanks, as APBS reads them; where coordinates run
+// together, the columns of the PDB format.
+#include "error.hpp"
+#include "formats/pdb/parse.hpp"
+#include "molecule/words.hpp"
+#include <charconv>
+#include <unordered_map>
+
+namespace molmesh::formats {
+namespace {
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool is_letter(char c) {
+  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+}
+
+/// PQR has no element: an ion's name is its residue's and its element; otherwise the first letter, with the
+/// halogens and silicon by their two.
+gemmi::Element element_of(std::string_view atom, std::string_view residue) {
+  const size_t first = atom.find_first_not_of("0123456789'\"*+-");
+  if (first == std::string_view::npos)
+    return gemmi::El::X;
+  const std::string name(atom.substr(first));
+  const size_t end =
+      std::min(name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"), name.size());
+  const std::string letters = name.substr(0, end);
+  const size_t tail = std::min(residue.find_first_of("+-0123456789"), residue.size());
+  if (letters.size() == 2 && gemmi::alpha_up(letters[0]) == gemmi::alpha_up(residue.empty() ? ' ' : residue[0]) &&
+      tail == 2 && gemmi::alpha_up(letters[1]) == gemmi::alpha_up(residue[1]))
+    if (const gemmi::Element ion(letters); ion != gemmi::El::X)
+      return ion;
+  if (letters.size() >= 2 && name.substr(0, 2) != "CL" && name.substr(0, 2) != "BR" && name.substr(0, 2) != "SI")
+    return gemmi::impl::find_single_letter_element(gemmi::alpha_up(letters[0]));
+  return letters.size() == 1 ? gemmi::Element(letters) : gemmi::Element(name.substr(0, 2));
+}
+
+struct PqrAtom {
+  std::string name, residue, chain;
+  int number = 1;
+  char insertion = ' ';
+  double x, y, z, charge, radius;
+};
+
+class PqrLines {
+public:
+  PqrLines(const std::string& file, Parsed& parsed) : file_(file), parsed_(parsed) {
+    parsed.structure.models.emplace_back("1");
+  }
+
+  void take(std::string_view line, int64_t number) {
+    line_ = number;
+    if (ended_)
+      return;
+    if (is_atom_record(line))
+      add(atom(line), is_record(line, "HETATM"));
+    else if (is_record(line, "ENDMDL") || (is_record(line, "END") && (line.size() == 3 || line[3] == ' ')))
+      ended_ = true;
+  }
+
+  void finish() const {
+    if (parsed_.pqr.empty())
+      fail_input(file_ + ":" + std::to_string(std::max<int64_t>(line_, 1)) +
+                 ": found the end without an ATOM or HETATM record, expected PQR");
+  }
+
+private:
+  [[noreturn]] void refuse(const std::string& what) const {
+    fail_input(file_ + ":" + std::to_string(line_) + ": " + what);
+  }
+
+  PqrAtom atom(std::string_view line) const {
+    const size_t record = is_record(line, "HETATM") ? 6 : 4;
+    const std::vector<std::string_view> word = words(line.substr(record));
+    if (word.size() >= 5 + 3) {
+      const size_t head = word.size() - 5;
+      PqrAtom a;
+      if (numbers({word.begin() + static_cast<std::ptrdiff_t>(head), word.end()}, a) && labels(word, head, a))
+        return a;
+    }
+    return columns(line);
+  }
+
+  /// x y z charge radius
+  static bool numbers(const std::vector<std::string_view>& word, PqrAtom& a) {
+    double* const value[] = {&a.x, &a.y, &a.z, &a.charge, &a.radius};
+    for (size_t i = 0; i < 5; ++i) {
+      const std::optional<double> v = i < word.size() ? decimal(word[i]) : std::nullopt;
+      if (!v)
+        return false;
+      *value[i] = *v;
+    }
+    return true;
+  }
+
+  /// serial name residue [chain] number, where chain and number may run together.
+  static bool labels(const std::vector<std::string_view>& word, size_t count, PqrAtom& a) {
+    if (count < 3 || count > 5)
+      return false;
+    a.name = word[1];
+    a.residue = count == 3 ? std::string_view("UNK") : word[2];
+    std::string_view number = word[count - 1];
+    if (count == 5)
+      a.chain = word[3];
+    else if (count == 4 && number.size() > 1 && !is_digit(number[0]) && number[0] != '-') {
+      a.chain = number.substr(0, 1);
+      number.remove_prefix(1);
+    }
+    return residue_number(number, a);
+  }
+
+  static bool residue_number(std::string_view text, PqrAtom& a) {
+    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), a.number);
+    if (error != std::errc{})
+      return false;
+    const size_t left = static_cast<size_t>(text.data() + text.size() - rest);
+    if (left == 1 && is_letter(*rest))
+      a.insertion = *rest;
+    return left == 0 || a.insertion != ' ';
+  }
+
+  PqrAtom columns(std::string_view line) const {
+    PqrAtom a;
+    const auto field = [&](size_t at, size_t width) {
+      return at < line.size() ? trimmed(line.substr(at, width)) : std::string_view{};
+    };
+    std::vector<std::string_view> word = {field(30, 8), field(38, 8), field(46, 8)};
+    for (const std::string_view w : words(field(54, line.size())))
+      word.push_back(w);
+    if (word.size() > 5 || !numbers(word, a))
+      refuse("found " + in_quotes(line) + ", expected serial, name, residue, number, x, y, z, charge, radius");
+    a.name = field(12, 4);
+    a.residue = field(17, 4);
+    a.chain = field(21, 1);
+    if (!residue_number(field(22, 5), a))
+      refuse("found residue number " + in_quotes(field(22, 5)) + ", expected an integer");
+    return a;
+  }
+
+  void add(const PqrAtom& a, bool hetero) {
+    if (a.radius < 0)
+      refuse("found radius " + std::to_string(a.radius) + ", expected a number ≥ 0 (Å)");
+    gemmi::Model& model = parsed_.structure.models[0];
+    const auto [found, is_new] = chain_.try_emplace(a.chain, model.chains.size());
+    if (is_new)
+      model.chains.emplace_back(a.chain);
+    gemmi::Chain& chain = model.chains[found->second];
+    const gemmi::ResidueId id{gemmi::SeqId(a.number, a.insertion), {}, a.residue};
+    if (chain.residues.empty() || !chain.residues.back().matches(id)) {
+      chain.residues.emplace_back(id);
+      chain.residues.back().het_flag = hetero ? 'H' : 'A';
+    }
+    gemmi::Atom atom;
+    atom.name = a.name;
+    atom.element = element_of(a.name, a.residue);
+    atom.pos = {a.x, a.y, a.z};
+    atom.serial = static_cast<int>(parsed_.pqr.size());
+    chain.residues.back().atoms.push_back(atom);
+    parsed_.pqr.push_back({a.charge, a.radius});
+  }
+
+  const std::string& file_;
+  Parsed& parsed_;
+  std::unordered_map<std::string, size_t> chain_;
+  int64_t line_ = 0;
+  bool ended_ = false;
+};
+
+} // namespace
+
+Parsed parse_pqr(std::string_view text, const std::string& file) {
+  Parsed parsed;
+  parsed.format = "PQR";
+  PqrLines lines(file, parsed);
+  for_each_line(text, [&](std::string_view line, int64_t number) { lines.take(line, number); });
+  lines.finish();
+  return parsed;
+}
+
+} // namespace molmesh::formats

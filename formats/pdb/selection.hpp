@@ -1,0 +1,33 @@
+// selection.hpp — gemmi's selections (MMDB syntax), split by what they say about models, chains, residues and
+// atoms.
+#pragma once
+#include "error.hpp"
+#define USE_STD_SNPRINTF // gemmi's own wants stb_sprintf.h, which Debian's gemmi-dev lacks; only messages are printed
+#include <gemmi/select.hpp>
+#include <string>
+
+namespace molmesh::formats {
+
+/// "SELECTION", or where allowed "around SELECTION DISTANCE": everything within DISTANCE (Å) of an atom of
+/// SELECTION.
+class Selection {
+public:
+  /// Throws Error(bad_input) "WHERE: …" when the syntax is wrong.
+  Selection(const std::string& text, const std::string& where, bool around_allowed = false);
+
+  bool model(const gemmi::Model& m) const { return selection_.matches(m); }
+  /// name: in the file; copy: the unique name of one copy of an assembly. Either may be selected.
+  bool chain(const std::string& name, const std::string& copy) const;
+  bool residue(const gemmi::Residue& r) const { return selection_.matches(r); }
+  bool atom(const gemmi::Atom& a) const { return selection_.matches(a); }
+  /// Å; negative when the selection is no "around".
+  double around() const { return around_; }
+  /// Does it ask whether a residue is polymer or solvent?
+  bool needs_entities() const { return !selection_.entity_types.all; }
+
+private:
+  gemmi::Selection selection_;
+  double around_ = -1;
+};
+
+} // namespace molmesh::formats

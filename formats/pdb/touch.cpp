@@ -1,0 +1,122 @@
+// touch.cpp — selections by label once a residue, by distance once an atom.
+#include "formats/pdb/arrangement.hpp"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+namespace molmesh::formats {
+namespace {
+
+/// Atoms within a distance of a set of points: the points in cells of that size.
+class Near {
+public:
+  explicit Near(double distance) : distance_(distance) {}
+
+  void add(Vec3d p) {
+    cell_[key(index(p.x), index(p.y), index(p.z))].push_back(p);
+    for (int axis = 0; axis < 3; ++axis) {
+      low_[axis] = std::min(low_[axis], p[axis]);
+      high_[axis] = std::max(high_[axis], p[axis]);
+    }
+  }
+
+  bool has(Vec3d p) const {
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(p[axis] >= low_[axis] - distance_ && p[axis] <= high_[axis] + distance_))
+        return false;
+    const int64_t x = index(p.x), y = index(p.y), z = index(p.z);
+    for (int64_t i = x - 1; i <= x + 1; ++i)
+      for (int64_t j = y - 1; j <= y + 1; ++j)
+        for (int64_t k = z - 1; k <= z + 1; ++k) {
+          const auto found = cell_.find(key(i, j, k));
+          if (found == cell_.end())
+            continue;
+          for (const Vec3d& q : found->second)
+            if (norm2(p - q) <= distance_ * distance_)
+              return true;
+        }
+    return false;
+  }
+
+private:
+  int64_t index(double v) const { return static_cast<int64_t>(std::clamp(std::floor(v / distance_), -1e6, 1e6)); }
+  static int64_t key(int64_t i, int64_t j, int64_t k) {
+    return ((i + (1 << 20)) << 42) + ((j + (1 << 20)) << 21) + k + (1 << 20);
+  }
+
+  double distance_;
+  std::unordered_map<int64_t, std::vector<Vec3d>> cell_;
+  Vec3d low_{1e308, 1e308, 1e308}, high_{-1e308, -1e308, -1e308};
+};
+
+bool selects(const Selection& s, const Flat& flat, const Placed& p) {
+  const Flat::Chain& chain = flat.chain[p.chain];
+  return s.model(*chain.model) && s.chain(chain.source->name, p.name);
+}
+
+/// Calls take(item, atom of the file) for the selected atoms of all items.
+template <class Take>
+void for_each_selected(const Selection& s, const Arrangement& arrangement, Take take) {
+  const Flat& flat = arrangement.flat;
+  for (size_t i = 0; i < arrangement.items.size(); ++i) {
+    const Item& item = arrangement.items[i];
+    const Flat::Residue& residue = flat.residue[static_cast<size_t>(item.residue)];
+    if (!selects(s, flat, arrangement.placed[static_cast<size_t>(item.placed)]) || !s.residue(*residue.source))
+      continue;
+    for (int64_t a = residue.begin; a < residue.end; ++a)
+      if (s.atom(residue.source->atoms[static_cast<size_t>(a - residue.begin)]))
+        take(i, a);
+  }
+}
+
+uint8_t share(int64_t touched, int64_t all) {
+  return touched == 0 ? 0 : touched == all ? 2 : 1;
+}
+
+} // namespace
+
+std::vector<uint8_t> touch(const Selection& s, const Arrangement& arrangement) {
+  const Flat& flat = arrangement.flat;
+  const std::vector<Placed>& placed = arrangement.placed;
+  const std::vector<Item>& items = arrangement.items;
+  std::vector<uint8_t> result(items.size(), 0);
+  if (s.around() > 0) {
+    Near near(s.around());
+    for_each_selected(s, arrangement, [&](size_t i, int64_t a) {
+      near.add(placed[static_cast<size_t>(items[i].placed)].position(flat.atom[static_cast<size_t>(a)].center));
+    });
+    for (size_t i = 0; i < items.size(); ++i) {
+      const Flat::Residue& residue = flat.residue[static_cast<size_t>(items[i].residue)];
+      int64_t touched = 0;
+      for (int64_t a = residue.begin; a < residue.end; ++a)
+        touched += near.has(
+            placed[static_cast<size_t>(items[i].placed)].position(flat.atom[static_cast<size_t>(a)].center));
+      result[i] = share(touched, residue.end - residue.begin);
+    }
+    return result;
+  }
+  constexpr uint8_t unknown = 3;
+  std::vector<uint8_t> of_residue(flat.residue.size(), unknown); // whatever the chain
+  std::vector<uint8_t> of_chain(placed.size());
+  for (size_t p = 0; p < placed.size(); ++p)
+    of_chain[p] = selects(s, flat, placed[p]);
+  for (size_t i = 0; i < items.size(); ++i) {
+    if (!of_chain[static_cast<size_t>(items[i].placed)])
+      continue;
+    uint8_t& known = of_residue[static_cast<size_t>(items[i].residue)];
+    if (known == unknown) {
+      const Flat::Residue& residue = flat.residue[static_cast<size_t>(items[i].residue)];
+      const std::vector<gemmi::Atom>& atoms = residue.source->atoms;
+      const auto touched =
+          s.residue(*residue.source)
+              ? std::count_if(atoms.begin(), atoms.end(), [&](const gemmi::Atom& a) { return s.atom(a); })
+              : 0;
+      known = share(touched, residue.end - residue.begin);
+    }
+    result[i] = known;
+  }
+  return result;
+}
+
+} // namespace molmesh::formats

@@ -1,0 +1,135 @@
+// pdb2hier.cpp — atomic structure (PDB, mmCIF, mmJSON, PQR) to molecular hierarchy (.hier).
+#include "cli/file.hpp"
+#include "cli/run.hpp"
+#include "formats/pdb/pdb.hpp"
+#include "molecule/words.hpp"
+#include <algorithm>
+
+using namespace molmesh;
+
+namespace {
+
+struct Options : cli::Common {
+  formats::PdbOptions pdb;
+  std::string levels = "chain,residue", radii = "bondi", unknown = "2";
+  std::string hydrogens = "keep", waters = "drop", hetatm = "keep";
+  std::vector<std::string> domains, rules, resolution;
+};
+
+void describe(CLI::App& app, Options& o) {
+  const auto keep_or_drop = CLI::IsMember({"keep", "drop"});
+  app.add_option("--format", o.pdb.format, "of the input; auto: from its contents")
+      ->check(CLI::IsMember({"auto", "pdb", "mmcif", "mmjson", "pqr"}));
+  app.add_option("--model", o.pdb.model, "first, all, or a model's number");
+  app.add_option("--assembly", o.pdb.assembly, "identifier of a biological assembly, or none");
+  app.add_option("--levels", o.levels, "group levels, outermost first, of domain, chain, residue; or none");
+  app.add_option("--domains", o.domains,
+                 "file of lines NAME SELECTION, or entity, or copy (of the assembly) [repeatable]")
+      ->allow_extra_args(false);
+  app.add_option("-r,--rule", o.rules,
+                 "'SELECTION P_R=… P_C=… P_D=…': exponents (> 0) of all residues, chains and domains that the "
+                 "selection touches; 'around SELECTION Å P_R=…' is a lens; later rules win [repeatable]")
+      ->allow_extra_args(false);
+  app.add_option("--resolution", o.resolution, "file of rules, one a line, applied before those of -r [repeatable]")
+      ->allow_extra_args(false);
+  app.add_option("--select", o.pdb.select, "keep only these atoms (gemmi's selection syntax)");
+  app.add_option("--hydrogens", o.hydrogens, "keep or drop")->check(keep_or_drop);
+  app.add_option("--waters", o.waters, "keep or drop")->check(keep_or_drop);
+  app.add_option("--hetatm", o.hetatm, "hetero residues other than waters: keep or drop")->check(keep_or_drop);
+  app.add_option("--altloc", o.pdb.altloc,
+                 "alternative locations: occupancy (the highest), first, all, or the letter to prefer");
+  app.add_option(
+      "--radii", o.radii,
+      "bondi, or a file of lines ELEMENT Å or RESIDUE ATOM Å over it; PQR keeps its own unless a file is given");
+  app.add_option("--unknown", o.unknown, "radius of elements that have none (Å, > 0), or refuse");
+}
+
+[[noreturn]] void usage(const std::string& option, const std::string& found, const std::string& expected) {
+  fail(Status::usage, option + ": found '" + found + "', expected " + expected);
+}
+
+void resolve_domains(const Options& o, formats::PdbOptions& p) {
+  using Domains = formats::PdbOptions::Domains;
+  for (const std::string& domains : o.domains) {
+    const Domains kind = domains == "entity" ? Domains::entity : domains == "copy" ? Domains::copy : Domains::file;
+    if (p.domains != Domains::none && (p.domains != kind || kind != Domains::file))
+      usage("--domains", domains, "files only, or one of entity and copy");
+    p.domains = kind;
+    if (kind != Domains::file)
+      continue;
+    cli::InputFile file(domains);
+    const std::vector<DomainPart> parts = read_domains(file.stream(), file.name());
+    p.domain_parts.insert(p.domain_parts.end(), parts.begin(), parts.end());
+  }
+}
+
+void resolve_rules(const Options& o, formats::PdbOptions& p) {
+  for (const std::string& resolution : o.resolution) {
+    cli::InputFile file(resolution);
+    const std::vector<Rule> rules = read_rules(file.stream(), file.name());
+    p.rules.insert(p.rules.end(), rules.begin(), rules.end());
+  }
+  for (const std::string& rule : o.rules)
+    p.rules.push_back(parse_rule(rule, "-r '" + rule + "'", Status::usage));
+}
+
+void resolve(Options& o) {
+  formats::PdbOptions& p = o.pdb;
+  p.levels.clear();
+  std::string levels = o.levels == "none" ? "" : o.levels;
+  std::replace(levels.begin(), levels.end(), ',', ' ');
+  for (const std::string_view level : words(levels))
+    p.levels.emplace_back(level);
+
+  const bool number = !p.model.empty() && p.model.find_first_not_of("0123456789") == std::string::npos;
+  if (p.model != "first" && p.model != "all" && !number)
+    usage("--model", p.model, "first, all or a number");
+  if (p.altloc.size() != 1 && p.altloc != "occupancy" && p.altloc != "first" && p.altloc != "all")
+    usage("--altloc", p.altloc, "occupancy, first, all or one letter");
+  p.hydrogens = o.hydrogens == "keep";
+  p.waters = o.waters == "keep";
+  p.hetatm = o.hetatm == "keep";
+  p.unknown_radius = o.unknown == "refuse" ? 0 : decimal(o.unknown).value_or(-1);
+  if (!(p.unknown_radius > 0) && o.unknown != "refuse")
+    usage("--unknown", o.unknown, "a radius > 0 (Å) or refuse");
+  if (o.radii != "bondi") {
+    cli::InputFile file(o.radii);
+    p.radii = read_radii(file.stream(), file.name());
+    p.own_radii = false;
+  }
+  resolve_domains(o, p);
+  resolve_rules(o, p);
+}
+
+Status run(Options& o, cli::Run& run) {
+  o.resolved_threads();
+  resolve(o);
+  run.phase("read");
+  cli::InputFile in(o.input);
+  const formats::PdbHierarchy hierarchy(in.stream(), in.name(), o.pdb);
+  const formats::PdbReport& r = hierarchy.report();
+  for (const std::string& note : r.notes)
+    run.note(note);
+
+  run.phase("write");
+  cli::OutputFile out(o.output);
+  hierarchy.write(out.stream());
+  out.commit();
+
+  run.counts = {{"atoms_read", r.read},   {"models_read", r.models_read}, {"atoms", r.atoms},
+                {"residues", r.residues}, {"chains", r.chains},           {"domains", r.domains},
+                {"copies", r.copies}};
+  run.counts["dropped"] = {{"other_models", r.other_models}, {"altlocs", r.altlocs}, {"waters", r.waters},
+                           {"hydrogens", r.hydrogens},       {"hetatm", r.hetatms},  {"unselected", r.unselected},
+                           {"radius_0", r.no_radius}};
+  run.counts["unknown_elements"] = r.unknown_elements;
+  return Status::good;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  return cli::run_main<Options>("pdb2hier",
+                                "Atomic structure (PDB, mmCIF, mmJSON, PQR; plain or gzip) to molecular hierarchy.",
+                                argc, argv, describe, run);
+}
