@@ -45,14 +45,21 @@ struct Sum : Distribution {
 };
 
 struct Sums {
-  int64_t tets = 0;
+  int64_t tets = 0, outside = 0;
   Sum dihedral{0, 5, 36}, q{0, 0.05, 20}, eta{0, 0.05, 20}, ratio{1, 0.5, 20};
 
-  void add(Vec3d a, Vec3d b, Vec3d c, Vec3d d, int64_t tet) {
+  void add(Vec3d a, Vec3d b, Vec3d c, Vec3d d, int64_t tet, AngleLimits limits) {
     ++tets;
     const Dihedrals angles = dihedrals(a, b, c, d);
-    for (int e = 0; e < 6; ++e) // NaN: half of the angles of a flat tetrahedron are 0, half are 180
-      dihedral.add(angles.degree[e] == angles.degree[e] ? angles.degree[e] : e % 2 * 180.0, tet);
+    bool beyond = false;
+    for (int e = 0; e < 6; ++e) {
+      double degree = angles.degree[e];
+      if (degree != degree)
+        degree = e % 2 * 180.0; // flat: half are 0, half are 180
+      beyond |= degree < limits.min || degree > limits.max;
+      dihedral.add(degree, tet);
+    }
+    outside += beyond;
     const double sum2 = edge_sum2(a, b, c, d), joe_liu = sum2 > 0 ? joe_liu_q(six_volume(a, b, c, d), sum2) : 0;
     q.add(joe_liu, tet);
     eta.add(joe_liu_eta(joe_liu), tet);
@@ -61,19 +68,20 @@ struct Sums {
   }
   void add(const Sums& later) {
     tets += later.tets;
+    outside += later.outside;
     dihedral.add(later.dihedral);
     q.add(later.q);
     eta.add(later.eta);
     ratio.add(later.ratio);
   }
-  Quality done() const { return {tets, dihedral.done(), q.done(), eta.done(), ratio.done()}; }
+  Quality done() const { return {tets, outside, dihedral.done(), q.done(), eta.done(), ratio.done()}; }
 };
 
 using ByRegion = std::map<int32_t, Sums>;
 
 } // namespace
 
-MeshQuality measure_quality(const TetMesh& m, int threads) {
+MeshQuality measure_quality(const TetMesh& m, int threads, AngleLimits limits) {
   constexpr int64_t chunk = 1 << 14;
   const auto tets = static_cast<int64_t>(m.tet.size()), chunks = (tets + chunk - 1) / chunk;
   std::vector<ByRegion> part(static_cast<size_t>(chunks));
@@ -82,7 +90,7 @@ MeshQuality measure_quality(const TetMesh& m, int threads) {
     for (int64_t i = c * chunk; i < std::min(tets, (c + 1) * chunk); ++i) {
       const Tet& t = m.tet[static_cast<size_t>(i)];
       const auto p = [&](size_t k) { return m.point[static_cast<size_t>(t[k])]; };
-      mine[m.region[static_cast<size_t>(i)]].add(p(0), p(1), p(2), p(3), i);
+      mine[m.region[static_cast<size_t>(i)]].add(p(0), p(1), p(2), p(3), i, limits);
     }
   });
   ByRegion regions;

@@ -12,12 +12,17 @@ struct Distribution {
   std::vector<int64_t> bin;           ///< what lies beyond either end is counted in the bin there
 };
 
+/// Degrees; the quality asked for.
+struct AngleLimits {
+  double min = 0, max = 180;
+};
+
 struct Quality {
-  int64_t tets = 0;
-  Distribution dihedral;   ///< degrees, 36 bins of 5°; negative in inverted tetrahedra
-  Distribution joe_liu_q;  ///< equation 8 of the paper, 20 bins of 0.05
-  Distribution eta;        ///< Joe and Liu's own, Q^(2/3), 20 bins of 0.05
-  Distribution edge_ratio; ///< longest over shortest, 20 bins of 0.5 from 1
+  int64_t tets = 0, outside = 0; ///< outside: with a dihedral angle beyond the limits
+  Distribution dihedral;         ///< degrees, 36 bins of 5°; negative in inverted tetrahedra
+  Distribution joe_liu_q;        ///< equation 8 of the paper, 20 bins of 0.05
+  Distribution eta;              ///< Joe and Liu's own, Q^(2/3), 20 bins of 0.05
+  Distribution edge_ratio;       ///< longest over shortest, 20 bins of 0.5 from 1
 };
 
 struct MeshQuality {
@@ -28,6 +33,6 @@ struct MeshQuality {
 
 /// Points in range, coordinates finite. A tetrahedron without measures (a face without area) counts with angles 0,
 /// 180, and with an edge ratio of infinity where an edge has no length. Same result at any number of threads.
-MeshQuality measure_quality(const TetMesh& m, int threads);
+MeshQuality measure_quality(const TetMesh& m, int threads, AngleLimits limits = {});
 
 } // namespace molmesh

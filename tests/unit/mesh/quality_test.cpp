@@ -36,29 +36,34 @@ TEST_CASE("Kuhn's tetrahedra have angles of 45, 60 and 90 degrees") {
 
 TEST_CASE("quality of regions and of the whole is what a plain loop finds") {
   const TetMesh m = shaken(16);
-  const MeshQuality quality = measure_quality(m, 2);
+  const MeshQuality quality = measure_quality(m, 2, {40, 100});
   REQUIRE(quality.region == std::vector<int32_t>{1, 2});
   for (size_t k = 0; k < 3; ++k) {
     const Quality& q = k < 2 ? quality.of[k] : quality.all;
     double low = 1e9, high = -1e9, sum = 0, q_low = 1e9, ratio_high = 0;
-    int64_t tets = 0, low_tet = -1;
+    int64_t tets = 0, low_tet = -1, outside = 0;
     std::vector<int64_t> bin(36);
     for (size_t i = 0; i < m.tet.size(); ++i) {
       if (k < 2 && m.region[i] != quality.region[k])
         continue;
       const auto p = [&](size_t j) { return m.point[static_cast<size_t>(m.tet[i][j])]; };
       ++tets;
+      bool beyond = false;
       for (double degree : dihedrals(p(0), p(1), p(2), p(3)).degree) {
+        beyond |= degree < 40 || degree > 100;
         if (degree < low)
           low = degree, low_tet = int64_t(i);
         high = std::max(high, degree);
         sum += degree;
         ++bin[size_t(std::clamp(std::floor(degree / 5), 0.0, 35.0))];
       }
+      outside += beyond;
       q_low = std::min(q_low, joe_liu_q(six_volume(p(0), p(1), p(2), p(3)), edge_sum2(p(0), p(1), p(2), p(3))));
       ratio_high = std::max(ratio_high, edge_ratio(p(0), p(1), p(2), p(3)));
     }
     CHECK(q.tets == tets);
+    CHECK(q.outside == outside);
+    CHECK(outside > 0);
     CHECK(q.dihedral.min == low);
     CHECK(q.dihedral.min_tet == low_tet);
     CHECK(q.dihedral.max == high);

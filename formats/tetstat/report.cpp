@@ -1,0 +1,101 @@
+// report.cpp — counts, and the JSON form.
+#include "formats/tetstat/tetstat.hpp"
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace molmesh::formats {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json finite(double v) {
+  return std::isfinite(v) ? json(v) : json(nullptr);
+}
+
+json surface_json(const SurfaceSummary& s) {
+  return {{"triangles", s.triangles}, {"edges", s.edges}, {"points", s.points}, {"components", s.components},
+          {"euler", s.euler},         {"area", s.area},   {"volume", s.volume}};
+}
+
+json distribution_json(const Distribution& d) {
+  return {{"min", finite(d.min)},   {"max", finite(d.max)},
+          {"mean", finite(d.mean)}, {"min_tet", d.min_tet},
+          {"max_tet", d.max_tet},   {"histogram", {{"low", d.low}, {"width", d.width}, {"counts", d.bin}}}};
+}
+
+json quality_json(const Quality& q) {
+  return {{"dihedral", distribution_json(q.dihedral)},
+          {"joe_liu_q", distribution_json(q.joe_liu_q)},
+          {"joe_liu_eta", distribution_json(q.eta)},
+          {"edge_ratio", distribution_json(q.edge_ratio)},
+          {"outside", q.outside}};
+}
+
+} // namespace
+
+MeshReport report_mesh(const TetMesh& m, const std::string& file, const VtuNotes& notes, Validity validity,
+                       AngleLimits asked, int threads) {
+  MeshReport r;
+  r.file = file;
+  r.source = m.source;
+  r.creator = m.creator;
+  r.isovalue = m.isovalue;
+  r.points = static_cast<int64_t>(m.point.size());
+  r.tets = static_cast<int64_t>(m.tet.size());
+  r.triangles = static_cast<int64_t>(m.tri.size());
+  std::map<int32_t, int64_t> labels;
+  for (int32_t b : m.boundary)
+    ++labels[b];
+  for (const auto& [label, count] : labels)
+    r.labels.push_back({label, count});
+  r.parts = static_cast<int64_t>(std::set<int32_t>(m.part.begin(), m.part.end()).size());
+  r.notes = notes;
+  r.validity = std::move(validity);
+  if (!r.validity.region.empty())
+    r.quality = measure_quality(m, threads, asked);
+  r.asked = asked;
+  return r;
+}
+
+json tetstat_json(const MeshReport& r) {
+  const Validity& v = r.validity;
+  json j;
+  j["tetstat"] = 1;
+  j["file"] = r.file;
+  j["source"] = r.source;
+  j["creator"] = r.creator;
+  j["isovalue"] = r.isovalue;
+  j["valid"] = v.valid();
+  j["faults"] = json::array();
+  for (const Fault& f : v.faults)
+    j["faults"].push_back({{"rule", f.rule}, {"count", f.count}, {"example", f.example}});
+  j["asked"] = {{"min_dihedral", r.asked.min}, {"max_dihedral", r.asked.max}, {"met", r.good()}};
+  j["points"] = r.points;
+  j["tets"] = r.tets;
+  j["triangles"] = r.triangles;
+  j["labels"] = json::array();
+  for (const auto& [label, count] : r.labels)
+    j["labels"].push_back({{"boundary", label}, {"triangles", count}});
+  j["parts"] = r.parts;
+  j["dropped_cells"] = r.notes.dropped_cells;
+  j["dropped_triangles"] = r.notes.dropped_triangles;
+  if (!r.quality)
+    return j;
+  j["box"] = {{"low", {v.low.x, v.low.y, v.low.z}}, {"high", {v.high.x, v.high.y, v.high.z}}};
+  j["volume"] = v.volume;
+  j["surface"] = surface_json(v.surface);
+  j["quality"] = quality_json(r.quality->all);
+  j["regions"] = json::array();
+  for (size_t i = 0; i < v.region.size(); ++i) {
+    const RegionSummary& region = v.region[i];
+    j["regions"].push_back({{"region", region.region},
+                            {"tets", region.tets},
+                            {"volume", region.volume},
+                            {"boundary", surface_json(region.boundary)},
+                            {"quality", quality_json(r.quality->of[i])}});
+  }
+  return j;
+}
+
+} // namespace molmesh::formats

@@ -1,0 +1,32 @@
+// tetstat.hpp — what tetstat found, as text for people and as JSON (TETSTATv1.md).
+#pragma once
+#include "formats/vtu/vtu.hpp"
+#include "mesh/quality.hpp"
+#include "mesh/validity.hpp"
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace molmesh::formats {
+
+struct MeshReport {
+  std::string file, source, creator;
+  double isovalue = 1;
+  int64_t points = 0, tets = 0, triangles = 0;
+  std::vector<std::array<int64_t, 2>> labels; ///< boundary label, its triangles; ascending
+  int64_t parts = 0;                          ///< distinct METIS parts, 0: none
+  VtuNotes notes;
+  Validity validity;
+  std::optional<MeshQuality> quality; ///< none where an index is out of range
+  AngleLimits asked;
+
+  /// Angles within what was asked for.
+  bool good() const { return quality && quality->all.outside == 0; }
+};
+
+MeshReport report_mesh(const TetMesh& m, const std::string& file, const VtuNotes& notes, Validity validity,
+                       AngleLimits asked, int threads);
+
+nlohmann::ordered_json tetstat_json(const MeshReport& r);
+std::string tetstat_text(const MeshReport& r);
+
+} // namespace molmesh::formats

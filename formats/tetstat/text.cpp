@@ -1,0 +1,151 @@
+// text.cpp — the report on one screen.
+#include "formats/tetstat/tetstat.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+namespace molmesh::formats {
+namespace {
+
+[[gnu::format(printf, 1, 2)]] std::string print(const char* format, ...) {
+  char buffer[512];
+  va_list args;
+  va_start(args, format);
+  std::vsnprintf(buffer, sizeof buffer, format, args);
+  va_end(args);
+  return buffer;
+}
+
+/// 1234567 → 1,234,567
+std::string grouped(int64_t n) {
+  std::string s = std::to_string(n);
+  for (auto at = static_cast<std::ptrdiff_t>(s.size()) - 3; at > (n < 0 ? 1 : 0); at -= 3)
+    s.insert(static_cast<size_t>(at), 1, ',');
+  return s;
+}
+
+/// Numbers of Å², Å³ with two decimals.
+std::string amount(double v) {
+  if (!(std::fabs(v) < 1e15))
+    return print("%.6g", v);
+  const int64_t hundredths = std::llround(std::fabs(v) * 100);
+  std::string s = v < 0 && hundredths > 0 ? "-" : "";
+  s += grouped(hundredths / 100);
+  return s += print(".%02d", static_cast<int>(hundredths % 100));
+}
+
+/// Text of a file on one line of a terminal.
+std::string plain(std::string s) {
+  for (char& c : s)
+    if (static_cast<unsigned char>(c) < 32 || c == 127)
+      c = '?';
+  return s;
+}
+
+const char* region_name(int32_t region) {
+  return region == Region::molecule  ? "molecule"
+         : region == Region::outside ? "outside"
+         : region == Region::cavity  ? "cavity"
+                                     : "";
+}
+
+const char* label_name(int32_t label) {
+  static const char* names[] = {"", "surface", "-x", "+x", "-y", "+y", "-z", "+z"};
+  return label >= 1 && label <= 7 ? names[label] : "";
+}
+
+std::string measure(const char* name, const Distribution& d, const char* number) {
+  std::string s = print("  %-18s", name);
+  for (double v : {d.min, d.mean, d.max}) {
+    char value[32];
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+    std::snprintf(value, sizeof value, number, v);
+#pragma GCC diagnostic pop
+    s += print("%12s", value);
+  }
+  return s + print("   tets %lld, %lld\n", static_cast<long long>(d.min_tet), static_cast<long long>(d.max_tet));
+}
+
+std::string angle_histogram(const Distribution& d) {
+  int64_t total = 0, most = 1;
+  size_t first = d.bin.size(), last = 0;
+  std::vector<int64_t> wide; // bins of 10°
+  for (size_t i = 0; i < d.bin.size() / 2; ++i) {
+    wide.push_back(d.bin[2 * i] + d.bin[2 * i + 1]);
+    total += wide[i];
+    most = std::max(most, wide[i]);
+    if (wide[i] > 0) {
+      first = std::min(first, i);
+      last = i;
+    }
+  }
+  std::string s;
+  for (size_t i = first; i <= last; ++i) {
+    const double share = double(wide[i]) / double(std::max<int64_t>(total, 1));
+    s += print("  %3zu° to %3zu° %14s %8.3f %%", 10 * i, 10 * i + 10, grouped(wide[i]).c_str(), 100 * share);
+    if (wide[i] > 0)
+      s += "  " + std::string(static_cast<size_t>(std::ceil(40.0 * double(wide[i]) / double(most))), '#');
+    s += '\n';
+  }
+  return s;
+}
+
+std::string regions_table(const MeshReport& r) {
+  std::string s =
+      "region                 tets         volume/Å³        area/Å²  pieces   Euler   dihedral angles\n";
+  for (size_t i = 0; i < r.validity.region.size(); ++i) {
+    const RegionSummary& region = r.validity.region[i];
+    const SurfaceSummary& b = region.boundary;
+    const Distribution& angle = r.quality->of[i].dihedral;
+    s += print("  %-3d %-9s %12s %17s %14s %7lld %7lld   %6.2f° to %6.2f°\n", region.region,
+               region_name(region.region), grouped(region.tets).c_str(), amount(region.volume).c_str(),
+               amount(b.area).c_str(), static_cast<long long>(b.components), static_cast<long long>(b.euler),
+               angle.min, angle.max);
+  }
+  if (const SurfaceSummary& b = r.validity.surface; b.triangles > 0)
+    s += print("  surface %9s triangles %14s %14s %7lld %7lld\n", grouped(b.triangles).c_str(),
+               amount(b.volume).c_str(), amount(b.area).c_str(), static_cast<long long>(b.components),
+               static_cast<long long>(b.euler));
+  return s;
+}
+
+} // namespace
+
+std::string tetstat_text(const MeshReport& r) {
+  const Validity& v = r.validity;
+  std::string s = r.file;
+  if (!r.creator.empty())
+    s += ", made by " + plain(r.creator);
+  if (!r.source.empty())
+    s += ", from " + plain(r.source);
+  s += v.valid() ? "\nvalid\n" : "\nINVALID\n";
+  for (const Fault& f : v.faults)
+    s += print("  %-20s %12s   ", f.rule.c_str(), grouped(f.count).c_str()) + f.example + '\n';
+  s += grouped(r.points) + " points, " + grouped(r.tets) + " tetrahedra, " + grouped(r.triangles) + " triangles";
+  if (r.parts > 0)
+    s += ", " + grouped(r.parts) + " parts";
+  s += "\ntriangles by label:";
+  for (const auto& [label, count] : r.labels)
+    s += print("  %lld %s ", static_cast<long long>(label), label_name(int32_t(label))) + grouped(count);
+  s += '\n';
+  if (!r.quality)
+    return s;
+  s +=
+      print("box  %.3f %.3f %.3f  to  %.3f %.3f %.3f Å\n", v.low.x, v.low.y, v.low.z, v.high.x, v.high.y, v.high.z);
+  const Quality& q = r.quality->all;
+  s += '\n' + regions_table(r);
+  s += "\nquality                      min        mean         max   where\n";
+  s += measure("dihedral angle/°", q.dihedral, "%.2f");
+  s += measure("Joe-Liu Q (eq. 8)", q.joe_liu_q, "%.4f");
+  s += measure("Joe-Liu eta", q.eta, "%.4f");
+  s += measure("edge ratio", q.edge_ratio, "%.3f");
+  s += "\ndihedral angles\n" + angle_histogram(q.dihedral);
+  if (!r.good())
+    s += print("\nBELOW THE QUALITY ASKED FOR: %s tetrahedra with angles outside %g° to %g°\n",
+               grouped(q.outside).c_str(), r.asked.min, r.asked.max);
+  return s;
+}
+
+} // namespace molmesh::formats

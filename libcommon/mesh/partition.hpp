@@ -1,0 +1,12 @@
+// partition.hpp — tetrahedra in parts of equal size with few faces between them (METIS).
+#pragma once
+#include "mesh/tet_mesh.hpp"
+
+namespace molmesh {
+
+/// [tets] Part, 0 … parts - 1, of the dual graph (tetrahedra that share a face), by METIS k-way with a fixed seed.
+/// At most as many parts as tetrahedra. Same result at any number of threads. Throws Error(failed) when METIS gives
+/// up.
+std::vector<int32_t> partition(const TetMesh& m, int parts, int threads);
+
+} // namespace molmesh

@@ -1,0 +1,83 @@
+// tetstat_test.cpp — the report's keys and figures, in JSON and in text.
+#include "formats/tetstat/tetstat.hpp"
+#include "unit/mesh/meshes.hpp"
+#include <catch2/catch.hpp>
+
+using namespace molmesh;
+using namespace molmesh::testing;
+
+namespace {
+
+formats::MeshReport report(const TetMesh& m, AngleLimits asked = {}) {
+  return formats::report_mesh(m, "x.vtu", {}, check_validity(m, 1), asked, 1);
+}
+bool has(const std::string& text, const char* part) {
+  return text.find(part) != std::string::npos;
+}
+
+TetMesh block() {
+  TetMesh m = cubes(
+      4,
+      [](Vec3i c) -> int32_t {
+        return c == Vec3i{1, 1, 1} ? Region::molecule : Region::outside;
+      },
+      20);
+  m.source = "two\nlines";
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("a valid mesh in JSON") {
+  const auto j = formats::tetstat_json(report(block()));
+  CHECK(j.begin().key() == "tetstat");
+  CHECK(j["valid"] == true);
+  CHECK(j["faults"].empty());
+  CHECK(j["asked"]["met"] == true);
+  CHECK(j["tets"] == 384);
+  CHECK(j["volume"] == Approx(512'000));
+  CHECK(j["regions"][0]["volume"] == Approx(8000));
+  CHECK(j["regions"][0]["boundary"]["area"] == Approx(2400));
+  CHECK(j["regions"][1]["boundary"]["components"] == 2);
+  CHECK(j["surface"]["euler"] == 2);
+  CHECK(j["labels"].size() == 7);
+  CHECK(j["labels"][6]["triangles"] == 32);
+  CHECK(j["quality"]["dihedral"]["histogram"]["counts"][9] == 2 * 384); // 45° to 50°
+  CHECK(j["quality"]["dihedral"]["min"] == Approx(45));
+}
+
+TEST_CASE("quality asked for") {
+  CHECK(report(block(), {44.9, 90.1}).good());
+  const formats::MeshReport below = report(block(), {50, 180});
+  CHECK_FALSE(below.good());
+  CHECK(formats::tetstat_json(below)["quality"]["outside"] == 384);
+  CHECK(has(formats::tetstat_text(below),
+            "BELOW THE QUALITY ASKED FOR: 384 tetrahedra with angles outside 50° to 180°"));
+}
+
+TEST_CASE("broken rules are named in both forms") {
+  TetMesh m = block();
+  std::swap(m.tri[0][0], m.tri[0][1]);
+  const formats::MeshReport r = report(m);
+  const auto j = formats::tetstat_json(r);
+  CHECK(j["valid"] == false);
+  CHECK(j["faults"][0]["rule"] == "triangle_orientation");
+  CHECK(j["faults"][0]["count"] == 1);
+  CHECK(has(j["faults"][0]["example"].get<std::string>().c_str(), "triangle 0 (points "));
+  CHECK(has(formats::tetstat_text(r), "INVALID\n  triangle_orientation            1   triangle 0 (points "));
+  m.tet[3][1] = -5;
+  const auto broken = formats::tetstat_json(report(m));
+  CHECK(broken["faults"][0]["rule"] == "index");
+  CHECK_FALSE(broken.contains("quality"));
+  CHECK(has(formats::tetstat_text(report(m)), "index"));
+}
+
+TEST_CASE("text is for people: grouped digits, no control characters, only rows with angles") {
+  const std::string text = formats::tetstat_text(report(block()));
+  CHECK(has(text, "from two?lines\nvalid\n"));
+  CHECK(has(text, "512,000.00") == false); // the total stands in the regions
+  CHECK(has(text, "504,000.00"));
+  CHECK(has(text, "2,400.00"));
+  CHECK(has(text, " 40° to  50°"));
+  CHECK_FALSE(has(text, "100° to 110°"));
+}

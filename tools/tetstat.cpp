@@ -1,0 +1,60 @@
+// tetstat.cpp — validity and quality of a tetrahedral mesh (.vtu), for people or as JSON.
+#include "formats/tetstat/tetstat.hpp"
+#include "cli/file.hpp"
+#include "cli/run.hpp"
+#include <ostream>
+
+using namespace molmesh;
+
+namespace {
+
+struct Options : cli::Common {
+  bool json = false;
+  double min_dihedral = 0, max_dihedral = 180; // degrees
+};
+
+void describe(CLI::App& app, Options& o) {
+  app.add_flag("--json", o.json, "one JSON object instead of text (formats/tetstat/TETSTATv1.md)");
+  app.add_option("--min-dihedral", o.min_dihedral, "quality asked for, degrees: status 5 when an angle is smaller")
+      ->check(CLI::Range(0., 70.5));
+  app.add_option("--max-dihedral", o.max_dihedral, "quality asked for, degrees: status 5 when an angle is larger")
+      ->check(CLI::Range(70.6, 180.));
+}
+
+Status run_tool(const Options& o, cli::Run& run) {
+  const int threads = o.resolved_threads();
+  run.phase("read");
+  cli::InputFile input(o.input);
+  formats::VtuNotes notes;
+  const TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes);
+  if (notes.dropped_cells > 0)
+    run.note("dropped " + std::to_string(notes.dropped_cells) + " vertices and lines");
+  if (notes.dropped_triangles > 0)
+    run.note("the file has no array 'boundary': " + std::to_string(notes.dropped_triangles) +
+             " triangles dropped, " + std::to_string(mesh.tri.size()) + " rebuilt");
+  run.phase("validity");
+  Validity validity = check_validity(mesh, threads);
+  run.phase("quality");
+  const formats::MeshReport report = formats::report_mesh(mesh, input.name(), notes, std::move(validity),
+                                                          {o.min_dihedral, o.max_dihedral}, threads);
+  run.phase("write");
+  cli::OutputFile output(o.output);
+  if (o.json)
+    output.stream() << formats::tetstat_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+                    << '\n';
+  else
+    output.stream() << formats::tetstat_text(report);
+  output.commit();
+  run.counts["points"] = report.points;
+  run.counts["tets"] = report.tets;
+  run.counts["triangles"] = report.triangles;
+  run.counts["faults"] = report.validity.faults.size();
+  return report.validity.valid() && report.good() ? Status::good : Status::below_quality;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  return cli::run_main<Options>("tetstat", "Validity and quality of a tetrahedral mesh (.vtu).", argc, argv,
+                                describe, run_tool);
+}
