@@ -161,7 +161,7 @@ TEST_CASE("the run report holds the keys of the contract and the options in forc
   CHECK(j.at("peak_rss_bytes").get<int64_t>() > 1'000'000);
 }
 
-TEST_CASE("a report that cannot be written stops the run before its work; a failed run leaves no report") {
+TEST_CASE("a report that cannot be written stops the run before its work, and a failed run leaves no report") {
   const Folder folder;
   CHECK(tool({"-o", folder / "out", "--report", folder / "absent/report"}).status == 4);
   CHECK(tool({"--report", folder / "report"}, [](const Options&, cli::Run&) -> Status {
