@@ -1,0 +1,96 @@
+// surface_test.cpp — volumes, areas, topology and self-intersection by CGAL and TetGen beside our own.
+#include "mesh/validity.hpp"
+#include "oracles.hpp"
+#include "unit/mesh/meshes.hpp"
+#include <catch2/catch.hpp>
+#include <random>
+
+using namespace molmesh;
+using namespace molmesh::testing;
+
+namespace {
+
+/// Cubes of a body with a cavity and a handle, points of the mesh moved at random, but not so far that a
+/// tetrahedron turns.
+TetMesh shaken_body() {
+  TetMesh m = cubes(11, [](Vec3i c) -> int32_t {
+    if (c == Vec3i{4, 4, 4})
+      return Region::cavity;
+    const bool ball = norm2(to_double(c) - Vec3d{4, 4, 4}) <= 9;
+    const bool handle = c.y == 4 && c.z >= 3 && c.z <= 5 && c.x >= 6 && c.x <= 9 && !(c.x <= 8 && c.z == 4);
+    return ball || handle ? Region::molecule : Region::outside;
+  });
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> u(-0.12, 0.12);
+  for (Vec3d& p : m.point)
+    for (int k = 0; k < 3; ++k)
+      if (p[k] != 0 && p[k] != 11)
+        p[k] += u(random);
+  return m;
+}
+
+std::vector<Tri> region_boundary(const TetMesh& m, int32_t region) {
+  std::vector<Tri> tri;
+  const std::vector<int32_t> across = face_neighbors(m, 1);
+  for (size_t f = 0; f < across.size(); ++f)
+    if (m.region[f / 4] == region && (across[f] < 0 || m.region[static_cast<size_t>(across[f]) / 4] != region))
+      tri.push_back(face_points(m, static_cast<int64_t>(f)));
+  return tri;
+}
+
+} // namespace
+
+TEST_CASE("CGAL finds the same surfaces of regions, closed and without self-intersection") {
+  const TetMesh m = shaken_body();
+  const Validity v = check_validity(m, 1);
+  REQUIRE(v.valid());
+  CHECK(v.region[0].boundary.euler == 2); // a ring has 0, the cavity 2
+  for (const RegionSummary& r : v.region) {
+    const reference::CgalSurface s = reference::cgal_surface(m.point, region_boundary(m, r.region));
+    CHECK(s.manifold);
+    CHECK(s.closed);
+    CHECK_FALSE(s.self_intersecting);
+    CHECK(s.bounds_volume);
+    CHECK(s.components == r.boundary.components);
+    CHECK(s.euler == r.boundary.euler);
+    CHECK(s.area == Approx(r.boundary.area).epsilon(1e-12));
+    CHECK(s.volume == Approx(r.volume).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("CGAL refuses the surfaces that we call crowded or pinched, and sees what we cannot") {
+  const auto diagonal = [](Vec3i second) {
+    return cubes(4, [second](Vec3i c) -> int32_t { return c == Vec3i{1, 1, 1} || c == second ? 1 : 2; });
+  };
+  for (Vec3i second : {Vec3i{2, 2, 1}, Vec3i{2, 2, 2}}) {
+    const TetMesh m = diagonal(second);
+    CHECK_FALSE(check_validity(m, 1).valid());
+    const reference::CgalSurface s = reference::cgal_surface(m.point, region_boundary(m, 1));
+    CHECK((!s.manifold || s.self_intersecting || s.components == 2)); // CGAL takes cubes apart that share a corner
+  }
+  // Two cubes apart, one moved into the other: each is fine by itself, and tetrahedra of one mesh do not show it.
+  TetMesh apart = extract(diagonal({3, 3, 3}), [](int32_t r) { return r == 1; });
+  REQUIRE(check_validity(apart, 1).valid());
+  CHECK_FALSE(reference::cgal_surface(apart.point, apart.tri).self_intersecting);
+  for (Vec3d& p : apart.point)
+    if (p.x >= 2.5)
+      p += Vec3d{-1.6, -1.6, -1.6};
+  CHECK(reference::cgal_surface(apart.point, apart.tri).self_intersecting);
+}
+
+TEST_CASE("TetGen fills our surface with the same volume, and its mesh is valid by our rules") {
+  const TetMesh m = shaken_body();
+  const Validity v = check_validity(m, 1);
+  TetMesh fill = reference::tetgen_fill(m.point, region_boundary(m, Region::molecule), {{4.5, 4.5, 4.5}});
+  rebuild_triangles(fill);
+  const Validity filled = check_validity(fill, 2);
+  std::string faults;
+  for (const Fault& f : filled.faults)
+    faults += f.rule + ' ' + std::to_string(f.count) + ' ' + f.example + '\n';
+  INFO(faults);
+  REQUIRE(filled.valid());
+  CHECK(filled.volume == Approx(v.region[0].volume).epsilon(1e-12));
+  CHECK(filled.region[0].boundary.area == Approx(v.region[0].boundary.area).epsilon(1e-12));
+  CHECK(filled.region[0].boundary.triangles == v.region[0].boundary.triangles);
+  CHECK(filled.region[0].boundary.euler == v.region[0].boundary.euler);
+}
