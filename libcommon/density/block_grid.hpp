@@ -23,8 +23,8 @@ struct GridFrame {
 struct FieldInfo {
   double isovalue = 1, decay = 1; ///< G (no unit), κ in Å⁻²
   double band_lower = 0.9, band_upper = 1.1;
-  double tolerance = 1e-4;    ///< ε of I1
-  double inside_value = 2;    ///< what inactive inside points hold; > isovalue
+  double tolerance = 1e-4;     ///< ε of I1
+  double inside_value = 2;     ///< what inactive inside points hold; > isovalue
   int64_t analyzed_points = 0; ///< points whose density was computed: k_A · nx·ny·nz
   int64_t atoms = 0;
   std::string levels; ///< "chain residue", may be empty
@@ -32,7 +32,8 @@ struct FieldInfo {
   std::string creator; ///< "hier2density 0.1.0"
 };
 
-/// Active points are the corners of every band cell and hold G. Inactive points hold 0 outside, inside_value inside.
+/// Active points are the corners of every band cell and hold G. Inactive points hold 0 outside, inside_value
+/// inside.
 struct BlockGrid {
   GridFrame frame;
   FieldInfo info;

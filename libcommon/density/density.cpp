@@ -1,0 +1,47 @@
+// density.cpp — field, frame, search, in that order.
+#include "density/density.hpp"
+#include "density/frame.hpp"
+#include "density/selection.hpp"
+#include "error.hpp"
+#include <cstdio>
+
+namespace molmesh::density {
+
+BlockGrid compute(const Hierarchy& hierarchy, const Options& o, Counts& counts) {
+  const Field f = make_field(hierarchy, o.decay, Budget(o.tolerance).far);
+  const Box box = f.bounds();
+  const bool derived = o.margin < 0;
+  double margin = o.margin, h = o.spacing;
+  if (derived) {
+    // One cell more on each side: then no cell of the band touches the wall either.
+    margin = sufficient_margin(f, o.band_lower);
+    if (o.grid_points > 0)
+      h = longest_edge(box, margin) / static_cast<double>(o.grid_points - 3);
+    margin += h;
+  }
+  counts.margin = margin;
+  const GridFrame frame =
+      o.grid_points > 0 ? frame_with_points(box, margin, o.grid_points) : frame_with_spacing(box, margin, h);
+  SearchOptions s;
+  s.isovalue = o.isovalue;
+  s.band_lower = o.band_lower;
+  s.band_upper = o.band_upper;
+  s.tolerance = o.tolerance;
+  s.full = o.full_search;
+  s.threads = o.threads;
+  s.progress = o.progress;
+  BlockGrid grid = find_band(f, frame, s, counts.search);
+  grid.info.source = hierarchy.source;
+  for (const Level& l : hierarchy.level)
+    grid.info.levels += (grid.info.levels.empty() ? "" : " ") + l.name;
+  if (!derived && wall_cuts_surface(grid)) {
+    char text[128];
+    std::snprintf(text, sizeof text,
+                  "the grid's wall cuts the surface: a margin of %g Å is too small, %.2f Å suffices", margin,
+                  sufficient_margin(f, o.band_lower));
+    fail(Status::failed, text);
+  }
+  return grid;
+}
+
+} // namespace molmesh::density

@@ -1,0 +1,30 @@
+// density.hpp — the room's front door: a hierarchy and options to the sparse density grid.
+#pragma once
+#include "density/block_grid.hpp"
+#include "density/search.hpp"
+#include "molecule/hierarchy.hpp"
+
+namespace molmesh::density {
+
+struct Options {
+  double spacing = 0.5;    ///< h, Å; used when grid_points is 0
+  int64_t grid_points = 0; ///< along the longest axis
+  double margin = -1;      ///< Å beyond the outermost centres; negative: derived, never touched by the band
+  double decay = 1;        ///< κ, Å⁻²
+  double isovalue = 1, band_lower = 0.9, band_upper = 1.1; ///< in units of G
+  double tolerance = 1e-4;                                 ///< ε of I1
+  bool full_search = false;
+  int threads = 1;
+  std::function<void(int64_t done, int64_t total)> progress;
+};
+
+struct Counts {
+  SearchCounts search;
+  double margin = 0; ///< Å, as used
+};
+
+/// Everything of the grid but info.creator. Throws Error(failed) when the wall of a grid with the caller's margin
+/// cuts the surface, Error(usage) when the grid is too large to index.
+BlockGrid compute(const Hierarchy& h, const Options& options, Counts& counts);
+
+} // namespace molmesh::density

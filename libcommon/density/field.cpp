@@ -1,0 +1,170 @@
+// field.cpp — clusters and cutoff distances from a hierarchy.
+#include "density/field.hpp"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace molmesh::density {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Splits atoms [begin, end) of `order` at the median of their longest axis until every piece is a cluster.
+void split(const Hierarchy& h, std::vector<int64_t>& order, int64_t begin, int64_t end,
+           std::vector<int64_t>& cuts) {
+  if (end - begin <= Field::cluster_size) {
+    cuts.push_back(begin);
+    return;
+  }
+  Vec3d lo{infinity, infinity, infinity}, hi = -lo;
+  for (int64_t i = begin; i < end; ++i)
+    for (int a = 0; a < 3; ++a) {
+      const double c = h.atom[static_cast<size_t>(order[static_cast<size_t>(i)])].center[a];
+      lo[a] = std::min(lo[a], c);
+      hi[a] = std::max(hi[a], c);
+    }
+  int axis = 0;
+  for (int a = 1; a < 3; ++a)
+    if (hi[a] - lo[a] > hi[axis] - lo[axis])
+      axis = a;
+  const int64_t middle = begin + (end - begin) / 2;
+  std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end, [&](int64_t a, int64_t b) {
+    const double ca = h.atom[static_cast<size_t>(a)].center[axis], cb = h.atom[static_cast<size_t>(b)].center[axis];
+    return ca != cb ? ca < cb : a < b;
+  });
+  split(h, order, begin, middle, cuts);
+  split(h, order, middle, end, cuts);
+}
+
+void add_levels(Field& f, const Hierarchy& h) {
+  if (h.level.empty()) {
+    f.level.push_back({{1.0}, {}});
+    return;
+  }
+  for (size_t l = h.level.size(); l-- > 0;) {
+    FieldLevel level;
+    for (const Group& g : h.level[l].group)
+      level.exponent.push_back(g.exponent);
+    if (l > 0) {
+      level.parent.resize(level.exponent.size());
+      for (size_t p = 0; p < h.level[l - 1].group.size(); ++p)
+        for (int64_t c = h.level[l - 1].group[p].begin; c < h.level[l - 1].group[p].end; ++c)
+          level.parent[static_cast<size_t>(c)] = static_cast<int64_t>(p);
+    }
+    f.level.push_back(std::move(level));
+  }
+}
+
+void add_clusters(Field& f, const Hierarchy& h) {
+  std::vector<int64_t> order(h.atom.size()), cuts;
+  std::iota(order.begin(), order.end(), int64_t{0});
+  const auto add_group = [&](int64_t g, int64_t begin, int64_t end) {
+    split(h, order, begin, end, cuts);
+    f.group.resize(cuts.size(), g);
+  };
+  if (h.level.empty()) {
+    add_group(0, 0, static_cast<int64_t>(h.atom.size()));
+  } else {
+    const std::vector<Group>& innermost = h.level.back().group;
+    for (size_t g = 0; g < innermost.size(); ++g)
+      add_group(static_cast<int64_t>(g), innermost[g].begin, innermost[g].end);
+  }
+  f.begin = std::move(cuts);
+  f.begin.push_back(static_cast<int64_t>(h.atom.size()));
+  for (const int64_t a : order) {
+    const Atom& atom = h.atom[static_cast<size_t>(a)];
+    f.x.push_back(atom.center.x);
+    f.y.push_back(atom.center.y);
+    f.z.push_back(atom.center.z);
+    f.peak.push_back(f.decay * atom.radius * atom.radius);
+  }
+  for (size_t c = 0; c < f.group.size(); ++c) {
+    Box b{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    double ln = -infinity;
+    for (auto a = static_cast<size_t>(f.begin[c]); a < static_cast<size_t>(f.begin[c + 1]); ++a) {
+      b.lo = {std::min(b.lo.x, f.x[a]), std::min(b.lo.y, f.y[a]), std::min(b.lo.z, f.z[a])};
+      b.hi = {std::max(b.hi.x, f.x[a]), std::max(b.hi.y, f.y[a]), std::max(b.hi.z, f.z[a])};
+      ln = log_add(ln, f.peak[a]);
+    }
+    f.box.push_back(b);
+    f.ln_peak.push_back(ln);
+  }
+}
+
+/// For every innermost group the logarithm of the largest change of its sum that changes G by at most `allowed`.
+std::vector<double> allowed_change(const Field& f, double allowed) {
+  // Largest possible ln of each group's sum, anywhere; only exponents above 1 need it.
+  std::vector<std::vector<double>> largest(f.level.size());
+  for (size_t l = 0; l < f.level.size(); ++l) {
+    largest[l].assign(f.level[l].exponent.size(), -infinity);
+    if (l == 0)
+      for (size_t c = 0; c < f.group.size(); ++c) {
+        double& sum = largest[0][static_cast<size_t>(f.group[c])];
+        sum = log_add(sum, f.ln_peak[c]);
+      }
+    else
+      for (size_t g = 0; g < f.level[l - 1].exponent.size(); ++g) {
+        double& sum = largest[l][static_cast<size_t>(f.level[l - 1].parent[g])];
+        sum = log_add(sum, f.level[l - 1].exponent[g] * largest[l - 1][g]);
+      }
+  }
+  std::vector<double> outer, change;
+  for (size_t l = f.level.size(); l-- > 0;) {
+    change.resize(f.level[l].exponent.size());
+    for (size_t g = 0; g < change.size(); ++g) {
+      const double p = f.level[l].exponent[g];
+      const double t =
+          l + 1 < f.level.size() ? outer[static_cast<size_t>(f.level[l].parent[g])] : std::log(allowed);
+      change[g] = p <= 1 ? t / p : t - std::log(p) - (p - 1) * largest[l][g];
+    }
+    outer = change;
+  }
+  return change;
+}
+
+double steepest_path(const Field& f) {
+  std::vector<double> outer{1.0}, path;
+  for (size_t l = f.level.size(); l-- > 0;) {
+    path = f.level[l].exponent;
+    if (l + 1 < f.level.size())
+      for (size_t g = 0; g < path.size(); ++g)
+        path[g] *= outer[static_cast<size_t>(f.level[l].parent[g])];
+    outer = path;
+  }
+  return *std::max_element(path.begin(), path.end());
+}
+
+} // namespace
+
+double log_add(double a, double b) {
+  const double m = std::max(a, b);
+  return m == -infinity ? m : m + std::log1p(std::exp(std::min(a, b) - m));
+}
+
+Box Field::bounds() const {
+  Box b = box.front();
+  for (const Box& c : box)
+    for (int a = 0; a < 3; ++a) {
+      b.lo[a] = std::min(b.lo[a], c.lo[a]);
+      b.hi[a] = std::max(b.hi[a], c.hi[a]);
+    }
+  return b;
+}
+
+Field make_field(const Hierarchy& h, double decay, double far_error) {
+  Field f;
+  f.decay = decay;
+  add_levels(f, h);
+  add_clusters(f, h);
+  f.steepest = steepest_path(f);
+  for (size_t l = 1; l < f.level.size(); ++l)
+    for (const double p : f.level[l].exponent)
+      f.plain_above = f.plain_above && p == 1;
+  const std::vector<double> change = allowed_change(f, far_error / static_cast<double>(f.clusters()));
+  for (size_t c = 0; c < f.group.size(); ++c)
+    f.cutoff2.push_back(std::max(0.0, (f.ln_peak[c] - change[static_cast<size_t>(f.group[c])]) / decay));
+  return f;
+}
+
+} // namespace molmesh::density

@@ -1,0 +1,97 @@
+// frame.cpp — margin by bisection of an upper bound on G behind a face of the box.
+#include "density/frame.hpp"
+#include "error.hpp"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace molmesh::density {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// ln of an upper bound of G where coordinate `axis` is `margin` or more beyond the box on one side.
+double ln_bound_behind(const Field& f, const Box& all, int axis, bool high, double margin) {
+  OpenGroups groups(f);
+  std::vector<double> open(groups.levels() + 1, -infinity); // [0]: G; [last]: the innermost group
+  double& innermost = open.back();
+  int64_t current = -1;
+  const auto close = [&](size_t l, int64_t g) {
+    double& to = l + 1 < groups.levels() ? open[l + 1] : open[0];
+    to = log_add(to, f.level[l].exponent[static_cast<size_t>(g)] * open[l]);
+    open[l] = -infinity;
+  };
+  const auto close_innermost = [&] {
+    if (current < 0)
+      return;
+    groups.enter(current, close);
+    double& to = groups.levels() > 1 ? open[1] : open[0];
+    to = log_add(to, f.level[0].exponent[static_cast<size_t>(current)] * innermost);
+    innermost = -infinity;
+  };
+  for (size_t c = 0; c < f.group.size(); ++c) {
+    if (f.group[c] != current)
+      close_innermost();
+    current = f.group[c];
+    const double depth = high ? all.hi[axis] - f.box[c].hi[axis] : f.box[c].lo[axis] - all.lo[axis];
+    innermost = log_add(innermost, f.ln_peak[c] - f.decay * (margin + depth) * (margin + depth));
+  }
+  close_innermost();
+  groups.finish(close);
+  return open[0];
+}
+
+GridFrame frame(Vec3d lo, Vec3d extent, double h, int longest, int64_t n) {
+  GridFrame f{lo, h, {0, 0, 0}, {0, 0, 0}};
+  for (int a = 0; a < 3; ++a) {
+    // A corner that rounding puts a hair beyond the last point counts as on it.
+    const double cells = a == longest ? static_cast<double>(n - 1) : std::ceil(extent[a] / h * (1 - 1e-12));
+    if (!(cells < 1 << 29))
+      fail(Status::usage, "the grid would have more than 2^29 points along an axis, expected a larger --spacing");
+    f.points[a] = static_cast<int32_t>(std::max(1.0, cells)) + 1;
+  }
+  return f;
+}
+
+} // namespace
+
+double sufficient_margin(const Field& f, double value) {
+  const Box all = f.bounds();
+  double margin = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool high : {false, true}) {
+      const auto enough = [&](double m) { return ln_bound_behind(f, all, axis, high, m) < std::log(value); };
+      if (enough(margin))
+        continue;
+      double lo = margin, hi = std::max(1.0, 2 * margin);
+      while (!enough(hi)) {
+        lo = hi;
+        hi *= 2;
+      }
+      while (hi - lo > 0.01)
+        (enough((lo + hi) / 2) ? hi : lo) = (lo + hi) / 2;
+      margin = hi;
+    }
+  return margin;
+}
+
+double longest_edge(const Box& box, double margin) {
+  const Vec3d e = box.hi - box.lo;
+  return std::max({e.x, e.y, e.z}) + 2 * margin;
+}
+
+GridFrame frame_with_spacing(const Box& box, double margin, double h) {
+  const Vec3d m{margin, margin, margin};
+  return frame(box.lo - m, box.hi - box.lo + 2.0 * m, h, -1, 0);
+}
+
+GridFrame frame_with_points(const Box& box, double margin, int64_t n) {
+  const Vec3d m{margin, margin, margin}, extent = box.hi - box.lo + 2.0 * m;
+  int longest = 0;
+  for (int a = 1; a < 3; ++a)
+    if (extent[a] > extent[longest])
+      longest = a;
+  return frame(box.lo - m, extent, extent[longest] / static_cast<double>(n - 1), longest, n);
+}
+
+} // namespace molmesh::density

@@ -1,0 +1,31 @@
+// search.hpp — the sparse density grid: neighboring search over blocks of 8³ points (§3.1 of Liao et al. 2013) from
+// seeds that bounds on G prove complete, active points, sides. Nothing is dense over the grid.
+#pragma once
+#include "density/block_grid.hpp"
+#include "density/field.hpp"
+#include <functional>
+
+namespace molmesh::density {
+
+struct SearchOptions {
+  double isovalue = 1, band_lower = 0.9, band_upper = 1.1; ///< in units of G
+  double tolerance = 1e-4;                                 ///< ε of I1
+  bool full = false;                                       ///< compute every point of the grid
+  int threads = 1;
+  std::function<void(int64_t done, int64_t total)> progress; ///< called from any thread; may be empty
+};
+
+struct SearchCounts {
+  int64_t blocks_visited = 0, blocks_evaluated = 0;
+  int64_t group_visits = 0, atom_visits = 0; ///< groups and atoms summed, once a block
+  int64_t active_points = 0;
+};
+
+/// The field must be made with Budget(tolerance).far. The result has frame, values, sides and the numbers of `info`
+/// that it knows; the texts are the caller's. Same result for any number of threads.
+BlockGrid find_band(const Field& f, const GridFrame& frame, const SearchOptions& options, SearchCounts& counts);
+
+/// True when a point on the grid's outermost layer has G > isovalue: the wall cuts the surface.
+bool wall_cuts_surface(const BlockGrid& grid);
+
+} // namespace molmesh::density

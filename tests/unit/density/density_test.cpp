@@ -1,0 +1,217 @@
+// density_test.cpp — the sparse grid against the field summed by brute force: I1 to I4 of the design.
+#include "density/density.hpp"
+#include "error.hpp"
+#include "oracle.hpp"
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+using namespace molmesh;
+
+namespace {
+
+BlockGrid compute(const Hierarchy& h, const density::Options& o) {
+  density::Counts counts;
+  return density::compute(h, o, counts);
+}
+
+/// Worst |G_file - G| over ε·max(1, G) on a sample of the active points.
+double worst_error(const Hierarchy& h, const BlockGrid& g, int samples) {
+  std::mt19937 random(5);
+  double worst = 0;
+  for (int n = 0; n < samples;) {
+    const size_t b = random() % g.corner.size();
+    const int s = static_cast<int>(random() % 512);
+    if (!(g.active[8 * b + static_cast<size_t>(s >> 6)] >> (s & 63) & 1))
+      continue;
+    const Vec3i p = g.corner[b] + Vec3i{s >> 6, s >> 3 & 7, s & 7};
+    const double exact = test::exact_density(h, g.info.decay, g.frame.position(p));
+    worst = std::max(worst, std::abs(g.value[512 * b + static_cast<size_t>(s)] - exact) /
+                                (g.info.tolerance * std::max(1.0, exact)));
+    ++n;
+  }
+  return worst;
+}
+
+/// Every point of the grid by brute force: active exactly on the corners of band cells, the right side elsewhere.
+/// Points within the tolerance of a limit may fall on either side of it.
+void check_complete(const Hierarchy& h, const BlockGrid& g) {
+  const Vec3i n = g.frame.points;
+  const auto at = [&](int x, int y, int z) {
+    return (size_t(x) * size_t(n.y) + size_t(y)) * size_t(n.z) + size_t(z);
+  };
+  std::vector<double> G(size_t(n.x) * size_t(n.y) * size_t(n.z));
+  for (int x = 0; x < n.x; ++x)
+    for (int y = 0; y < n.y; ++y)
+      for (int z = 0; z < n.z; ++z)
+        G[at(x, y, z)] = test::exact_density(h, g.info.decay, g.frame.position(g.frame.lower + Vec3i{x, y, z}));
+  const double slack = g.info.tolerance * std::max(1.0, g.info.band_upper);
+  std::vector<char> surely(G.size()), maybe(G.size());
+  for (int x = 0; x + 1 < n.x; ++x)
+    for (int y = 0; y + 1 < n.y; ++y)
+      for (int z = 0; z + 1 < n.z; ++z) {
+        double lo = 1e300, hi = 0;
+        for (int c = 0; c < 8; ++c) {
+          const double v = G[at(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2))];
+          lo = std::min(lo, v);
+          hi = std::max(hi, v);
+        }
+        for (int c = 0; c < 8; ++c) {
+          const size_t p = at(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2));
+          surely[p] |= lo <= g.info.band_upper - slack && hi >= g.info.band_lower + slack;
+          maybe[p] |= lo <= g.info.band_upper + slack && hi >= g.info.band_lower - slack;
+        }
+      }
+  const BlockIndex index(g);
+  int64_t missed = 0, extra = 0, wrong_side = 0, wrong_value = 0;
+  for (int x = 0; x < n.x; ++x)
+    for (int y = 0; y < n.y; ++y)
+      for (int z = 0; z < n.z; ++z) {
+        const Vec3i p = g.frame.lower + Vec3i{x, y, z};
+        const double exact = G[at(x, y, z)], v = value_at(g, index, p);
+        if (is_active(g, index, p)) {
+          extra += !maybe[at(x, y, z)];
+          wrong_value += std::abs(v - exact) > g.info.tolerance * std::max(1.0, exact);
+        } else {
+          missed += surely[at(x, y, z)];
+          wrong_side += v != (exact > g.info.isovalue ? g.info.inside_value : 0.0);
+        }
+      }
+  CHECK(missed == 0);
+  CHECK(extra == 0);
+  CHECK(wrong_side == 0);
+  CHECK(wrong_value == 0);
+}
+
+void check_equal(const BlockGrid& a, const BlockGrid& b) {
+  CHECK(a.corner == b.corner);
+  CHECK(a.value == b.value);
+  CHECK(a.active == b.active);
+  CHECK(a.inside == b.inside);
+}
+
+} // namespace
+
+TEST_CASE("values are within the tolerance for exponents from 0.02 to 4 and any depth") {
+  const std::vector<std::vector<double>> settings = {
+      {},           {1},           {0.3, 1},  {0.5, 1},    {0.05, 0.5},   {0.02, 1},
+      {0.02, 0.02}, {2, 1},        {1, 0.02}, {4, 0.25},   {0.3, 4},      {0.8, 0.5, 1},
+      {2, 1, 1},    {0.5, 2, 0.5}, {4, 4},    {1, 1, 0.3}, {0.7, 0.4, 1}, {0.3, 0.8, 2.5}};
+  for (const std::vector<double>& exponents : settings)
+    for (const double tolerance : {1e-3, 1e-4, 1e-6}) {
+      const Hierarchy h = test::random_chains(3, 12, 6, exponents, 17);
+      density::Options o;
+      o.spacing = 0.8;
+      o.tolerance = tolerance;
+      const BlockGrid g = compute(h, o);
+      std::string text;
+      for (const double p : exponents)
+        text += std::to_string(p) + " ";
+      INFO("exponents, innermost first: " << text << "tolerance " << tolerance);
+      REQUIRE(!g.corner.empty());
+      CHECK(worst_error(h, g, 100) <= 1);
+    }
+}
+
+TEST_CASE("no band cell is missed and no point is on the wrong side") {
+  for (const std::vector<double>& exponents : {std::vector<double>{0.3, 1}, {0.5, 1}, {0.1, 0.5}, {1, 2}, {}}) {
+    density::Options o;
+    o.spacing = 1.1;
+    const Hierarchy h = test::random_chains(2, 15, 6, exponents, 23);
+    check_complete(h, compute(h, o));
+  }
+}
+
+TEST_CASE("molecules far apart, a hollow ball and a cavity of one cell are all found") {
+  density::Options o;
+  o.spacing = 1.0;
+  o.isovalue = 1;
+  Hierarchy far;
+  far.atom.push_back({{0, 0, 0}, 2.0});
+  far.atom.push_back({{100, 3, -2}, 1.5});
+  far.atom.push_back({{40, 0.2, 0.1}, 1.7});
+  density::Options coarse = o;
+  coarse.spacing = 1.3;
+  check_complete(far, compute(far, coarse));
+
+  Hierarchy hollow;
+  for (int i = 0; i < 400; ++i) { // Fibonacci sphere
+    const double z = 1 - (2 * i + 1) / 400.0, t = 2.399963229728653 * i, r = std::sqrt(1 - z * z);
+    hollow.atom.push_back({{12 * r * std::cos(t), 12 * r * std::sin(t), 12 * z}, 1.7});
+  }
+  check_complete(hollow, compute(hollow, o));
+
+  Hierarchy cage; // atoms on a lattice, one missing
+  for (int x = -2; x <= 2; ++x)
+    for (int y = -2; y <= 2; ++y)
+      for (int z = -2; z <= 2; ++z)
+        if (x || y || z)
+          cage.atom.push_back({{1.7 * x, 1.7 * y, 1.7 * z}, 1.2});
+  o.spacing = 0.7;
+  o.isovalue = 3.2;
+  o.band_lower = 3;
+  o.band_upper = 3.4;
+  const BlockGrid g = compute(cage, o);
+  check_complete(cage, g);
+}
+
+TEST_CASE("full and neighbor search, and any number of threads, give the same grid") {
+  const Hierarchy h = test::random_chains(3, 40, 8, {0.4, 1}, 3);
+  density::Options o;
+  o.spacing = 0.6;
+  const BlockGrid one = compute(h, o);
+  for (const int threads : {2, 3, 8}) {
+    o.threads = threads;
+    const BlockGrid many = compute(h, o);
+    check_equal(many, one);
+    CHECK(many.info.analyzed_points == one.info.analyzed_points);
+  }
+  o.full_search = true;
+  check_equal(compute(h, o), one);
+}
+
+TEST_CASE("one atom is a sphere of its radius") {
+  Hierarchy h;
+  h.atom.push_back({{1, 2, 3}, 2.0});
+  for (const double spacing : {1.0, 0.3, 0.1}) {
+    density::Options o;
+    o.spacing = spacing;
+    const BlockGrid g = compute(h, o);
+    const BlockIndex index(g);
+    int64_t wrong = 0;
+    for (int x = 0; x < g.frame.points.x; ++x)
+      for (int y = 0; y < g.frame.points.y; ++y)
+        for (int z = 0; z < g.frame.points.z; ++z) {
+          const double d = norm(g.frame.position({x, y, z}) - h.atom[0].center);
+          if (std::abs(d - 2) > 1e-4)
+            wrong += (value_at(g, index, {x, y, z}) > 1) != (d < 2);
+        }
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("the derived margin keeps the band off the wall, a small one is refused") {
+  for (const std::vector<double>& exponents : {std::vector<double>{0.3, 1}, {0.05, 0.5}, {0.02, 1}}) {
+    const Hierarchy h = test::random_chains(2, 30, 7, exponents, 29);
+    density::Options o;
+    o.spacing = 1.5;
+    const BlockGrid g = compute(h, o);
+    const BlockIndex index(g);
+    const Vec3i last = g.frame.lower + g.frame.points - Vec3i{1, 1, 1};
+    int64_t touched = 0;
+    for (const Vec3i& c : g.corner)
+      for (int s = 0; s < 512; ++s) {
+        const Vec3i p = c + Vec3i{s >> 6, s >> 3 & 7, s & 7};
+        const bool wall = p.x <= 0 || p.y <= 0 || p.z <= 0 || p.x >= last.x || p.y >= last.y || p.z >= last.z;
+        touched += wall && is_active(g, index, p);
+      }
+    CHECK(touched == 0);
+    o.margin = 0;
+    density::Counts counts;
+    try {
+      density::compute(h, o, counts);
+      FAIL("accepted");
+    } catch (const Error& e) {
+      CHECK(e.status == Status::failed);
+    }
+  }
+}

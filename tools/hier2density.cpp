@@ -1,0 +1,114 @@
+// hier2density.cpp — molecular hierarchy (.hier) to the sparse density grid near its surface (.vdb).
+#include "cli/file.hpp"
+#include "cli/progress.hpp"
+#include "cli/run.hpp"
+#include "density/density.hpp"
+#include "formats/hier/hier.hpp"
+#include "formats/vdb/vdb.hpp"
+
+using namespace molmesh;
+
+namespace {
+
+struct Options : cli::Common {
+  double spacing = 0.5;
+  int64_t grid = 0;
+  std::string margin = "auto";
+  double decay = 1, isovalue = 1, tolerance = 1e-4;
+  std::string band = "0.9,1.1", search = "neighbor", atoms = "bvh";
+};
+
+void describe(CLI::App& app, Options& o) {
+  CLI::Option* spacing =
+      app.add_option("--spacing", o.spacing, "grid spacing h, Å [> 0]")->check(CLI::PositiveNumber);
+  app.add_option("--grid", o.grid,
+                 "points along the longest axis, instead of --spacing; 0: use --spacing [4..536870912]")
+      ->check(CLI::Range(0, 1 << 29))
+      ->excludes(spacing);
+  app.add_option(
+      "--margin", o.margin,
+      "grid beyond the outermost atom centres, Å [>= 0]; auto: as far as the surface and its band can reach");
+  app.add_option("--decay", o.decay, "decay rate of an atom's term, 1/Å² [> 0]")->check(CLI::PositiveNumber);
+  app.add_option("--isovalue", o.isovalue, "the surface is where the field has this value [> 0]")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--band", o.band, "limits of the band to keep, in multiples of the isovalue [0 < LO <= 1 <= HI]");
+  app.add_option("--tolerance", o.tolerance, "largest error of a value G, in units of max(1, G) [1e-6..1e-2]")
+      ->check(CLI::Range(1e-6, 1e-2));
+  app.add_option("--search", o.search, "neighbor: only near the surface, full: every grid point")
+      ->check(CLI::IsMember({"neighbor", "full"}));
+  app.add_option("--atoms", o.atoms, "how contributing atoms are found: bvh: boxes of the hierarchy, kdtree, all")
+      ->check(CLI::IsMember({"bvh", "kdtree", "all"}));
+}
+
+density::Options density_options(const Options& o) {
+  density::Options d;
+  const std::vector<double> band = cli::numbers("--band", o.band, 2);
+  if (!(band[0] > 0 && band[0] <= 1 && band[1] >= 1))
+    fail(Status::usage, "--band: found '" + o.band + "', expected LO,HI with 0 < LO <= 1 <= HI");
+  if (o.grid > 0 && o.grid < 4)
+    fail(Status::usage, "--grid: found " + std::to_string(o.grid) + ", expected 4 or more");
+  if (o.atoms != "bvh")
+    fail(Status::usage, "--atoms " + o.atoms + ": not available yet, expected bvh");
+  d.spacing = o.spacing;
+  d.grid_points = o.grid;
+  if (o.margin != "auto") {
+    d.margin = cli::numbers("--margin", o.margin, 1)[0];
+    if (!(d.margin >= 0))
+      fail(Status::usage, "--margin: found '" + o.margin + "', expected auto or a number >= 0");
+  }
+  d.decay = o.decay;
+  d.isovalue = o.isovalue;
+  d.band_lower = band[0] * o.isovalue;
+  d.band_upper = band[1] * o.isovalue;
+  d.tolerance = o.tolerance;
+  d.full_search = o.search == "full";
+  d.threads = o.resolved_threads();
+  return d;
+}
+
+void report(cli::Run& r, const BlockGrid& grid, const density::Counts& counts) {
+  const Vec3i n = grid.frame.points;
+  r.counts["atoms"] = grid.info.atoms;
+  r.counts["grid_points"] = {n.x, n.y, n.z};
+  r.counts["spacing"] = grid.frame.spacing;
+  r.counts["margin"] = counts.margin;
+  r.counts["analyzed_points"] = grid.info.analyzed_points;
+  r.counts["k_A"] = double(grid.info.analyzed_points) / (double(n.x) * n.y * n.z);
+  r.counts["active_points"] = counts.search.active_points;
+  r.counts["blocks"] = grid.corner.size();
+  r.counts["inside_blocks"] = grid.inside.size();
+  r.counts["blocks_visited"] = counts.search.blocks_visited;
+  r.counts["blocks_evaluated"] = counts.search.blocks_evaluated;
+  r.counts["group_visits"] = counts.search.group_visits;
+  r.counts["atom_visits"] = counts.search.atom_visits;
+}
+
+Status run(const Options& o, cli::Run& r) {
+  density::Options d = density_options(o);
+  cli::InputFile in(o.input);
+  cli::OutputFile out(o.output);
+  r.phase("read");
+  const Hierarchy h = formats::read_hier(in.stream(), in.name());
+  r.phase("density");
+  density::Counts counts;
+  BlockGrid grid;
+  {
+    cli::Progress progress("density", "nodes", o.quiet);
+    d.progress = [&progress](int64_t done, int64_t total) { progress(done, total); };
+    grid = density::compute(h, d, counts);
+  }
+  grid.info.creator = cli::creator(r.tool);
+  report(r, grid, counts);
+  r.phase("write");
+  formats::write_vdb(out.stream(), grid);
+  out.commit();
+  return Status::good;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  return cli::run_main<Options>("hier2density",
+                                "Molecular hierarchy (.hier) to the density near its surface (.vdb)", argc, argv,
+                                describe, run);
+}
