@@ -3,10 +3,13 @@
 #include "formats/vdb/vdb.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
 #include <random>
 #include <sstream>
 
 using namespace molmesh;
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -121,4 +124,28 @@ TEST_CASE("damaged bytes are refused or read, never worse") {
     refused += refusal(b) != "accepted";
   }
   CHECK(refused > 100);
+}
+TEST_CASE("the samples in formats/vdb are accepted and refused by rule") {
+  const fs::path samples = fs::path(MOLMESH_SOURCE_DIR) / "formats/vdb/samples";
+  int passed = 0, failed = 0;
+  for (const fs::directory_entry& f : fs::directory_iterator(samples / "passed")) {
+    INFO(f.path());
+    std::ifstream in(f.path(), std::ios::binary);
+    CHECK_NOTHROW(formats::read_vdb(in, f.path()));
+    ++passed;
+  }
+  for (const fs::directory_entry& f : fs::directory_iterator(samples / "failed")) {
+    INFO(f.path());
+    std::ifstream in(f.path(), std::ios::binary);
+    const std::string rule = f.path().filename().string().substr(0, f.path().filename().string().find('-')) + ":";
+    try {
+      formats::read_vdb(in, "sample.vdb");
+      FAIL("accepted");
+    } catch (const Error& e) {
+      CHECK(std::string(e.what()).find("sample.vdb: " + rule) == 0);
+    }
+    ++failed;
+  }
+  CHECK(passed >= 2);
+  CHECK(failed >= 17);
 }
