@@ -57,13 +57,13 @@ Array label_array(const char* name, const TetMesh& m, const std::vector<int32_t>
 template <class Index>
 std::vector<Array> cell_arrays(const TetMesh& m, const char* type) {
   const size_t tets = m.tet.size(), tris = m.tri.size();
-  const auto connectivity = [&m, tets, tris](std::ostream& out) {
+  const auto connectivity = [&m](std::ostream& out) {
     if constexpr (sizeof(Index) == sizeof(int32_t)) {
       write_vector(out, m.tet);
       write_vector(out, m.tri);
     } else {
-      write_values<Index>(out, 4 * tets, [&](size_t i) { return m.tet[i / 4][i % 4]; });
-      write_values<Index>(out, 3 * tris, [&](size_t i) { return m.tri[i / 3][i % 3]; });
+      write_values<Index>(out, 4 * m.tet.size(), [&](size_t i) { return m.tet[i / 4][i % 4]; });
+      write_values<Index>(out, 3 * m.tri.size(), [&](size_t i) { return m.tri[i / 3][i % 3]; });
     }
   };
   const auto offsets = [tets, tris](std::ostream& out) {
