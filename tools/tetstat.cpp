@@ -2,6 +2,7 @@
 #include "formats/tetstat/tetstat.hpp"
 #include "cli/file.hpp"
 #include "cli/run.hpp"
+#include <optional>
 #include <ostream>
 
 using namespace molmesh;
@@ -10,21 +11,24 @@ namespace {
 
 struct Options : cli::Common {
   bool json = false;
+  std::string compare;
   double min_dihedral = 0, max_dihedral = 180; // degrees
 };
 
 void describe(CLI::App& app, Options& o) {
   app.add_flag("--json", o.json, "one JSON object instead of text (formats/tetstat/TETSTATv1.md)");
+  app.add_option("--compare", o.compare, "a mesh to compare with: --compare BEFORE AFTER; the status is AFTER's")
+      ->type_name("FILE");
   app.add_option("--min-dihedral", o.min_dihedral, "quality asked for, degrees: status 5 when an angle is smaller")
       ->check(CLI::Range(0., 70.5));
   app.add_option("--max-dihedral", o.max_dihedral, "quality asked for, degrees: status 5 when an angle is larger")
       ->check(CLI::Range(70.6, 180.));
 }
 
-Status run_tool(const Options& o, cli::Run& run) {
+formats::MeshReport report(const std::string& path, const Options& o, cli::Run& run) {
   const int threads = o.resolved_threads();
   run.phase("read");
-  cli::InputFile input(o.input);
+  cli::InputFile input(path);
   formats::VtuNotes notes;
   const TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes);
   if (notes.dropped_cells > 0)
@@ -35,21 +39,31 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.phase("validity");
   Validity validity = check_validity(mesh, threads);
   run.phase("quality");
-  const formats::MeshReport report = formats::report_mesh(mesh, input.name(), notes, std::move(validity),
-                                                          {o.min_dihedral, o.max_dihedral}, threads);
+  return formats::report_mesh(mesh, input.name(), notes, std::move(validity), {o.min_dihedral, o.max_dihedral},
+                              threads);
+}
+
+Status run_tool(const Options& o, cli::Run& run) {
+  if (o.compare == "-" && o.input == "-")
+    fail(Status::usage, "--compare: standard input can be one of the two meshes, not both");
+  std::optional<formats::MeshReport> before;
+  if (!o.compare.empty())
+    before = report(o.compare, o, run);
+  const formats::MeshReport mesh = report(o.input, o, run);
   run.phase("write");
   cli::OutputFile output(o.output);
-  if (o.json)
-    output.stream() << formats::tetstat_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-                    << '\n';
-  else
-    output.stream() << formats::tetstat_text(report);
+  if (o.json) {
+    const nlohmann::ordered_json j = before ? formats::compare_json(*before, mesh) : formats::tetstat_json(mesh);
+    output.stream() << j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  } else {
+    output.stream() << (before ? formats::compare_text(*before, mesh) : formats::tetstat_text(mesh));
+  }
   output.commit();
-  run.counts["points"] = report.points;
-  run.counts["tets"] = report.tets;
-  run.counts["triangles"] = report.triangles;
-  run.counts["faults"] = report.validity.faults.size();
-  return report.validity.valid() && report.good() ? Status::good : Status::below_quality;
+  run.counts["points"] = mesh.points;
+  run.counts["tets"] = mesh.tets;
+  run.counts["triangles"] = mesh.triangles;
+  run.counts["faults"] = mesh.validity.faults.size();
+  return mesh.validity.valid() && mesh.good() ? Status::good : Status::below_quality;
 }
 
 } // namespace

@@ -29,4 +29,8 @@ MeshReport report_mesh(const TetMesh& m, const std::string& file, const VtuNotes
 nlohmann::ordered_json tetstat_json(const MeshReport& r);
 std::string tetstat_text(const MeshReport& r);
 
+/// Two meshes side by side, `a` before and `b` after.
+nlohmann::ordered_json compare_json(const MeshReport& a, const MeshReport& b);
+std::string compare_text(const MeshReport& a, const MeshReport& b);
+
 } // namespace molmesh::formats

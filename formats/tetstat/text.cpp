@@ -1,47 +1,11 @@
 // text.cpp — the report on one screen.
+#include "formats/tetstat/layout.hpp"
 #include "formats/tetstat/tetstat.hpp"
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
 namespace molmesh::formats {
 namespace {
-
-[[gnu::format(printf, 1, 2)]] std::string print(const char* format, ...) {
-  char buffer[512];
-  va_list args;
-  va_start(args, format);
-  std::vsnprintf(buffer, sizeof buffer, format, args);
-  va_end(args);
-  return buffer;
-}
-
-/// 1234567 → 1,234,567
-std::string grouped(int64_t n) {
-  std::string s = std::to_string(n);
-  for (auto at = static_cast<std::ptrdiff_t>(s.size()) - 3; at > (n < 0 ? 1 : 0); at -= 3)
-    s.insert(static_cast<size_t>(at), 1, ',');
-  return s;
-}
-
-/// Numbers of Å², Å³ with two decimals.
-std::string amount(double v) {
-  if (!(std::fabs(v) < 1e15))
-    return print("%.6g", v);
-  const int64_t hundredths = std::llround(std::fabs(v) * 100);
-  std::string s = v < 0 && hundredths > 0 ? "-" : "";
-  s += grouped(hundredths / 100);
-  return s += print(".%02d", static_cast<int>(hundredths % 100));
-}
-
-/// Text of a file on one line of a terminal.
-std::string plain(std::string s) {
-  for (char& c : s)
-    if (static_cast<unsigned char>(c) < 32 || c == 127)
-      c = '?';
-  return s;
-}
 
 const char* region_name(int32_t region) {
   return region == Region::molecule  ? "molecule"
@@ -55,16 +19,10 @@ const char* label_name(int32_t label) {
   return label >= 1 && label <= 7 ? names[label] : "";
 }
 
-std::string measure(const char* name, const Distribution& d, const char* number) {
+std::string measure(const char* name, const Distribution& d, int digits) {
   std::string s = print("  %-18s", name);
-  for (double v : {d.min, d.mean, d.max}) {
-    char value[32];
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wformat-nonliteral"
-    std::snprintf(value, sizeof value, number, v);
-#pragma GCC diagnostic pop
-    s += print("%12s", value);
-  }
+  for (double v : {d.min, d.mean, d.max})
+    s += print("%12.*f", digits, v);
   return s + print("   tets %lld, %lld\n", static_cast<long long>(d.min_tet), static_cast<long long>(d.max_tet));
 }
 
@@ -137,10 +95,10 @@ std::string tetstat_text(const MeshReport& r) {
   const Quality& q = r.quality->all;
   s += '\n' + regions_table(r);
   s += "\nquality                      min        mean         max   where\n";
-  s += measure("dihedral angle/°", q.dihedral, "%.2f");
-  s += measure("Joe-Liu Q (eq. 8)", q.joe_liu_q, "%.4f");
-  s += measure("Joe-Liu eta", q.eta, "%.4f");
-  s += measure("edge ratio", q.edge_ratio, "%.3f");
+  s += measure("dihedral (degrees)", q.dihedral, 2);
+  s += measure("Joe-Liu Q (eq. 8)", q.joe_liu_q, 4);
+  s += measure("Joe-Liu eta", q.eta, 4);
+  s += measure("edge ratio", q.edge_ratio, 3);
   s += "\ndihedral angles\n" + angle_histogram(q.dihedral);
   if (!r.good())
     s += print("\nBELOW THE QUALITY ASKED FOR: %s tetrahedra with angles outside %g° to %g°\n",

@@ -81,3 +81,21 @@ TEST_CASE("text is for people: grouped digits, no control characters, only rows 
   CHECK(has(text, " 40° to  50°"));
   CHECK_FALSE(has(text, "100° to 110°"));
 }
+
+TEST_CASE("two meshes side by side") {
+  const TetMesh m = block();
+  TetMesh larger = m;
+  for (Vec3d& p : larger.point)
+    p = 1.1 * p;
+  larger.tri.pop_back();
+  larger.boundary.pop_back();
+  const formats::MeshReport a = report(m), b = report(larger);
+  const std::string text = formats::compare_text(a, b);
+  CHECK(has(text, "yes"));
+  CHECK(has(text, "B: missing_triangle 1"));
+  CHECK(has(text, "+33.100 %")); // 1.1³
+  CHECK(has(text, "+21.000 %")); // 1.1²
+  const auto j = formats::compare_json(a, b);
+  CHECK(j["a"] == formats::tetstat_json(a));
+  CHECK(j["b"]["valid"] == false);
+}

@@ -1,0 +1,41 @@
+// layout.cpp — numbers and words for reports on a terminal.
+#include "formats/tetstat/layout.hpp"
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+namespace molmesh::formats {
+
+std::string print(const char* format, ...) {
+  char buffer[512];
+  va_list args;
+  va_start(args, format);
+  std::vsnprintf(buffer, sizeof buffer, format, args);
+  va_end(args);
+  return buffer;
+}
+
+std::string grouped(int64_t n) {
+  std::string s = std::to_string(n);
+  for (auto at = static_cast<std::ptrdiff_t>(s.size()) - 3; at > (n < 0 ? 1 : 0); at -= 3)
+    s.insert(static_cast<size_t>(at), 1, ',');
+  return s;
+}
+
+std::string amount(double v) {
+  if (!(std::fabs(v) < 1e15))
+    return print("%.6g", v);
+  const int64_t hundredths = std::llround(std::fabs(v) * 100);
+  std::string s = v < 0 && hundredths > 0 ? "-" : "";
+  s += grouped(hundredths / 100);
+  return s += print(".%02d", static_cast<int>(hundredths % 100));
+}
+
+std::string plain(std::string s) {
+  for (char& c : s)
+    if (static_cast<unsigned char>(c) < 32 || c == 127)
+      c = '?';
+  return s;
+}
+
+} // namespace molmesh::formats
