@@ -1,0 +1,279 @@
+// complex.cpp — vertices of the complex: grid points, dual vertices, split cells.
+#include "contour/complex.hpp"
+#include "contour/refinement.hpp"
+#include "geom/morton.hpp"
+#include "par/par.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace molmesh::contour {
+namespace {
+
+Vec3i corner_step(int c) {
+  return {c & 1, c >> 1 & 1, c >> 2};
+}
+
+size_t at(int64_t i) {
+  return static_cast<size_t>(i);
+}
+
+} // namespace
+
+SplitCell::SplitCell(const CellTopology& t) : topology(t) {
+  const auto add = [this](int face, std::initializer_list<int> corners) {
+    Patch p{face, static_cast<int>(corners.size()), {-1, -1, -1, -1}, 0};
+    std::copy(corners.begin(), corners.end(), p.corner);
+    const bool chopped = topology.chop >= 0 && face >= 0 &&
+                         std::find(corners.begin(), corners.end(), topology.chop) != corners.end();
+    p.piece = chopped ? -1 : pieces++;
+    patch.push_back(p);
+  };
+  for (int f = 0; f < 6; ++f) {
+    const int* c = face_corner[f];
+    if (t.diagonal[f] == Diagonal::none) {
+      add(f, {c[0], c[1], c[2], c[3]});
+    } else {
+      const int s = t.diagonal[f] == Diagonal::even ? 0 : 1;
+      add(f, {c[s], c[s + 1], c[(s + 2) % 4]});
+      add(f, {c[(s + 2) % 4], c[(s + 3) % 4], c[s]});
+    }
+  }
+  if (t.chop >= 0) {
+    // The three neighbours, turned so that the cut is counter-clockwise seen from the chopped corner.
+    const int k = t.chop, x = k ^ 1, y = k ^ 2, z = k ^ 4;
+    const bool even = ((k & 1) + (k >> 1 & 1) + (k >> 2)) % 2 == 0;
+    if (even)
+      add(-1, {x, z, y});
+    else
+      add(-1, {x, y, z});
+  }
+}
+
+Complex::Complex(const Lattice& l, const Octree& t, const std::vector<SurfaceCell>& c, int threads)
+    : lattice(l), tree(t), cells(c) {
+  const int32_t leaves = tree.size();
+  first_cell.assign(at(leaves), -1);
+  side.resize(at(leaves));
+  par::for_n(leaves, threads, [&](int64_t i) {
+    const uint64_t key = tree.key[at(i)], end = key + (uint64_t{1} << 3 * tree.level[at(i)]);
+    const auto first = std::lower_bound(cells.begin(), cells.end(), key,
+                                        [](const SurfaceCell& s, uint64_t k) { return s.key < k; });
+    if (first != cells.end() && first->key < end) {
+      first_cell[at(i)] = static_cast<int32_t>(first - cells.begin());
+      side[at(i)] = Side::crossed;
+    } else {
+      side[at(i)] = lattice.inside(tree.corner(static_cast<int32_t>(i))) ? Side::inside : Side::outside;
+    }
+  });
+  number_grid_vertices(threads);
+  place_duals(threads);
+}
+
+CellTopology Complex::topology(int32_t leaf) const {
+  const SurfaceCell& cell = cells[at(first_cell[at(leaf)])];
+  double v[8];
+  for (int c = 0; c < 8; ++c)
+    v[c] = double(cell.value[c]) - double(lattice.isovalue);
+  return cell_topology(v);
+}
+
+void Complex::number_grid_vertices(int threads) {
+  // A grid point belongs to the last of the eight octants around it whose leaf has the point as a corner.
+  const auto owner = [&](int32_t leaf, int c, int& owner_corner) {
+    const Vec3i p = tree.corner(leaf) + tree.extent(leaf) * corner_step(c);
+    for (int octant = 7; octant >= 0; --octant) {
+      const int32_t other = octant == (7 ^ c) ? leaf : tree.find(p - corner_step(7 ^ octant));
+      if (other < 0)
+        continue;
+      const Vec3i q = p - tree.corner(other);
+      const int32_t s = tree.extent(other);
+      if (q.x % s == 0 && q.y % s == 0 && q.z % s == 0) {
+        owner_corner = (q.x ? 1 : 0) | (q.y ? 2 : 0) | (q.z ? 4 : 0);
+        return other;
+      }
+    }
+    return leaf;
+  };
+  const int64_t leaves = tree.size();
+  grid_vertex.assign(at(8 * leaves), -1);
+  std::vector<int32_t> count(at(leaves));
+  std::vector<uint8_t> owned(at(leaves));
+  par::for_n(leaves, threads, [&](int64_t i) {
+    for (int c = 0; c < 8; ++c) {
+      int corner = c;
+      if (owner(static_cast<int32_t>(i), c, corner) != i)
+        continue;
+      owned[at(i)] = static_cast<uint8_t>(owned[at(i)] | 1 << c);
+      ++count[at(i)];
+    }
+  });
+  grid_vertices = par::exclusive_scan(count);
+  dual0 = grid_vertices;
+  point.resize(at(grid_vertices));
+  position.resize(at(grid_vertices + leaves));
+  value.assign(at(grid_vertices + leaves), lattice.isovalue);
+  par::for_n(leaves, threads, [&](int64_t i) {
+    int32_t id = count[at(i)];
+    for (int c = 0; c < 8; ++c) {
+      if (!(owned[at(i)] >> c & 1))
+        continue;
+      const Vec3i p = tree.corner(static_cast<int32_t>(i)) + tree.extent(static_cast<int32_t>(i)) * corner_step(c);
+      grid_vertex[at(8 * i + c)] = id;
+      point[at(id)] = p;
+      position[at(id)] = lattice.position(p);
+      value[at(id)] = lattice.value(p);
+      ++id;
+    }
+  });
+  std::vector<int32_t> resolved = grid_vertex;
+  par::for_n(leaves, threads, [&](int64_t i) {
+    for (int c = 0; c < 8; ++c) {
+      if (owned[at(i)] >> c & 1)
+        continue;
+      int corner = c;
+      const int32_t other = owner(static_cast<int32_t>(i), c, corner);
+      resolved[at(8 * i + c)] = grid_vertex[at(int64_t{8} * other + corner)];
+    }
+  });
+  grid_vertex.swap(resolved);
+}
+
+void Complex::place_duals(int threads) {
+  const int64_t leaves = tree.size();
+  split.assign(at(leaves), -1);
+  std::vector<int32_t> extra(at(leaves), 0);
+  par::for_n(leaves, threads, [&](int64_t i) {
+    const auto leaf = static_cast<int32_t>(i);
+    const Vec3i corner = tree.corner(leaf);
+    const int32_t extent = tree.extent(leaf);
+    const Vec3d low = lattice.position(corner), high = lattice.position(corner + Vec3i{extent, extent, extent});
+    Vec3d& dual_position = position[at(dual(leaf))];
+    const auto fine_centre = [&](const SurfaceCell& cell) {
+      const Vec3i p = morton_point(cell.key);
+      const Vec3d a = lattice.position(p), b = lattice.position(p + Vec3i{1, 1, 1}),
+                  t = mass_centre(cell.value, lattice.isovalue);
+      return Vec3d{a.x + t.x * (b.x - a.x), a.y + t.y * (b.y - a.y), a.z + t.z * (b.z - a.z)};
+    };
+    if (side[at(i)] != Side::crossed) {
+      // The lattice's own middle plane: seen from a smaller neighbour it is the rim of that neighbour's face.
+      const int32_t half = extent / 2;
+      dual_position = extent > 1 ? lattice.position(corner + Vec3i{half, half, half}) : 0.5 * (low + high);
+      return;
+    }
+    if (extent == 1) {
+      dual_position = fine_centre(cells[at(first_cell[at(i)])]);
+      const CellTopology t = topology(leaf);
+      if (t.split())
+        extra[at(i)] = 1 + SplitCell(t).pieces + (t.chop >= 0);
+      return;
+    }
+    // Mean of the fine mass centres, moved along the gradient of the nearest onto its tangent plane: the mean of a
+    // curved sheet lies on its hollow side.
+    const uint64_t end = tree.key[at(i)] + (uint64_t{1} << 3 * tree.level[at(i)]);
+    const size_t begin = at(first_cell[at(i)]);
+    size_t stop = begin;
+    Vec3d mean;
+    for (; stop < cells.size() && cells[stop].key < end; ++stop)
+      mean += fine_centre(cells[stop]);
+    mean = mean / double(stop - begin);
+    size_t nearest = begin;
+    for (size_t c = begin; c < stop; ++c)
+      if (norm2(fine_centre(cells[c]) - mean) < norm2(fine_centre(cells[nearest]) - mean))
+        nearest = c;
+    const Vec3d normal = surface_sample(cells[nearest], lattice.isovalue).normal;
+    const Vec3d moved = mean + dot(fine_centre(cells[nearest]) - mean, normal) * normal;
+    bool within = true;
+    for (int a = 0; a < 3; ++a)
+      within =
+          within && moved[a] > low[a] + 0.05 * (high[a] - low[a]) && moved[a] < high[a] - 0.05 * (high[a] - low[a]);
+    dual_position = within ? moved : mean;
+  });
+  const int32_t total = par::exclusive_scan(extra);
+  const auto first = static_cast<int32_t>(position.size());
+  position.resize(at(first + total));
+  value.resize(at(first + total), lattice.isovalue);
+  for (int64_t i = 0; i < leaves; ++i)
+    if ((i + 1 < leaves ? extra[at(i + 1)] : total) > extra[at(i)])
+      split[at(i)] = first + extra[at(i)];
+  par::for_n(leaves, threads, [&](int64_t i) {
+    if (split[at(i)] >= 0)
+      place_split(static_cast<int32_t>(i));
+  });
+}
+
+void Complex::place_split(int32_t leaf) {
+  const SplitCell s(topology(leaf));
+  const int32_t centre = split[at(leaf)];
+  const auto vertex = [&](int c) { return grid_vertex[at(int64_t{8} * leaf + c)]; };
+  const float* v = cells[at(first_cell[at(leaf)])].value;
+  Vec3d middle;
+  double mean = 0, spread = 0;
+  for (int c = 0; c < 8; ++c) {
+    middle += 0.125 * position[at(vertex(c))];
+    mean += 0.125 * v[c];
+    spread += 0.125 * std::fabs(double(v[c]) - lattice.isovalue);
+  }
+  position[at(centre)] = middle;
+  if ((mean > lattice.isovalue) != s.topology.centre_inside)
+    mean = lattice.isovalue + (s.topology.centre_inside ? spread : -spread);
+  value[at(centre)] = static_cast<float>(mean);
+  if ((value[at(centre)] > lattice.isovalue) != s.topology.centre_inside) // rounding to float
+    value[at(centre)] = std::nextafter(lattice.isovalue, s.topology.centre_inside ? 1e30f : -1e30f);
+
+  const auto place = [&](int32_t dual_vertex, const int32_t* corner, int n, int32_t apex) {
+    Vec3d crossed, all = position[at(apex)];
+    int crossings = 0;
+    const auto edge = [&](int32_t a, int32_t b) {
+      if (inside(a) == inside(b))
+        return;
+      crossed += crossing(a, b);
+      ++crossings;
+    };
+    for (int i = 0; i < n; ++i) {
+      all += position[at(corner[i])];
+      edge(corner[i], corner[(i + 1) % n]);
+      edge(corner[i], apex);
+    }
+    position[at(dual_vertex)] = crossings ? crossed / double(crossings) : all / double(n + 1);
+  };
+  for (const Patch& p : s.patch) {
+    if (p.piece < 0)
+      continue;
+    int32_t corner[4];
+    for (int i = 0; i < p.n; ++i)
+      corner[i] = vertex(p.corner[i]);
+    place(piece_dual(leaf, s, p), corner, p.n, centre);
+    if (p.face < 0)
+      place(centre + 1 + s.pieces, corner, p.n, vertex(s.topology.chop));
+  }
+}
+
+int32_t Complex::piece_dual(int32_t leaf, const SplitCell& s, int f, int off) const {
+  for (const Patch& p : s.patch)
+    if (p.face == f && (off < 0 || p.corner[1] == off))
+      return piece_dual(leaf, s, p);
+  return -1; // every face has its patches
+}
+
+Vec3d Complex::crossing(int32_t a, int32_t b) const {
+  Vec3d pa = position[at(a)], pb = position[at(b)];
+  float va = value[at(a)], vb = value[at(b)];
+  if (a < grid_vertices && b < grid_vertices) {
+    Vec3i qa = point[at(a)], qb = point[at(b)];
+    const auto length = [&] {
+      return std::max({std::abs(qa.x - qb.x), std::abs(qa.y - qb.y), std::abs(qa.z - qb.z)});
+    };
+    const bool in = inside(a);
+    while (length() > 1) { // one sign change along the edge: halve
+      const Vec3i middle{(qa.x + qb.x) / 2, (qa.y + qb.y) / 2, (qa.z + qb.z) / 2};
+      const float v = lattice.value(middle);
+      ((v > lattice.isovalue) == in ? qa : qb) = middle;
+      ((v > lattice.isovalue) == in ? va : vb) = v;
+    }
+    pa = lattice.position(qa);
+    pb = lattice.position(qb);
+  }
+  return pa + crossing_share(va, vb, lattice.isovalue) * (pb - pa);
+}
+
+} // namespace molmesh::contour

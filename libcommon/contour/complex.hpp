@@ -1,0 +1,73 @@
+// complex.hpp — the octree's leaves as a face-to-face complex of convex cells, with a dual vertex in each.
+// Section 4.1 of Liao et al. 2013. Every mesh is the dual of this complex; see elements.hpp.
+#pragma once
+#include "contour/cube.hpp"
+#include "contour/lattice.hpp"
+#include "contour/octree.hpp"
+#include "contour/surface_cells.hpp"
+#include <cstdint>
+#include <vector>
+
+namespace molmesh::contour {
+
+enum class Side : uint8_t { outside, inside, crossed };
+
+/// A boundary polygon of a split cell, counter-clockwise seen from outside the piece of the cell that its apex
+/// closes.
+struct Patch {
+  int face;      ///< cell face it lies on, or -1 for the cut below a chopped corner
+  int n;         ///< 3 or 4 corners
+  int corner[4]; ///< cell corners
+  int piece;     ///< piece of the cell behind it; -1: the chopped corner
+};
+
+/// A fine cell with more than one sheet: one piece (pyramid or tetrahedron) per patch, with the cell's centre as
+/// apex; a chopped corner is one more piece.
+struct SplitCell {
+  CellTopology topology;
+  std::vector<Patch> patch;
+  int pieces = 0; ///< without the chopped corner
+  explicit SplitCell(const CellTopology& t);
+};
+
+/// Everything known per leaf and per vertex of the complex. Vertex ids: grid points first, then one dual vertex per
+/// leaf (dual0 + leaf), then for each split cell its centre and the dual vertices of its pieces.
+struct Complex {
+  Complex(const Lattice& lattice, const Octree& tree, const std::vector<SurfaceCell>& cells, int threads);
+
+  const Lattice& lattice;
+  const Octree& tree;
+  const std::vector<SurfaceCell>& cells;
+
+  std::vector<Side> side;           ///< [leaves]
+  std::vector<int32_t> grid_vertex; ///< [8·leaves] vertex id of each corner
+  std::vector<int32_t> first_cell;  ///< [leaves] first surface cell within, -1 none
+  std::vector<int32_t> split;       ///< [leaves] first vertex id of a split cell (its centre), -1: not split
+  int32_t grid_vertices = 0, dual0 = 0;
+
+  std::vector<Vec3d> position; ///< [vertices] Å
+  std::vector<float> value;    ///< [vertices] G at grid points and split centres; isovalue elsewhere
+  std::vector<Vec3i> point;    ///< [grid vertices] lattice point
+
+  bool inside(int32_t vertex) const { return value[static_cast<size_t>(vertex)] > lattice.isovalue; }
+  bool is_split(int32_t leaf) const { return split[static_cast<size_t>(leaf)] >= 0; }
+  int32_t dual(int32_t leaf) const { return dual0 + leaf; }
+  /// Topology of a fine surface cell's leaf.
+  CellTopology topology(int32_t leaf) const;
+  /// Dual vertex of the piece of a split leaf behind face f; off: the triangle's corner off the diagonal, -1 for a
+  /// square.
+  int32_t piece_dual(int32_t leaf, const SplitCell& s, int f, int off) const;
+  int32_t piece_dual(int32_t leaf, const SplitCell& s, const Patch& p) const {
+    return split[static_cast<size_t>(leaf)] + 1 + (p.piece < 0 ? s.pieces : p.piece);
+  }
+  /// Where the surface crosses the edge between two vertices on opposite sides, Å. Coarse edges are searched on the
+  /// fine grid.
+  Vec3d crossing(int32_t a, int32_t b) const;
+
+private:
+  void number_grid_vertices(int threads);
+  void place_duals(int threads);
+  void place_split(int32_t leaf);
+};
+
+} // namespace molmesh::contour

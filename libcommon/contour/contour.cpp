@@ -1,0 +1,130 @@
+// contour.cpp — the stages in order, then the mesh put together region by region.
+#include "contour/contour.hpp"
+#include "contour/complex.hpp"
+#include "contour/components.hpp"
+#include "contour/elements.hpp"
+#include "contour/octree.hpp"
+#include "contour/refinement.hpp"
+#include "contour/surface_cells.hpp"
+#include "error.hpp"
+#include "par/par.hpp"
+
+namespace molmesh::contour {
+namespace {
+
+size_t at(int64_t i) {
+  return static_cast<size_t>(i);
+}
+
+/// Elements of the wanted regions, ordered by their first vertex of the complex, that is along the octree's curve;
+/// points in the order in which these elements first use them.
+TetMesh assemble(const Elements& elements, const Components& parts, const Options& options) {
+  const auto region = [&](int32_t vertex) { return parts.component[at(parts.of_vertex[at(vertex)])].region; };
+  const auto wanted = [&](int32_t r) {
+    return options.meshed == Options::both || (options.meshed == Options::interior ? r == molecule : r == outside);
+  };
+  std::vector<int64_t> start(parts.of_vertex.size() + 1, 0);
+  for (const Tet& t : elements.tet)
+    if (wanted(region(t[0])))
+      ++start[at(t[0])];
+  const int64_t tets = par::exclusive_scan(start);
+  TetMesh mesh;
+  mesh.tet.resize(at(tets));
+  mesh.region.resize(at(tets));
+  for (const Tet& t : elements.tet) {
+    const int32_t r = region(t[0]);
+    if (!wanted(r))
+      continue;
+    const size_t slot = at(start[at(t[0])]++);
+    mesh.tet[slot] = t;
+    mesh.region[slot] = r;
+  }
+  std::vector<int32_t> number(elements.position.size(), -1);
+  for (Tet& t : mesh.tet)
+    for (int32_t& v : t) {
+      int32_t& n = number[at(v)];
+      if (n < 0) {
+        n = static_cast<int32_t>(mesh.point.size());
+        mesh.point.push_back(elements.position[at(v)]);
+      }
+      v = n;
+    }
+  for (size_t i = 0; i < elements.tri.size(); ++i) {
+    const auto [behind, front] = elements.tri_sides[i];
+    const int32_t a = region(behind), b = region(front);
+    const bool kept = elements.boundary[i] == surface ? a != b && (wanted(a) || wanted(b)) : wanted(a);
+    if (!kept)
+      continue;
+    const Tri& t = elements.tri[i];
+    mesh.tri.push_back({number[at(t[0])], number[at(t[1])], number[at(t[2])]});
+    mesh.boundary.push_back(elements.boundary[i]);
+  }
+  return mesh;
+}
+
+void refuse_surface_at_wall(const Complex& complex) {
+  if (complex.lattice.cut_allowed())
+    return;
+  for (int32_t v = 0; v < complex.grid_vertices; ++v) {
+    if (!complex.inside(v))
+      continue;
+    const Vec3i p = complex.point[at(v)], cells = complex.lattice.cells;
+    for (int a = 0; a < 3; ++a)
+      if (p[a] == 0 || p[a] == cells[a])
+        fail(Status::failed, "the surface meets the wall of the box: give hier2density a larger --margin, or ask "
+                             "for the cut with --box "
+                             "x0,y0,z0,x1,y1,z1");
+  }
+}
+
+} // namespace
+
+TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
+                const std::function<void(const std::string&)>& on_phase) {
+  const int threads = options.threads;
+  const bool with_outside = options.meshed != Options::interior;
+  on_phase("surface cells");
+  const Lattice lattice(grid, options.box, with_outside);
+  const std::vector<SurfaceCell> cells = surface_cells(lattice, threads);
+  on_phase("octree");
+  RefineOptions refine_options;
+  refine_options.adapt = options.adapt;
+  refine_options.inside = options.meshed != Options::exterior;
+  refine_options.outside = with_outside;
+  const Octree tree(lattice.cells, lattice.top_level, refine(lattice, cells, refine_options, threads), threads);
+  on_phase("dual vertices");
+  const Complex complex(lattice, tree, cells, threads);
+  refuse_surface_at_wall(complex);
+  on_phase("elements");
+  const Elements elements = make_elements(complex, refine_options.inside || options.drop_below > 0,
+                                          with_outside || options.fill_cavities, threads);
+  on_phase("regions");
+  RegionOptions region_options;
+  region_options.fill_cavities = options.fill_cavities;
+  region_options.drop_below = options.drop_below;
+  const Components parts = find_components(complex, elements, region_options);
+  on_phase("assembly");
+  TetMesh mesh = assemble(elements, parts, options);
+  mesh.isovalue = grid.info.isovalue;
+  mesh.source = grid.info.source;
+
+  summary.leaves = tree.size();
+  summary.surface_cells = static_cast<int64_t>(cells.size());
+  for (int32_t leaf = 0; leaf < tree.size(); ++leaf)
+    summary.split_cells += complex.is_split(leaf);
+  summary.face_points = elements.face_points;
+  summary.edge_points = elements.edge_points;
+  for (const Component& c : parts.component) {
+    if (c.inside && c.region == molecule)
+      summary.molecule_volumes.push_back(c.volume);
+    if (c.inside && c.region != molecule)
+      ++summary.dropped_parts;
+    if (!c.inside && c.region == cavity)
+      summary.cavity_volumes.push_back(c.volume);
+    if (!c.inside && c.region == molecule)
+      ++summary.filled_cavities;
+  }
+  return mesh;
+}
+
+} // namespace molmesh::contour

@@ -1,0 +1,45 @@
+// cube.hpp — numbering of a cell's corners, edges and faces; its topology under the trilinear function.
+// Section 4.1 of Liao et al. 2013 (ambiguous cells, their reference 51).
+#pragma once
+#include <array>
+#include <cstdint>
+
+namespace molmesh::contour {
+
+/// Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2 & 1). Faces: 0..5 = -x, +x, -y, +y, -z, +z.
+/// Corners of each face, counter-clockwise seen from outside the cell.
+inline constexpr int face_corner[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                          {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+
+/// No diagonal, or the one from face_corner[f][0] to [2] (even), or from [1] to [3] (odd).
+enum class Diagonal : uint8_t { none, even, odd };
+
+/// Corners at either end of face f's diagonal d: 0 and 2, or 1 and 3, in face order.
+constexpr std::array<int, 2> diagonal_corners(int f, Diagonal d) {
+  const int first = d == Diagonal::even ? 0 : 1;
+  return {face_corner[f][first], face_corner[f][first + 2]};
+}
+
+/// value[8]: corner values minus the isovalue; inside where > 0, zero counts as outside.
+struct CellTopology {
+  uint8_t mask = 0;                 ///< bit c: corner c is inside
+  std::array<Diagonal, 6> diagonal; ///< joins the pair that the bilinear function joins on an ambiguous face
+  /// The surface meets the cell's boundary in `loops` closed curves; 1: a disc, one dual vertex will do.
+  int loops = 0;
+  /// With two loops or more the cell is split around its centre, which takes the side that joins what the trilinear
+  /// function joins. With `chop` ≥ 0 that corner (an isolated one) is cut off first.
+  bool centre_inside = false;
+  int chop = -1;
+  bool split() const { return loops > 1; }
+};
+
+/// Which diagonal a face with these values (in face order, minus the isovalue) needs. The same for both its cells.
+Diagonal face_diagonal(double a, double b, double c, double d);
+
+CellTopology cell_topology(const double value[8]);
+
+/// For each corner a label: two inside (outside) corners carry the same label exactly when the inside (outside) of
+/// the trilinear function joins them within the cell. Labels are corner numbers.
+std::array<int, 8> trilinear_components(const double value[8]);
+
+} // namespace molmesh::contour

@@ -1,0 +1,109 @@
+// elements.cpp — faces, then rings, joined in the order of the octree's curve.
+#include "contour/elements.hpp"
+#include "contour/detail/face_pass.hpp"
+#include "contour/detail/ring_pass.hpp"
+#include "par/par.hpp"
+
+namespace molmesh::contour {
+namespace {
+
+using detail::Batch;
+using detail::Link;
+
+constexpr int64_t batch_size = 2048; // leaves or links; fixed, so that the result does not know the threads
+
+size_t at(int64_t i) {
+  return static_cast<size_t>(i);
+}
+
+/// Appends the batches in order and gives their new points the numbers from out.position.size() on.
+void join(std::vector<Batch>& batches, Elements& out, std::vector<Link>& links, std::vector<int32_t>& wall,
+          int threads) {
+  struct Start {
+    size_t tet, tri, link, point;
+  };
+  std::vector<Start> start;
+  Start s{out.tet.size(), out.tri.size(), links.size(), out.position.size()};
+  for (const Batch& b : batches) {
+    start.push_back(s);
+    s.tet += b.tet.size();
+    s.tri += b.tri.size();
+    s.link += b.link.size();
+    s.point += b.point.size();
+  }
+  const size_t own = out.position.size() - wall.size();
+  out.tet.resize(s.tet);
+  out.tri.resize(s.tri);
+  out.tri_sides.resize(s.tri);
+  out.boundary.resize(s.tri);
+  links.resize(s.link);
+  out.position.resize(s.point);
+  wall.resize(s.point - own);
+  par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t i) {
+    Batch& b = batches[at(i)];
+    const Start& to = start[at(i)];
+    const auto number = [&](int32_t v) {
+      return v >= 0 || v == detail::no_vertex ? v : static_cast<int32_t>(to.point) - 1 - v;
+    };
+    for (size_t k = 0; k < b.tet.size(); ++k)
+      for (size_t c = 0; c < 4; ++c)
+        out.tet[to.tet + k][c] = number(b.tet[k][c]);
+    for (size_t k = 0; k < b.tri.size(); ++k) {
+      for (size_t c = 0; c < 3; ++c)
+        out.tri[to.tri + k][c] = number(b.tri[k][c]);
+      out.tri_sides[to.tri + k] = b.tri_sides[k];
+      out.boundary[to.tri + k] = b.boundary[k];
+    }
+    for (size_t k = 0; k < b.link.size(); ++k) {
+      Link l = b.link[k];
+      links[to.link + k] = {l.inside, l.outside, number(l.from), number(l.via), number(l.to)};
+    }
+    for (size_t k = 0; k < b.point.size(); ++k) {
+      out.position[to.point + k] = b.point[k];
+      wall[to.point + k - own] = b.point_wall[k];
+    }
+    b = Batch{};
+  });
+}
+
+} // namespace
+
+Elements make_elements(const Complex& complex, bool inside, bool outside, int threads) {
+  const bool wanted[2] = {outside, inside};
+  Elements out;
+  out.position = complex.position;
+  std::vector<Link> links;
+  std::vector<int32_t> wall;
+  {
+    const int64_t leaves = complex.tree.size();
+    std::vector<Batch> batches(at((leaves + batch_size - 1) / batch_size));
+    par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t b) {
+      for (int64_t i = b * batch_size; i < std::min(leaves, (b + 1) * batch_size); ++i)
+        detail::make_faces(complex, static_cast<int32_t>(i), wanted, batches[at(b)]);
+    });
+    join(batches, out, links, wall, threads);
+  }
+  out.face_points = static_cast<int64_t>(wall.size());
+  par::sort(links, threads);
+  std::vector<int64_t> first; // link of each sign-change edge
+  for (size_t i = 0; i < links.size(); ++i)
+    if (i == 0 || !links[i].same_edge(links[i - 1]))
+      first.push_back(static_cast<int64_t>(i));
+  const auto edges = static_cast<int64_t>(first.size());
+  first.push_back(static_cast<int64_t>(links.size()));
+  {
+    std::vector<Batch> batches(at((edges + batch_size - 1) / batch_size));
+    const detail::RingVertices vertices{complex, out.position, wall};
+    par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t b) {
+      for (int64_t e = b * batch_size; e < std::min(edges, (b + 1) * batch_size); ++e)
+        detail::make_ring(vertices, &links[at(first[at(e)])], links.data() + first[at(e + 1)], wanted,
+                          batches[at(b)]);
+    });
+    std::vector<Link> none;
+    join(batches, out, none, wall, threads);
+  }
+  out.edge_points = static_cast<int64_t>(wall.size()) - out.face_points;
+  return out;
+}
+
+} // namespace molmesh::contour

@@ -1,0 +1,165 @@
+// lattice.cpp — where the walls go, and what lies between them.
+#include "contour/lattice.hpp"
+#include "error.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace molmesh::contour {
+namespace {
+
+constexpr int32_t most_cells = 1 << 20; // a Morton key holds 21 bits an axis
+
+/// Largest level whose cells are no longer than half of `extent` cells; at most 12.
+int level_for(double extent) {
+  int level = 0;
+  while (level < 12 && (4 << level) <= extent)
+    ++level;
+  return level;
+}
+
+} // namespace
+
+bool surface_bounds(const BlockGrid& grid, Vec3i& lower, Vec3i& upper) {
+  const float iso = static_cast<float>(grid.info.isovalue);
+  bool any = false;
+  for (size_t b = 0; b < grid.corner.size(); ++b)
+    for (int s = 0; s < 512; ++s) {
+      if (!(grid.active[8 * b + static_cast<size_t>(s >> 6)] >> (s & 63) & 1) ||
+          !(grid.value[512 * b + static_cast<size_t>(s)] > iso))
+        continue;
+      const Vec3i p = grid.corner[b] + Vec3i{s >> 6, s >> 3 & 7, s & 7};
+      if (!any)
+        lower = upper = p;
+      any = true;
+      for (int a = 0; a < 3; ++a) {
+        lower[a] = std::min(lower[a], p[a]);
+        upper[a] = std::max(upper[a], p[a]);
+      }
+    }
+  // Inside points are at least one step within the surface's bounding box.
+  lower = lower - Vec3i{1, 1, 1};
+  upper = upper + Vec3i{1, 1, 1};
+  return any;
+}
+
+Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls)
+    : isovalue(static_cast<float>(grid.info.isovalue)), grid_(grid), index_(grid) {
+  Vec3i first, last;
+  if (!surface_bounds(grid, first, last))
+    fail(Status::failed,
+         "the density has no surface at isovalue " + std::to_string(grid.info.isovalue) + ": nothing to mesh");
+  const GridFrame& frame = grid.frame;
+  const Vec3i grid_last = frame.lower + frame.points - Vec3i{1, 1, 1};
+  const bool to_grid = request.kind == BoxRequest::tight || (request.kind == BoxRequest::automatic && !walls);
+  cut_allowed_ = request.kind == BoxRequest::corners;
+
+  Vec3d lower = frame.position(frame.lower), upper = frame.position(grid_last);
+  if (request.kind == BoxRequest::corners) {
+    lower = request.lower;
+    upper = request.upper;
+  } else if (!to_grid) {
+    const double scale = request.kind == BoxRequest::factor ? request.scale : 2;
+    const Vec3d centre = 0.5 * (frame.position(first) + frame.position(last));
+    const Vec3d half = 0.5 * scale * (frame.position(last) - frame.position(first));
+    for (int a = 0; a < 3; ++a) { // never through the grid unasked
+      lower[a] = std::min(lower[a], centre[a] - half[a]);
+      upper[a] = std::max(upper[a], centre[a] + half[a]);
+    }
+  }
+  const double h = frame.spacing;
+  double least = 1e300;
+  for (int a = 0; a < 3; ++a) {
+    const double extent = (upper[a] - lower[a]) / h;
+    if (!(extent >= 4))
+      fail(Status::usage,
+           "--box: found an extent of " + std::to_string(extent * h) + " Å, expected at least four grid spacings");
+    if (!(extent < most_cells / 2))
+      fail(Status::usage,
+           "--box: found " + std::to_string(extent) + " grid spacings along an axis, expected fewer than 524288");
+    least = std::min(least, extent);
+  }
+  top_level = level_for(least);
+  for (int a = 0; a < 3; ++a)
+    plan_axis(a, lower[a], upper[a], frame.lower[a], grid_last[a], request.kind != BoxRequest::automatic);
+}
+
+void Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_t last, bool exact) {
+  const double h = grid_.frame.spacing, origin = grid_.frame.origin[a];
+  const double low = (lower - origin) / h, high = (upper - origin) / h; // in grid indices
+  const int32_t unit = 1 << top_level;
+  // A wall within the grid takes the place of the nearest grid plane.
+  auto begin = static_cast<int32_t>(exact ? std::lround(low) : std::lround(std::floor(low)));
+  auto end = static_cast<int32_t>(exact ? std::lround(high) : std::lround(std::ceil(high)));
+  for (int side = 0; side < 2; ++side) {
+    const double wall = side ? high : low;
+    Cut& cut = cut_[static_cast<size_t>(a)][static_cast<size_t>(side)];
+    cut.cuts = cut_allowed_ && wall > first && wall < last;
+    cut.plane = static_cast<int32_t>(std::floor(wall));
+    cut.share = wall - cut.plane;
+  }
+  // A whole number of the largest cells, so that no layer of small ones lines the walls. Where the walls are exact,
+  // planes beyond the grid stretch for it, if there is room to.
+  const int32_t missing = (unit - (end - begin) % unit) % unit;
+  if (!exact) {
+    begin -= missing / 2;
+    end += missing - missing / 2;
+  } else if (high - last >= missing) {
+    end += missing;
+  } else if (first - low >= missing) {
+    begin -= missing;
+  }
+  cells[a] = end - begin;
+  base_[a] = begin;
+  std::vector<double>& x = axis_[static_cast<size_t>(a)];
+  x.resize(static_cast<size_t>(cells[a]) + 1);
+  for (int32_t i = 0; i <= cells[a]; ++i)
+    x[static_cast<size_t>(i)] = origin + h * (begin + i);
+  if (!exact)
+    return;
+  if (begin < first) {
+    const double anchor = origin + h * first, step = (anchor - lower) / (first - begin);
+    for (int32_t i = begin; i < first; ++i)
+      x[static_cast<size_t>(i - begin)] = anchor - step * (first - i);
+  }
+  if (end > last) {
+    const double anchor = origin + h * last, step = (upper - anchor) / (end - last);
+    for (int32_t i = last + 1; i <= end; ++i)
+      x[static_cast<size_t>(i - begin)] = anchor + step * (i - last);
+  }
+  x.front() = lower; // to the last bit
+  x.back() = upper;
+}
+
+bool Lattice::cuts() const {
+  for (int a = 0; a < 3; ++a)
+    if (cuts(a, 0) || cuts(a, 1))
+      return true;
+  return false;
+}
+
+float Lattice::value(Vec3i p) const {
+  for (int a = 0; a < 3; ++a)
+    for (int side = 0; side < 2; ++side) {
+      const Cut& cut = cut_[static_cast<size_t>(a)][static_cast<size_t>(side)];
+      if (!cut.cuts || p[a] != (side ? cells[a] : 0))
+        continue;
+      // Interpolate along this axis; further cut axes by recursion on the grid planes either side.
+      Vec3i below = base_ + p, above = below;
+      below[a] = cut.plane;
+      above[a] = cut.plane + 1;
+      const auto at = [&](Vec3i q) {
+        for (int b = a + 1; b < 3; ++b)
+          for (int s = 0; s < 2; ++s) {
+            const Cut& other = cut_[static_cast<size_t>(b)][static_cast<size_t>(s)];
+            if (!other.cuts || p[b] != (s ? cells[b] : 0))
+              continue;
+            q[b] = other.share < 0.5 ? other.plane : other.plane + 1;
+          }
+        return static_cast<double>(grid_value(q));
+      };
+      return static_cast<float>((1 - cut.share) * at(below) + cut.share * at(above));
+    }
+  return grid_value(base_ + p);
+}
+
+} // namespace molmesh::contour

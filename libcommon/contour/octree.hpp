@@ -1,0 +1,43 @@
+// octree.hpp — a strongly balanced linear octree over the lattice: leaves along the Z-order curve.
+// Section 4.1 of Liao et al. 2013. Neighbours across faces, edges and corners differ by one level at most.
+#pragma once
+#include "geom/vec.hpp"
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace molmesh::contour {
+
+/// Nodes that must have children, per level (1 … top): Morton keys of the lower corner shifted right by 3·level,
+/// in any order, with repetitions.
+using RefinedNodes = std::vector<std::vector<uint64_t>>;
+
+class Octree {
+public:
+  /// cells: size of the domain in fine cells; leaves never reach beyond it. refined[l] for l ≤ top_level.
+  Octree(Vec3i cells, int top_level, RefinedNodes refined, int threads);
+
+  int32_t size() const { return static_cast<int32_t>(key.size()); }
+  /// The leaf that holds fine cell p, or -1 beyond the domain.
+  int32_t find(Vec3i p) const;
+  Vec3i corner(int32_t leaf) const; ///< lower corner, lattice point
+  int32_t extent(int32_t leaf) const { return 1 << level[static_cast<size_t>(leaf)]; } ///< fine cells along an edge
+
+  std::vector<uint64_t> key;  ///< ascending; Morton code of the lower corner
+  std::vector<uint8_t> level; ///< 0: fine cell
+
+private:
+  struct Block { ///< 8³ fine cells that hold leaves below level 3
+    uint64_t key;
+    int32_t first;                 ///< first leaf
+    std::array<uint64_t, 8> start; ///< bit m: a leaf starts at Morton position m within the block
+  };
+  void index_leaves();
+  Vec3i cells_;
+  std::vector<Block> block_;
+  std::vector<int32_t> slot_; ///< open addressing into block_, -1 free
+  uint64_t mask_ = 0;
+  std::vector<int32_t> large_; ///< leaves of level 3 and more, ascending
+};
+
+} // namespace molmesh::contour

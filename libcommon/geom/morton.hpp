@@ -1,0 +1,38 @@
+// morton.hpp — the Z-order curve: 21 bits an axis, x in the lowest place.
+#pragma once
+#include "geom/vec.hpp"
+#include <cstdint>
+
+namespace molmesh {
+
+/// Spreads the low 21 bits of v to every third bit.
+HD constexpr uint64_t morton_spread(uint32_t v) {
+  uint64_t x = v & 0x1FFFFF;
+  x = (x | x << 32) & 0x1F00000000FFFF;
+  x = (x | x << 16) & 0x1F0000FF0000FF;
+  x = (x | x << 8) & 0x100F00F00F00F00F;
+  x = (x | x << 4) & 0x10C30C30C30C30C3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
+HD constexpr uint32_t morton_gather(uint64_t x) {
+  x &= 0x1249249249249249;
+  x = (x | x >> 2) & 0x10C30C30C30C30C3;
+  x = (x | x >> 4) & 0x100F00F00F00F00F;
+  x = (x | x >> 8) & 0x1F0000FF0000FF;
+  x = (x | x >> 16) & 0x1F00000000FFFF;
+  return static_cast<uint32_t>((x | x >> 32) & 0x1FFFFF);
+}
+
+/// Coordinates must be in [0, 2^21).
+HD constexpr uint64_t morton(Vec3i p) {
+  return morton_spread(static_cast<uint32_t>(p.x)) | morton_spread(static_cast<uint32_t>(p.y)) << 1 |
+         morton_spread(static_cast<uint32_t>(p.z)) << 2;
+}
+
+HD constexpr Vec3i morton_point(uint64_t key) {
+  return {static_cast<int32_t>(morton_gather(key)), static_cast<int32_t>(morton_gather(key >> 1)),
+          static_cast<int32_t>(morton_gather(key >> 2))};
+}
+
+} // namespace molmesh

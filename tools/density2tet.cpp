@@ -1,0 +1,114 @@
+// density2tet.cpp — density grid (.vdb) to a conforming tetrahedral mesh (.vtu).
+#include "cli/file.hpp"
+#include "cli/run.hpp"
+#include "contour/contour.hpp"
+#include "formats/vdb/vdb.hpp"
+#include "formats/vtu/vtu.hpp"
+#include <algorithm>
+#include <numeric>
+
+using namespace molmesh;
+
+namespace {
+
+struct Options : cli::Common {
+  std::string region = "interior", box = "auto", cavities = "keep";
+  double adapt = contour::Options{}.adapt, drop_below = 0;
+};
+
+contour::BoxRequest parse_box(const std::string& text) {
+  contour::BoxRequest box;
+  if (text == "auto")
+    return box;
+  if (text == "tight") {
+    box.kind = contour::BoxRequest::tight;
+    return box;
+  }
+  if (std::count(text.begin(), text.end(), ',') == 0) {
+    box.kind = contour::BoxRequest::factor;
+    box.scale = cli::numbers("--box", text, 1)[0];
+    if (!(box.scale > 1))
+      fail(Status::usage, "--box: found '" + text + "', expected a factor above 1");
+    return box;
+  }
+  const std::vector<double> v = cli::numbers("--box", text, 6);
+  box.kind = contour::BoxRequest::corners;
+  box.lower = {v[0], v[1], v[2]};
+  box.upper = {v[3], v[4], v[5]};
+  for (int a = 0; a < 3; ++a)
+    if (!(box.lower[a] < box.upper[a]))
+      fail(Status::usage, "--box: found '" + text + "', expected x0 < x1, y0 < y1 and z0 < z1");
+  return box;
+}
+
+void describe(CLI::App& app, Options& o) {
+  app.add_option("--region", o.region, "what to mesh: interior (the molecule), exterior (up to the box), both")
+      ->check(CLI::IsMember({"interior", "exterior", "both"}));
+  app.add_option(
+         "--box", o.box,
+         "outer box: auto (at least twice the surface's extents), tight (the grid), a factor of the surface's "
+         "extents [>1], or x0,y0,z0,x1,y1,z1 in Å, which may cut the molecule")
+      ->type_name("BOX");
+  app.add_option(
+         "--adapt", o.adapt,
+         "how far the surface may lie from a coarser cell's mean plane, in grid spacings [0..100]; 0: uniform")
+      ->check(CLI::Range(0., 100.));
+  app.add_option("--cavities", o.cavities, "closed cavities: keep (region 3) or fill (region 1)")
+      ->check(CLI::IsMember({"keep", "fill"}));
+  app.add_option("--drop-below", o.drop_below, "parts of the molecule smaller than this become outside, Å³ [0..]")
+      ->check(CLI::Range(0., 1e300));
+}
+
+Status run_tool(const Options& o, cli::Run& run) {
+  contour::Options options;
+  options.meshed = o.region == "interior"   ? contour::Options::interior
+                   : o.region == "exterior" ? contour::Options::exterior
+                                            : contour::Options::both;
+  options.box = parse_box(o.box);
+  options.adapt = o.adapt;
+  options.fill_cavities = o.cavities == "fill";
+  options.drop_below = o.drop_below;
+  options.threads = o.resolved_threads();
+
+  run.phase("read");
+  cli::InputFile input(o.input);
+  const BlockGrid grid = formats::read_vdb(input.stream(), input.name());
+  contour::Summary summary;
+  TetMesh mesh;
+  try {
+    mesh = contour::contour(grid, options, summary, [&](const std::string& phase) { run.phase(phase); });
+  } catch (const Error& e) {
+    fail(e.status, (e.status == Status::usage ? "" : input.name() + ": ") + e.what());
+  }
+  run.counts["points"] = mesh.point.size();
+  run.counts["tetrahedra"] = mesh.tet.size();
+  run.counts["triangles"] = mesh.tri.size();
+  run.counts["leaves"] = summary.leaves;
+  run.counts["surface_cells"] = summary.surface_cells;
+  run.counts["split_cells"] = summary.split_cells;
+  run.counts["face_points"] = summary.face_points;
+  run.counts["edge_points"] = summary.edge_points;
+  run.counts["molecule_volumes"] = summary.molecule_volumes;
+  run.counts["cavity_volumes"] = summary.cavity_volumes;
+  run.counts["dropped_parts"] = summary.dropped_parts;
+  run.counts["filled_cavities"] = summary.filled_cavities;
+
+  run.phase("write");
+  mesh.creator = cli::creator("density2tet");
+  cli::OutputFile output(o.output);
+  formats::write_vtu(output.stream(), mesh);
+  output.commit();
+  run.end_phase();
+  if (run.verbose)
+    run.note(std::to_string(mesh.tet.size()) + " tetrahedra, " + std::to_string(summary.molecule_volumes.size()) +
+             " parts, " + std::to_string(summary.cavity_volumes.size()) + " closed cavities");
+  return Status::good;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  return cli::run_main<Options>(
+      "density2tet", "Meshes the surface of a density grid (.vdb), its inside and its surroundings (.vtu).", argc,
+      argv, describe, run_tool);
+}
