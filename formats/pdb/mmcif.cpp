@@ -1,5 +1,6 @@
 // mmcif.cpp — mmCIF and mmJSON through gemmi: only the categories that matter, missing columns filled in.
 #include "error.hpp"
+#include "formats/pdb/mmcif_assembly.hpp"
 #include "formats/pdb/parse.hpp"
 #include <algorithm>
 #include <cmath>
@@ -138,7 +139,8 @@ void check_coordinates(const cif::Loop& loop, const AtomColumns& columns, std::s
   }
 }
 
-Parsed from_document(cif::Document& document, std::string_view text, const std::string& file, const char* format) {
+Parsed from_document(cif::Document& document, std::string_view text, const std::string& file, const char* format,
+                     const std::string& assembly) {
   Parsed parsed;
   parsed.format = format;
   cif::Block* block = coordinates(document);
@@ -168,12 +170,12 @@ Parsed from_document(cif::Document& document, std::string_view text, const std::
   columns.complete("B_iso_or_equiv", {}, "0");
   columns.complete("auth_seq_id", {"label_seq_id"}, "1");
 
+  const std::vector<gemmi::Assembly> assemblies = read_assemblies(*block, assembly, file);
   // Other categories cost time and can only fail: _atom_site_anisotrop, _struct_conn, _pdbx_sifts_…
   cif::Block needed(block->name);
   for (cif::Item& other : block->items) {
     const std::string& tag = tag_of(other);
-    for (const char* kept : {"_atom_site.", "_entity.", "_entity_poly.", "_entity_poly_seq.", "_struct_asym.",
-                             "_pdbx_struct_assembly.", "_pdbx_struct_assembly_gen.", "_pdbx_struct_oper_list."})
+    for (const char* kept : {"_atom_site.", "_entity.", "_entity_poly.", "_entity_poly_seq.", "_struct_asym."})
       if (starts_with(tag, kept)) {
         needed.items.push_back(std::move(other));
         break;
@@ -184,22 +186,23 @@ Parsed from_document(cif::Document& document, std::string_view text, const std::
   } catch (const std::exception& e) {
     fail_input(where + ": " + std::string(e.what()).substr(0, std::string_view(e.what()).find('\n')));
   }
+  parsed.structure.assemblies = assemblies; // gemmi 0.5.7 reads no products of operators
   return parsed;
 }
 
 } // namespace
 
-Parsed parse_mmcif(std::string_view text, const std::string& file) {
+Parsed parse_mmcif(std::string_view text, const std::string& file, const std::string& assembly) {
   cif::Document document;
   try {
     document = cif::read_memory(text.data(), text.size(), file.c_str());
   } catch (const std::exception& e) {
     fail_input(one_line(file, e.what()));
   }
-  return from_document(document, text, file, "mmCIF");
+  return from_document(document, text, file, "mmCIF", assembly);
 }
 
-Parsed parse_mmjson(std::string& text, const std::string& file) {
+Parsed parse_mmjson(std::string& text, const std::string& file, const std::string& assembly) {
   cif::Document document;
   try {
     document = cif::read_mmjson_insitu(text.data(), text.size(), file);
@@ -207,7 +210,7 @@ Parsed parse_mmjson(std::string& text, const std::string& file) {
     const std::string what = e.what();
     fail_input(one_line(file, what.empty() ? "found JSON that is no mmJSON" : what));
   }
-  return from_document(document, {}, file, "mmJSON");
+  return from_document(document, {}, file, "mmJSON", assembly);
 }
 
 } // namespace molmesh::formats

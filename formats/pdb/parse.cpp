@@ -89,16 +89,17 @@ std::string in_quotes(std::string_view text) {
   return s + "'";
 }
 
-Parsed parse_structure(std::string text, const std::string& file, const std::string& format) {
+Parsed parse_structure(std::string text, const std::string& file, const std::string& format,
+                       const std::string& assembly) {
   normalize(text, file);
   const std::string kind = format == "auto" ? detect(text, file) : format;
   if (kind == "mmcif")
-    return parse_mmcif(text, file);
+    return parse_mmcif(text, file, assembly);
   if (kind == "mmjson")
-    return parse_mmjson(text, file);
+    return parse_mmjson(text, file, assembly);
   if (kind == "pqr")
     return parse_pqr(text, file);
-  return parse_pdb(text, file);
+  return parse_pdb(text, file, assembly);
 }
 
 } // namespace molmesh::formats

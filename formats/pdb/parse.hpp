@@ -20,12 +20,13 @@ struct Parsed {
 
 /// format: auto, pdb, mmcif, mmjson or pqr; auto looks at the contents, and at the name where PDB and PQR look
 /// alike. Throws Error(bad_input) "FILE:LINE: …" when there is no atom, or a coordinate is not a finite number.
-Parsed parse_structure(std::string text, const std::string& file, const std::string& format);
+Parsed parse_structure(std::string text, const std::string& file, const std::string& format,
+                       const std::string& assembly);
 
 /// The single formats; `text` holds no NUL byte and ends its lines with a line feed.
-Parsed parse_pdb(std::string_view text, const std::string& file);
-Parsed parse_mmcif(std::string_view text, const std::string& file);
-Parsed parse_mmjson(std::string& text, const std::string& file);
+Parsed parse_pdb(std::string_view text, const std::string& file, const std::string& assembly);
+Parsed parse_mmcif(std::string_view text, const std::string& file, const std::string& assembly);
+Parsed parse_mmjson(std::string& text, const std::string& file, const std::string& assembly);
 Parsed parse_pqr(std::string_view text, const std::string& file);
 
 /// Calls take(line, number) for each line, without its end.

@@ -73,7 +73,7 @@ PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbO
     p.source += " sha256:" + sha256(bytes);
     if (is_gzip(bytes))
       bytes = gunzip(bytes, name);
-    p.parsed = parse_structure(std::move(bytes), name, options.format);
+    p.parsed = parse_structure(std::move(bytes), name, options.format, options.assembly);
   }
   p.report.format = p.parsed.format;
   gemmi::Structure& st = p.parsed.structure;

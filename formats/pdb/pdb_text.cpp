@@ -1,6 +1,7 @@
 // pdb_text.cpp — the PDB format: our own strict look at each line, then gemmi's reader on the records that matter.
 #include "error.hpp"
 #include "formats/pdb/parse.hpp"
+#include "formats/pdb/remark350.hpp"
 #include "molecule/words.hpp"
 #include <gemmi/pdb.hpp>
 #include <set>
@@ -51,7 +52,7 @@ bool is_shifted(std::string_view line) {
 
 class PdbLines {
 public:
-  explicit PdbLines(const std::string& file) : file_(file) {}
+  PdbLines(const std::string& file, bool assemblies_wanted) : file_(file), assemblies_wanted_(assemblies_wanted) {}
 
   void take(std::string_view line, int64_t number) {
     line_ = number;
@@ -65,8 +66,10 @@ public:
       in_model_ = false;
     else if (is_record(line, "END") && (line.size() == 3 || line[3] == ' '))
       ended_ = true;
-    else if (is_record(line, "TER") || is_record(line, "SEQRES") || is_record(line, "REMARK 350"))
+    else if (is_record(line, "TER") || is_record(line, "SEQRES"))
       text.append(line);
+    else if (assemblies_wanted_ && is_record(line, "REMARK 350"))
+      remark350_.take(line, file_ + ":" + std::to_string(number));
     text += '\n';
   }
 
@@ -76,9 +79,9 @@ public:
                  ": found the end without an ATOM or HETATM record, expected a structure");
     const auto note = [&](int64_t count, const std::string& what) {
       if (count > 0)
-        parsed.notes.push_back(std::to_string(count) + " " + what);
+        parsed.notes.push_back(what + ": " + std::to_string(count));
     };
-    note(shifted_, "atom lines with coordinates one column to the right, read there");
+    note(shifted_, "atom lines whose coordinates stand one column to the right, read there");
     note(guessed_, "atoms without an element, taken from the name");
     note(after_end_, "atom lines after END, not read");
     note(renumbered_, "models without a number of their own, numbered in order");
@@ -86,6 +89,7 @@ public:
 
   std::string text;                ///< the records that matter, checked, for gemmi
   std::vector<std::string> models; ///< names, in order
+  const std::vector<gemmi::Assembly>& assemblies() const { return remark350_.assemblies; }
 
 private:
   [[noreturn]] void refuse(const std::string& what) const {
@@ -154,6 +158,8 @@ private:
   }
 
   const std::string& file_;
+  const bool assemblies_wanted_;
+  Remark350 remark350_;
   std::string record_;
   std::set<std::string> seen_;
   int64_t line_ = 0, atoms_ = 0, shifted_ = 0, after_end_ = 0, renumbered_ = 0, guessed_ = 0;
@@ -162,8 +168,8 @@ private:
 
 } // namespace
 
-Parsed parse_pdb(std::string_view text, const std::string& file) {
-  PdbLines lines(file);
+Parsed parse_pdb(std::string_view text, const std::string& file, const std::string& assembly) {
+  PdbLines lines(file, assembly != "none");
   lines.text.reserve(text.size());
   for_each_line(text, [&](std::string_view line, int64_t number) { lines.take(line, number); });
   Parsed parsed;
@@ -177,6 +183,7 @@ Parsed parse_pdb(std::string_view text, const std::string& file) {
   }
   for (size_t m = 0; m < st.models.size(); ++m)
     st.models[m].name = lines.models.at(m);
+  st.assemblies = lines.assemblies(); // gemmi loses its columns from the 1000th operator on
   return parsed;
 }
 

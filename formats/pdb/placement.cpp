@@ -44,7 +44,7 @@ bool is_finite(const Numbers& n) {
 /// The residues of a chain that a generator names: all of them (PDB: by chain), or those of its subchains (mmCIF).
 std::vector<int64_t> generated(const Flat& flat, const Flat::Chain& chain, const gemmi::Assembly::Gen& gen) {
   std::vector<int64_t> residues;
-  const bool whole = gemmi::in_vector(chain.source->name == "_" ? std::string() : chain.source->name, gen.chains);
+  const bool whole = gemmi::in_vector(chain.source->name, gen.chains);
   for (int64_t r = chain.begin; r < chain.end; ++r)
     if (whole || gemmi::in_vector(flat.residue[static_cast<size_t>(r)].source->subchain, gen.subchains))
       residues.push_back(r);
@@ -122,9 +122,13 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
     fail_input(file + ": found no assembly " + assembly + ", expected " +
                (names.empty() ? "none: the file lists no assemblies" : "one of " + names));
   }
-  std::map<Numbers, int> copies;                     // by transform, from 1
+  // Generators that use the same operator place parts of the same copy; within a generator every operator is a
+  // copy.
+  std::map<std::pair<std::string, Numbers>, int> copies;
   std::map<std::pair<int, size_t>, size_t> of_chain; // copy and chain: where in `placed`
+  int count = 0;
   for (const gemmi::Assembly::Gen& gen : found->generators) {
+    std::set<int> used;
     std::vector<std::shared_ptr<const std::vector<int64_t>>> parts;
     for (const Flat::Chain& chain : flat.chain)
       parts.push_back(std::make_shared<std::vector<int64_t>>(generated(flat, chain, gen)));
@@ -132,7 +136,9 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
       if (!is_finite(numbers(op.transform)))
         fail_input(file + ": found operator " + op.name + " of assembly " + assembly +
                    " with a number that is not finite");
-      const int copy = copies.try_emplace(numbers(op.transform), static_cast<int>(copies.size()) + 1).first->second;
+      int& copy = copies.try_emplace({op.name, numbers(op.transform)}, 0).first->second;
+      if (copy == 0 || !used.insert(copy).second)
+        used.insert(copy = ++count);
       for (size_t c = 0; c < flat.chain.size(); ++c) {
         if (parts[c]->empty())
           continue;
@@ -152,7 +158,7 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
   if (placed.empty())
     fail_input(file + ": found no atom in assembly " + assembly + ", expected at least one");
   std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.copy < b.copy; });
-  report.copies = static_cast<int64_t>(copies.size());
+  report.copies = count;
   name_copies(flat, placed);
   return placed;
 }

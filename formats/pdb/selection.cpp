@@ -1,9 +1,23 @@
 // selection.cpp — parsing with gemmi, and the lens.
 #include "formats/pdb/selection.hpp"
 #include "molecule/words.hpp"
+#include <algorithm>
 #include <vector>
 
 namespace molmesh::formats {
+namespace {
+
+/// Does the residue field end with '-', as "45-" (45 and all behind it) does?
+bool is_open_range(std::string_view cid) {
+  cid = cid.substr(0, cid.find(';'));
+  const int omitted = gemmi::impl::determine_omitted_cid_fields(std::string(cid));
+  for (int field = omitted == 0 ? -1 : omitted; field < 2; ++field)
+    cid.remove_prefix(std::min(cid.find('/'), cid.size() - 1) + 1);
+  const std::string_view residue = cid.substr(0, cid.find('/'));
+  return !residue.empty() && residue.back() == '-';
+}
+
+} // namespace
 
 Selection::Selection(const std::string& text, const std::string& where, bool around_allowed) {
   std::string cid = text;
@@ -21,6 +35,9 @@ Selection::Selection(const std::string& text, const std::string& where, bool aro
   } catch (const std::exception& e) {
     fail_input(where + ": found selection '" + text + "', expected gemmi's syntax (" + e.what() + ")");
   }
+  // gemmi 0.5.7 takes "45" for "45-"; in MMDB syntax, and in later gemmi, it is that residue alone.
+  if (!selection_.from_seqid.empty() && selection_.to_seqid.empty() && !is_open_range(cid))
+    selection_.to_seqid = selection_.from_seqid;
   // The chain without a name is "_" here; gemmi's syntax leaves its place empty.
   if (!selection_.chain_ids.all && selection_.chain_ids.list.empty())
     selection_.chain_ids.list.assign(1, '_');

@@ -2,7 +2,8 @@
 // atoms.
 #pragma once
 #include "error.hpp"
-#define USE_STD_SNPRINTF // gemmi's own wants stb_sprintf.h, which Debian's gemmi-dev lacks; only messages are printed
+#define USE_STD_SNPRINTF // gemmi's own wants stb_sprintf.h, which Debian's gemmi-dev lacks; only messages are
+                         // printed
 #include <gemmi/select.hpp>
 #include <string>
 

@@ -33,6 +33,9 @@ Rule parse_rule(const std::string& text, const std::string& where, Status status
     fail(status, where + ": found '" + text + "', expected SELECTION P_R=… P_C=… P_D=…, at least one exponent");
   if (rest.empty())
     fail(status, where + ": found no selection, expected SELECTION P_R=… P_C=… P_D=… ('*' is everything)");
+  for (const char* exponent : {"P_R=", "P_C=", "P_D="})
+    if (rest.find(exponent) != std::string_view::npos)
+      fail(status, where + ": found '" + text + "', expected exponents at the end alone");
   rule.selection = rest;
   return rule;
 }

@@ -1,0 +1,91 @@
+// pqr_test.cpp — the dialects of PQR.
+#include "pdb_text.hpp"
+#include <catch2/catch.hpp>
+
+using namespace molmesh;
+using namespace molmesh::test;
+
+namespace {
+
+struct Read {
+  std::string listing, element;
+  Vec3d center;
+  double charge, radius;
+};
+
+Read one(const std::string& line, const std::string& name = "x.pqr") {
+  const Converted c = convert(line + "\n", {}, name);
+  CHECK(c.report.format == "PQR");
+  const Atom& a = c.hierarchy.atom.at(0);
+  return {listing(c.hierarchy), c.hierarchy.names[a.element], a.center, a.charge, a.radius};
+}
+
+} // namespace
+
+TEST_CASE("PQR: fields between blanks, with and without a chain") {
+  for (const char* line : {"ATOM      1  N   ALA A   7      10.5  -2.25   3.125  -0.3000 1.8500", // columns
+                           "ATOM 1 N ALA A 7 10.5 -2.25 3.125 -0.3 1.85",                         // APBS
+                           "ATOM  1 N      ALA A  7   10.50000  -2.25000   3.12500  -0.30000 1.85000"}) {
+    INFO(line);
+    const Read r = one(line);
+    CHECK(r.listing == "A/ALA:7/N");
+    CHECK(r.center == Vec3d{10.5, -2.25, 3.125});
+    CHECK(r.charge == -0.3);
+    CHECK(r.radius == 1.85);
+    CHECK(r.element == "N");
+  }
+  CHECK(one("ATOM      1  N   ALA     7      10.5  -2.25   3.125  -0.3000 1.8500").listing == "_/ALA:7/N");
+  CHECK(one("ATOM      1  N   ALA A1007      10.5  -2.25   3.125  -0.3000 1.8500").listing == "A/ALA:1007/N");
+  CHECK(one("ATOM      1  N   ALA A  52A     10.5  -2.25   3.125  -0.3000 1.8500").listing == "A/ALA:52A/N");
+  CHECK(one("ATOM      1  N   ALA    -3      10.5  -2.25   3.125  -0.3000 1.8500").listing == "_/ALA:-3/N");
+}
+
+TEST_CASE("PQR: coordinates that run together stand in the columns of the PDB format") {
+  const Read r = one("ATOM      2  CA  ALA     1    1999.9993000.064-900.490  0.0962 1.9080");
+  CHECK(r.listing == "_/ALA:1/CA");
+  CHECK(r.center == Vec3d{1999.999, 3000.064, -900.49});
+  CHECK(r.charge == 0.0962);
+  CHECK(r.radius == 1.908);
+}
+
+TEST_CASE("PQR is told from PDB by contents or name") {
+  CHECK(one("ATOM  1 N      ALA A  7   10.50000  -2.25000   3.12500  -0.30000 1.85000", "<stdin>").radius == 1.85);
+  CHECK(one("ATOM      1  I   ION     1       0.000   0.000  0.000  1.00  3.00", "<stdin>").radius == 3);
+  CHECK(one("ATOM      1  N   ALA A   7      10.500  -2.250   3.125 -0.3000 1.8500", "dir.pdb/x.PQR").radius ==
+        1.85);
+  formats::PdbOptions o;
+  o.format = "pdb";
+  CHECK(convert("ATOM      1  N   ALA A   7      10.500  -2.250   3.125 -0.3000 1.8500\n", o, "x.pqr")
+            .report.format == "PDB");
+}
+
+TEST_CASE("PQR: elements from names") {
+  CHECK(one("ATOM 1 CA ALA A 7 0 0 0 0 1").element == "C");
+  CHECK(one("ATOM 1 CA CA A 7 0 0 0 0 1").element == "Ca");
+  CHECK(one("ATOM 1 ZN ZN2 A 7 0 0 0 0 1").element == "Zn");
+  CHECK(one("ATOM 1 1HB ALA A 7 0 0 0 0 1").element == "H");
+  CHECK(one("ATOM 1 CL CL- A 7 0 0 0 0 1").element == "Cl");
+  CHECK(one("ATOM 1 I ION 1 0 0 0 1 3").element == "I");
+  CHECK(one("ATOM 1 123 UNK A 7 0 0 0 0 1").element == "X");
+}
+
+TEST_CASE("PQR: radius 0 is dropped and counted, below 0 and what is no number refused") {
+  const Converted c = convert("ATOM 1 O HO A 7 0 0 0 0.4 1.5\nATOM 2 H HO A 7 1 0 0 0.4 0\n", {}, "x.pqr");
+  CHECK(c.report.atoms == 1);
+  CHECK(c.report.no_radius == 1);
+  for (const char* line :
+       {"ATOM 1 N ALA A 7 0 0 0 0 -1", "ATOM 1 N ALA A 7 0 0 nan 0 1", "ATOM 1 N ALA A 7 0 0 0 inf 1",
+        "ATOM 1 N ALA A 7 0 0 0", "ATOM", "ATOM 1 N ALA A x 0 0 0 0 1", "ATOM 1 N ALA A 99999999999 0 0 0 0 1"}) {
+    INFO(line);
+    CHECK(refusal(std::string("REMARK\n") + line + "\n", {}, "x.pqr").substr(0, 8) == "x.pqr:2:");
+  }
+  CHECK(refusal("REMARK\n", {}, "x.pqr").substr(0, 8) == "x.pqr:1:");
+}
+
+TEST_CASE("PQR: a table of radii replaces the file's own when it is given") {
+  formats::PdbOptions o;
+  o.own_radii = false;
+  const Converted c = convert("ATOM 1 N ALA A 7 0 0 0 -0.3 1.85\n", o, "x.pqr");
+  CHECK(c.hierarchy.atom.at(0).radius == 1.55);
+  CHECK(c.hierarchy.atom.at(0).charge == -0.3);
+}
