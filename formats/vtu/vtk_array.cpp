@@ -182,6 +182,7 @@ void Decoder::binary(const ArrayTag& a, Column& c) {
   } else {
     if (n > source.left())
       source.truncated();
+    spend(stored_left_, n, a, "holds more than its size: arrays share their data");
     c.data_ = source.in_place();
     c.size_ = n;
     if (!c.data_) {
@@ -198,6 +199,12 @@ void Decoder::binary(const ArrayTag& a, Column& c) {
   c.size_ /= value_size(a.type);
 }
 
+void Decoder::spend(uint64_t& left, uint64_t bytes, const ArrayTag& a, const char* what) {
+  if (bytes > left)
+    d_.refuse(a.line, "R5", "with array '" + a.name + "' the file " + what);
+  left -= bytes;
+}
+
 void Decoder::unpack(const ArrayTag& a, ByteSource& source, uint64_t blocks, Column& c) {
   const auto number = [&] {
     unsigned char bytes[8] = {};
@@ -208,20 +215,18 @@ void Decoder::unpack(const ArrayTag& a, ByteSource& source, uint64_t blocks, Col
     std::memcpy(&n, bytes, sizeof n);
     return n;
   };
-  const auto refuse = [&](const std::string& what) { d_.refuse(a.line, "R5", "array '" + a.name + "' " + what); };
   if (blocks == 0)
     return;
   if (blocks > source.left() / static_cast<uint64_t>(d_.header_bytes))
     source.truncated();
   const uint64_t full = number(), partial = number(), last = partial ? partial : full;
-  if (full > unpacked_left_ || last > full || (blocks - 1) > unpacked_left_ / std::max<uint64_t>(full, 1) ||
-      (blocks - 1) * full + last > unpacked_left_)
-    refuse("unpacks to over 256 times the file's size");
+  const bool countable =
+      full <= unpacked_left_ && last <= full && blocks - 1 <= unpacked_left_ / std::max<uint64_t>(full, 1);
+  const uint64_t total = countable ? (blocks - 1) * full + last : unpacked_left_ + value_size(a.type);
+  spend(unpacked_left_, total / value_size(a.type) * sizeof(double), a, "unpacks to over 256 times its size");
   std::vector<uint64_t> packed(blocks);
   for (uint64_t& n : packed)
     n = number();
-  const uint64_t total = (blocks - 1) * full + last;
-  unpacked_left_ -= total;
   c.owned_.resize(total);
   std::vector<unsigned char> buffer;
   for (uint64_t b = 0; b < blocks; ++b) {
@@ -232,7 +237,7 @@ void Decoder::unpack(const ArrayTag& a, ByteSource& source, uint64_t blocks, Col
     const uint64_t expected = b + 1 == blocks ? last : full;
     uLongf size = expected;
     if (uncompress(c.owned_.data() + b * full, &size, buffer.data(), packed[b]) != Z_OK || size != expected)
-      refuse("is not zlib data of the size declared");
+      d_.refuse(a.line, "R5", "array '" + a.name + "' is not zlib data of the size declared");
   }
   c.size_ = total;
 }

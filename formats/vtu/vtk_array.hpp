@@ -36,18 +36,21 @@ private:
   bool swap_ = false;
 };
 
-/// Decodes arrays of one document; what it unpacks in all is bounded by a multiple of the file's size.
+/// Decodes arrays of one document; what they hold in all is bounded by a multiple of the file's size, also where
+/// blocks are compressed or pieces share them.
 class Decoder {
 public:
-  explicit Decoder(const Document& d) : d_(d), unpacked_left_(256 * d.text.size() + (1u << 20)) {}
+  explicit Decoder(const Document& d)
+      : d_(d), unpacked_left_(256 * d.text.size() + (1u << 20)), stored_left_(d.text.size()) {}
   Column decode(const ArrayTag& a);
 
 private:
   void ascii(const ArrayTag& a, Column& c) const;
   void binary(const ArrayTag& a, Column& c);
+  void spend(uint64_t& left, uint64_t bytes, const ArrayTag& a, const char* what);
   void unpack(const ArrayTag& a, class ByteSource& source, uint64_t blocks, Column& c);
   const Document& d_;
-  uint64_t unpacked_left_;
+  uint64_t unpacked_left_, stored_left_; ///< bytes; 8 for every value unpacked
 };
 
 } // namespace molmesh::formats::vtk

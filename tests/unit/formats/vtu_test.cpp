@@ -184,6 +184,27 @@ TEST_CASE("a file cut anywhere is refused, and so is one with a byte changed, or
   }
 }
 
+TEST_CASE("pieces that share one large block are refused before they fill the memory") {
+  const std::string bytes(size_t{1} << 20, '\0');
+  std::string text = "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" header_type=\"UInt64\"><UnstructuredGrid>";
+  const auto array = [](const char* type, const char* name, const char* offset) {
+    return std::string("<DataArray type=\"") + type + "\" Name=\"" + name +
+           "\" NumberOfComponents=\"3\" format=\"appended\" offset=\"" + offset + "\"/>";
+  };
+  const std::string points = std::to_string(bytes.size() / 3), end = std::to_string(8 + bytes.size() / 3 * 3);
+  for (int i = 0; i < 2000; ++i)
+    text += "<Piece NumberOfPoints=\"" + points + "\" NumberOfCells=\"0\"><Points>" +
+            array("UInt8", "Points", "0") + "</Points><Cells>" + array("UInt8", "connectivity", end.c_str()) +
+            array("UInt8", "offsets", end.c_str()) + array("UInt8", "types", end.c_str()) + "</Cells></Piece>";
+  text += "</UnstructuredGrid><AppendedData encoding=\"raw\">_";
+  const uint64_t size = bytes.size() / 3 * 3, none = 0;
+  text.append(reinterpret_cast<const char*>(&size), 8);
+  text += bytes.substr(0, size);
+  text.append(reinterpret_cast<const char*>(&none), 8);
+  text += "\n</AppendedData></VTKFile>";
+  CHECK(refusal(text).find("R5: with array 'Points' the file holds more than its size") != std::string::npos);
+}
+
 TEST_CASE("a random mesh of some size survives the round trip") {
   std::mt19937_64 random(6);
   TetMesh m;
