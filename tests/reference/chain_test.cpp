@@ -1,30 +1,14 @@
 // chain_test.cpp — meshes of a real structure: CGAL on the molecular surface, TetGen's fill of it.
 #include "contour/contour.hpp"
-#include "density/density.hpp"
-#include "formats/hier/hier.hpp"
-#include "formats/pdb/pdb.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/validity.hpp"
 #include "oracles.hpp"
+#include "structure.hpp"
 #include <catch2/catch.hpp>
-#include <fstream>
-#include <sstream>
 
 using namespace molmesh;
 
 namespace {
-
-BlockGrid bundled_structure(double spacing) {
-  const std::string path = MOLMESH_SOURCE_DIR "/tests/data/1tii.pdb";
-  std::ifstream in(path);
-  std::stringstream text;
-  formats::PdbHierarchy(in, path, {}).write(text);
-  density::Counts counts;
-  density::Options options;
-  options.spacing = spacing;
-  options.threads = 2;
-  return density::compute(formats::read_hier(text, path), options, counts);
-}
 
 std::vector<Tri> molecular_surface(const TetMesh& m) {
   std::vector<Tri> tri;
@@ -37,7 +21,7 @@ std::vector<Tri> molecular_surface(const TetMesh& m) {
 } // namespace
 
 TEST_CASE("1TII: the molecular surface is closed, nests, and does not cross itself; TetGen fills the same volume") {
-  const BlockGrid grid = bundled_structure(1.0);
+  const BlockGrid grid = reference::density_of(MOLMESH_SOURCE_DIR "/tests/data/1tii.pdb", 1.0);
   for (double adapt : {0.0, 0.25}) {
     INFO("adapt " << adapt);
     contour::Summary summary;

@@ -45,7 +45,8 @@ TEST_CASE("atoms, residues and chains are those that gemmi counts") {
       } catch (const std::exception&) {
         continue; // what gemmi refuses and we read
       }
-      if (theirs.models.empty() || theirs.models[0].chains.empty()) continue;
+      if (theirs.models.empty() || theirs.models[0].chains.empty())
+        continue;
       theirs.merge_chain_parts();
       const gemmi::Model& model = theirs.models[0];
       int64_t their_residues = 0, their_atoms = 0;

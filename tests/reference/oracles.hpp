@@ -16,9 +16,10 @@ struct CgalSurface {
 CgalSurface cgal_surface(const std::vector<Vec3d>& point, const std::vector<Tri>& tri);
 
 /// TetGen 1.5 fills the closed surface, its triangles kept as they are. Points of no triangle are left out;
-/// `holes`: a point in each cavity that stays empty. Throws std::runtime_error when TetGen gives up, as it does on
-/// a surface that crosses itself.
+/// `holes`: a point in each cavity that stays empty; `quality`: further switches, as "q1.4a0.5" (radius to edge
+/// ratio, largest volume). Throws std::runtime_error when TetGen gives up, as it does on a surface that crosses
+/// itself.
 TetMesh tetgen_fill(const std::vector<Vec3d>& point, const std::vector<Tri>& tri,
-                    const std::vector<Vec3d>& holes = {});
+                    const std::vector<Vec3d>& holes = {}, const std::string& quality = "");
 
 } // namespace molmesh::reference

@@ -3,11 +3,13 @@
 #include "oracles.hpp"
 #include <map>
 #include <stdexcept>
+#include <string>
 #include <tetgen.h>
 
 namespace molmesh::reference {
 
-TetMesh tetgen_fill(const std::vector<Vec3d>& point, const std::vector<Tri>& tri, const std::vector<Vec3d>& holes) {
+TetMesh tetgen_fill(const std::vector<Vec3d>& point, const std::vector<Tri>& tri, const std::vector<Vec3d>& holes,
+                    const std::string& quality) {
   tetgenio in, out; // free what their lists point to
   std::map<int32_t, int> number;
   for (const Tri& t : tri)
@@ -37,9 +39,9 @@ TetMesh tetgen_fill(const std::vector<Vec3d>& point, const std::vector<Tri>& tri
       for (int k = 0; k < 3; ++k)
         in.holelist[3 * i + static_cast<size_t>(k)] = holes[i][k];
   }
-  char switches[] = "pYQ"; // a piecewise linear complex, surface kept, quiet
+  std::string switches = "pYQ" + quality; // a piecewise linear complex, surface kept, quiet
   try {
-    tetrahedralize(switches, &in, &out);
+    tetrahedralize(switches.data(), &in, &out);
   } catch (int code) {
     throw std::runtime_error("TetGen gives up with code " + std::to_string(code));
   }
