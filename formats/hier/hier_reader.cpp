@@ -86,7 +86,7 @@ public:
   HierReader(std::istream& in, const std::string& file) : in_(in), file_(file) {}
 
   Hierarchy read() {
-    std::string block(size_t{1} << 20, '\0');
+    std::string block(size_t{1} << 18, '\0');
     size_t kept = 0;
     for (;;) {
       if (kept == block.size())

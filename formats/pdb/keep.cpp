@@ -4,7 +4,6 @@
 #include "formats/pdb/selection.hpp"
 #include <algorithm>
 #include <array>
-#include <gemmi/polyheur.hpp>
 #include <map>
 
 namespace molmesh::formats {
@@ -163,7 +162,6 @@ bool is_water(const gemmi::Residue& residue) {
 
 void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, PdbReport& report) {
   gemmi::Structure& st = parsed.structure;
-  st.merge_chain_parts();
   for (gemmi::Model& model : st.models)
     for (gemmi::Chain& chain : model.chains)
       if (chain.name.empty())
@@ -185,8 +183,6 @@ void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, Pd
         drop_atoms(st, [](Model, Chain, Residue r) { return [het = r.het_flag == 'H'](Atom) { return het; }; });
   if (options.select != "*") {
     const Selection selection(options.select, "--select");
-    if (selection.needs_entities())
-      gemmi::setup_entities(st);
     report.unselected = drop_atoms(st, [&](Model m, Chain c, Residue r) {
       const bool inside = selection.model(m) && selection.chain(c.name, c.name) && selection.residue(r);
       return [&selection, inside](Atom a) { return !(inside && selection.atom(a)); };

@@ -42,13 +42,10 @@ const std::string& tag_of(const cif::Item& item) {
   return none;
 }
 
-/// The first block that has atoms; null when none has.
-cif::Block* coordinates(cif::Document& document) {
-  for (cif::Block& block : document.blocks)
-    for (const cif::Item& item : block.items)
-      if (starts_with(gemmi::to_lower(tag_of(item)), prefix.c_str()))
-        return &block;
-  return nullptr;
+bool has_atoms(const cif::Block& block) {
+  return std::any_of(block.items.begin(), block.items.end(), [](const cif::Item& item) {
+    return starts_with(gemmi::to_lower(tag_of(item)), prefix.c_str());
+  });
 }
 
 /// A category that has its rows as name-value pairs has one row: gemmi reads both, here only loops remain.
@@ -143,12 +140,15 @@ Parsed from_document(cif::Document& document, std::string_view text, const std::
                      const std::string& assembly) {
   Parsed parsed;
   parsed.format = format;
-  cif::Block* block = coordinates(document);
-  if (block == nullptr) {
+  std::vector<cif::Block>& blocks = document.blocks;
+  const auto block = std::find_if(blocks.begin(), blocks.end(), has_atoms);
+  if (block == blocks.end()) {
     const auto lines = std::max<std::ptrdiff_t>(std::count(text.begin(), text.end(), '\n'), 1);
     fail_input(file + ":" + std::to_string(lines) + ": found no _atom_site category, expected " + format +
                " with atoms");
   }
+  if (const auto more = std::count_if(block + 1, blocks.end(), has_atoms); more > 0)
+    parsed.notes.push_back("further data blocks with atoms, not read: " + std::to_string(more));
   cif::Item* item = atom_loop(*block);
   const std::string where = file + ":" + std::to_string(std::max(item->line_number, 1));
   cif::Loop& loop = item->loop;

@@ -42,6 +42,14 @@ bool has(const std::vector<std::string>& levels, const char* name) {
   return std::find(levels.begin(), levels.end(), name) != levels.end();
 }
 
+/// Domains by entity, and selections that say ";polymer" or ";solvent".
+bool needs_entities(const PdbOptions& o) {
+  const auto asks = [](const auto& part) { return part.selection.find(';') != std::string::npos; };
+  return o.domains == PdbOptions::Domains::entity || o.select.find(';') != std::string::npos ||
+         std::any_of(o.rules.begin(), o.rules.end(), asks) ||
+         std::any_of(o.domain_parts.begin(), o.domain_parts.end(), asks);
+}
+
 void check_options(const PdbOptions& o) {
   const auto refuse = [](const std::string& what) { fail(Status::usage, what); };
   for (size_t l = 0; l < o.levels.size(); ++l) {
@@ -77,7 +85,8 @@ PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbO
   }
   p.report.format = p.parsed.format;
   gemmi::Structure& st = p.parsed.structure;
-  if (options.domains == PdbOptions::Domains::entity)
+  st.merge_chain_parts();
+  if (needs_entities(options))
     gemmi::setup_entities(st);
   keep(p.parsed, name, options, p.report);
 

@@ -52,14 +52,16 @@ public:
   void take(std::string_view line, int64_t number) {
     line_ = number;
     if (ended_)
-      return;
-    if (is_atom_record(line))
+      after_end_ += is_atom_record(line);
+    else if (is_atom_record(line))
       add(atom(line), is_record(line, "HETATM"));
     else if (is_record(line, "ENDMDL") || (is_record(line, "END") && (line.size() == 3 || line[3] == ' ')))
       ended_ = true;
   }
 
   void finish() const {
+    if (after_end_ > 0)
+      parsed_.notes.push_back("atom lines after END or ENDMDL, not read: " + std::to_string(after_end_));
     if (parsed_.pqr.empty())
       fail_input(file_ + ":" + std::to_string(std::max<int64_t>(line_, 1)) +
                  ": found the end without an ATOM or HETATM record, expected PQR");
@@ -163,7 +165,7 @@ private:
   const std::string& file_;
   Parsed& parsed_;
   std::unordered_map<std::string, size_t> chain_;
-  int64_t line_ = 0;
+  int64_t line_ = 0, after_end_ = 0;
   bool ended_ = false;
 };
 

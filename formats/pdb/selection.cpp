@@ -1,5 +1,6 @@
 // selection.cpp — parsing with gemmi, and the lens.
 #include "formats/pdb/selection.hpp"
+#include "formats/pdb/parse.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
 #include <vector>
@@ -17,6 +18,14 @@ bool is_open_range(std::string_view cid) {
   return !residue.empty() && residue.back() == '-';
 }
 
+/// Of gemmi's "Invalid selection syntax near "…": …" what is not the selection itself.
+std::string reason(const std::string& what) {
+  const size_t begin = what.find(" near "), end = what.rfind(": ");
+  return begin == std::string::npos || end <= begin
+             ? ""
+             : " (" + in_quotes(what.substr(begin + 1, end - begin - 1)) + ")";
+}
+
 } // namespace
 
 Selection::Selection(const std::string& text, const std::string& where, bool around_allowed) {
@@ -25,7 +34,7 @@ Selection::Selection(const std::string& text, const std::string& where, bool aro
   if (!word.empty() && word[0] == "around") {
     const double distance = word.size() >= 3 ? decimal(word.back()).value_or(0) : 0;
     if (!around_allowed || !(distance > 0))
-      fail_input(where + ": found selection '" + text + "', expected " +
+      fail_input(where + ": found selection " + in_quotes(text) + ", expected " +
                  (around_allowed ? "around SELECTION DISTANCE, DISTANCE > 0 (Å)" : "no 'around' here"));
     around_ = distance;
     cid = trimmed(std::string_view(word[1].data(), static_cast<size_t>(word.back().data() - word[1].data())));
@@ -33,7 +42,7 @@ Selection::Selection(const std::string& text, const std::string& where, bool aro
   try {
     selection_ = gemmi::Selection(cid);
   } catch (const std::exception& e) {
-    fail_input(where + ": found selection '" + text + "', expected gemmi's syntax (" + e.what() + ")");
+    fail_input(where + ": found selection " + in_quotes(text) + ", expected gemmi's syntax" + reason(e.what()));
   }
   // gemmi 0.5.7 takes "45" for "45-"; in MMDB syntax, and in later gemmi, it is that residue alone.
   if (!selection_.from_seqid.empty() && selection_.to_seqid.empty() && !is_open_range(cid))

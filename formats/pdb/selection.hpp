@@ -23,8 +23,6 @@ public:
   bool atom(const gemmi::Atom& a) const { return selection_.matches(a); }
   /// Å; negative when the selection is no "around".
   double around() const { return around_; }
-  /// Does it ask whether a residue is polymer or solvent?
-  bool needs_entities() const { return !selection_.entity_types.all; }
 
 private:
   gemmi::Selection selection_;

@@ -250,3 +250,39 @@ TEST_CASE("the bundled structure has the counts of its header") {
   CHECK(c.report.waters == 215);
   CHECK(convert(text, {}, "1tii.pdb").text == c.text);
 }
+
+TEST_CASE("a mutated structure is refused with one line, or read") {
+  const std::string text = slurp(MOLMESH_SOURCE_DIR "/tests/data/1tii.pdb").substr(0, 40'000);
+  uint32_t seed = 2;
+  const auto next = [&](size_t n) { return ((seed = seed * 1664525u + 1013904223u) >> 8) % n; };
+  int refused = 0;
+  for (int n = 0; n < 400; ++n) {
+    std::string mutated = text;
+    for (size_t k = 1 + next(6); k > 0; --k) {
+      const size_t at = next(mutated.size());
+      switch (next(5)) {
+      case 0:
+        mutated[at] = static_cast<char>(next(256));
+        break;
+      case 1:
+        mutated.erase(at, next(100));
+        break;
+      case 2:
+        mutated.insert(at, mutated.substr(next(mutated.size()), next(100)));
+        break;
+      case 3:
+        mutated[at] = "0123456789.-+ *\n\tA"[next(18)];
+        break;
+      default:
+        mutated.resize(at + 1);
+      }
+    }
+    const std::string message = refusal(mutated);
+    CHECK(message.find('\n') == std::string::npos);
+    if (!message.empty())
+      CHECK(message.rfind("x.pdb:", 0) == 0);
+    refused += !message.empty();
+  }
+  CHECK(refused > 50);
+  CHECK(refused < 350);
+}
