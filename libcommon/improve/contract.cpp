@@ -64,14 +64,36 @@ bool Editor::surface_link_holds(int32_t a, int32_t b, const Ring& r) {
   return common.size() == 2 && surface_a.size() > 3;
 }
 
+bool Editor::may_contract(const Vertex& a, const Vertex& b) const {
+  if (a.kind == Kind::fixed || (a.kind != Kind::interior && b.kind == Kind::interior))
+    return false;
+  return a.kind != Kind::sliding || b.kind != Kind::sliding || (a.frozen & ~b.frozen) == 0;
+}
+
+// For a on a labelled face: the edge a b runs in all its labels, and the links hold. Needs star_ = star of a;
+// star2_ is then b's.
+bool Editor::borders_allow(int32_t e, int32_t a, int32_t b) {
+  const Vertex& ka = m_.vertex[size_t(a)];
+  if (!ring(e, a, b, ring_) || ring_.border.size() != 2)
+    return false;
+  const bool crease = ka.kind == Kind::sliding && (ka.frozen & (ka.frozen - 1)) != 0;
+  if ((ring_.label[0] != ring_.label[1]) != crease)
+    return false;
+  for (const int32_t t : ring_.element) { // they go: the faces beyond them take their labels
+    const Element& el = m_.element[size_t(t)];
+    const size_t fa = size_t(el.find(a)), fb = size_t(el.find(b));
+    if (el.label[fb] != 0 && (crease || el.label[fa] != 0 || el.n[fa] < 0))
+      return false;
+    if (el.n[fb] < 0 && el.n[fa] < 0)
+      return false;
+  }
+  return surface_link_holds(a, b, ring_);
+}
+
 bool Editor::contract(int32_t e, int i, int j) {
   const int32_t a = m_.element[size_t(e)].v[size_t(i)], b = m_.element[size_t(e)].v[size_t(j)];
-  const Vertex &ka = m_.vertex[size_t(a)], &kb = m_.vertex[size_t(b)];
-  if (ka.kind == Kind::fixed || (ka.kind != Kind::interior && kb.kind == Kind::interior))
-    return false;
-  if (ka.kind == Kind::sliding && kb.kind == Kind::sliding && (ka.frozen & ~kb.frozen) != 0)
-    return false;
-  if (!star(a, star_))
+  const Vertex& ka = m_.vertex[size_t(a)];
+  if (!may_contract(ka, m_.vertex[size_t(b)]) || !star(a, star_))
     return false;
   const float before = worst(star_), above = before + 1e-5f + 0.01f * before;
   now_.clear();
@@ -89,37 +111,114 @@ bool Editor::contract(int32_t e, int i, int j) {
     now_.push_back(c);
   }
   if (ka.kind != Kind::interior) {
-    if (!ring(e, a, b, ring_) || ring_.border.size() != 2)
-      return false;
-    const bool crease = ka.kind == Kind::sliding && (ka.frozen & (ka.frozen - 1)) != 0;
-    if ((ring_.label[0] != ring_.label[1]) != crease)
-      return false;
-    double limit = 1, fit = 0;
+    double length, limit;
+    gather(star_, a, length, limit);
     const Vec3d pb = m_.point[size_t(b)];
-    for (const int32_t t : star_) {
-      const Element& el = m_.element[size_t(t)];
-      const int fa = el.find(a), fb = el.find(b);
-      for (int f = 0; f < 4; ++f) {
-        if (f == fa || el.label[size_t(f)] == 0)
-          continue;
-        limit = std::max(limit, misfit_face(el, size_t(f), -1, {}));
-        if (fb >= 0 && f != fb)
-          continue; // the triangle goes
-        // The element between goes: the face beyond it takes the label.
-        if (f == fb && (crease || el.label[size_t(fa)] != 0 || el.n[size_t(fa)] < 0))
-          return false;
-        fit = std::max(fit, misfit_face(el, size_t(f), a, pb));
-      }
-    }
-    if (fit > limit || !surface_link_holds(a, b, ring_))
+    std::erase_if(sails_, [&](const Sail& s) { return s.p[0] == pb || s.p[1] == pb || s.p[2] == pb; });
+    if (!sails_fit(pb, limit) || !borders_allow(e, a, b))
       return false;
   }
+  finish_contraction(a, b);
+  return true;
+}
+
+// As contract(), but b moves too: both stars are judged at the best place for it.
+bool Editor::merge(int32_t e, int i, int j, float goal) {
+  int32_t a = m_.element[size_t(e)].v[size_t(i)], b = m_.element[size_t(e)].v[size_t(j)];
+  if (!may_contract(m_.vertex[size_t(a)], m_.vertex[size_t(b)]))
+    std::swap(a, b);
+  const Vertex &ka = m_.vertex[size_t(a)], &kb = m_.vertex[size_t(b)];
+  if (!may_contract(ka, kb) || kb.kind == Kind::fixed || !star(a, star_) || !star(b, star2_))
+    return false;
+  const float before = std::min(worst(star_), worst(star2_)), above = before + 1e-5f + 0.01f * before;
+  const Vec3d pa = m_.point[size_t(a)], pb = m_.point[size_t(b)];
+  double length, limit, limit_b;
+  gather(star_, a, length, limit);
+  const std::vector<Sail> sails_a = sails_;
+  gather(star2_, b, length, limit_b);
+  limit = std::max(limit, limit_b);
+  sails_.insert(sails_.end(), sails_a.begin(), sails_a.end());
+  std::erase_if(sails_, [&](const Sail& s) { // those on the edge go
+    int ends = 0;
+    for (const Vec3d& p : s.p)
+      ends += (p == pa) + (p == pb);
+    return ends == 2;
+  });
+  spokes_.clear();
+  now_.clear();
+  const auto add = [&](const std::vector<int32_t>& elements, int32_t from, int32_t other) {
+    for (const int32_t t : elements) {
+      const Element& el = m_.element[size_t(t)];
+      if (el.find(other) >= 0)
+        continue;
+      Candidate c{el.v, el.region, 0, {}};
+      std::array<Vec3d, 4> p;
+      for (size_t n = 0; n < 4; ++n) {
+        p[n] = m_.point[size_t(c.v[n])];
+        if (from == a && el.n[n] < 0)
+          c.outside[n] = el.label[n];
+      }
+      const int k = el.find(from);
+      c.v[size_t(k)] = b;
+      spokes_.add(p, k);
+      if (from == a)
+        now_.push_back(c);
+    }
+  };
+  add(star_, a, b);
+  const size_t made = now_.size();
+  add(star2_, b, a);
+  Vec3d x = pb;
+  float best = spokes_.worst(pb, 0);
+  if (ka.kind == kb.kind && ka.frozen == kb.frozen) {
+    Vec3d y = 0.5 * (pa + pb);
+    const float q = constrain(kb, pb, y, guard_.reach * length) ? spokes_.worst(y, std::max(best, 0.f)) : -1.f;
+    if (q > best)
+      best = q, x = y;
+  }
+  if (!(best > 0.25f * before) || !sails_fit(x, limit))
+    return false;
+  search(kb, x, best, std::max(goal, above), length, limit);
+  if (best <= above || (ka.kind != Kind::interior && !borders_allow(e, a, b)))
+    return false;
+  if (ka.kind == Kind::interior && !star(b, star2_))
+    return false;
+  m_.point[size_t(b)] = x;
+  bool good = true;
+  for (size_t c = 0; c < made && good; ++c)
+    good = judge(now_[c], before);
+  std::vector<float> q;
+  for (size_t t = 0; t < star2_.size() && good; ++t) {
+    const Element& el = m_.element[size_t(star2_[t])];
+    Candidate c{el.v, el.region, 0, {}};
+    good = el.find(a) >= 0 || judge(c, before);
+    q.push_back(c.q);
+  }
+  if (!good) {
+    m_.point[size_t(b)] = pb;
+    return false;
+  }
+  for (size_t t = 0; t < star2_.size(); ++t) {
+    Element& el = m_.element[size_t(star2_[t])];
+    for (const int32_t v : el.v)
+      m_.touched[size_t(v)] = time;
+    if (el.find(a) < 0) {
+      el.q = q[t];
+      changed.push_back(star2_[t]);
+    }
+  }
+  finish_contraction(a, b);
+  return true;
+}
+
+// star_ gives way to now_.
+void Editor::finish_contraction(int32_t a, int32_t b) {
   old_ = star_;
   replace(old_, now_);
   m_.incident[size_t(a)] = -1;
+  m_.touched[size_t(b)] = time;
   room_.vertex.push_back(a);
   ++counts.contractions;
-  return true;
 }
 
 } // namespace molmesh::improve

@@ -222,6 +222,7 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   m.point = mesh.point;
   m.vertex.resize(m.point.size());
   m.incident.assign(m.point.size(), -1);
+  m.touched.assign(m.point.size(), 0);
   m.element.resize(mesh.tet.size());
   for (size_t e = 0; e < mesh.tet.size(); ++e) {
     m.element[e].v = mesh.tet[e];

@@ -28,7 +28,8 @@ struct Element {
   std::array<int32_t, 4> n{-1, -1, -1, -1}; ///< element across face i; -1: none
   std::array<uint8_t, 4> label{};           ///< of face i, an index into DynamicMesh::labels; 0: none
   int32_t region = 0;
-  float q = 0; ///< tet_quality
+  float q = 0;       ///< tet_quality
+  int32_t tried = 0; ///< when the schedule last found nothing to do for it
 
   bool alive() const { return v[0] >= 0; }
   int find(int32_t vertex) const {
@@ -49,6 +50,7 @@ struct DynamicMesh {
   std::vector<Vec3d> point;
   std::vector<Vertex> vertex;
   std::vector<int32_t> incident; ///< [vertices] an element at the vertex; -1: free slot
+  std::vector<int32_t> touched;  ///< [vertices] when an element at the vertex last changed
   std::vector<Element> element;
   std::vector<Label> labels; ///< [0] is no label
 

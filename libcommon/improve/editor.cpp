@@ -161,8 +161,8 @@ double Editor::misfit_face(const Element& e, size_t face, int32_t from, Vec3d at
   return outward(e, face) ? misfit(p[0], p[1], p[2]) : misfit(p[0], p[2], p[1]);
 }
 
-bool Editor::constrain(int32_t v, Vec3d& x, double reach) const {
-  const Vertex& k = m_.vertex[size_t(v)];
+// Moves a trial x of a vertex at `from` onto what it is bound to.
+bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const {
   switch (k.kind) {
   case Kind::interior:
     return true;
@@ -171,7 +171,7 @@ bool Editor::constrain(int32_t v, Vec3d& x, double reach) const {
   case Kind::sliding:
     for (int a = 0; a < 3; ++a)
       if (k.frozen >> a & 1)
-        x[a] = m_.point[size_t(v)][a];
+        x[a] = from[a];
     return true;
   case Kind::fixed:
     break;
@@ -254,8 +254,10 @@ void Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
     e.region = c.region;
     e.q = c.q;
     e.label = c.outside;
-    for (const int32_t v : c.v)
+    for (const int32_t v : c.v) {
       m_.incident[size_t(v)] = id;
+      m_.touched[size_t(v)] = time;
+    }
   }
   for (; reused < old.size(); ++reused) {
     m_.element[size_t(old[reused])] = {};

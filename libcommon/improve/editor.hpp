@@ -3,6 +3,7 @@
 // of different parts may run at the same time, and what they do does not depend on the order.
 #pragma once
 #include "improve/dynamic_mesh.hpp"
+#include "improve/search.hpp"
 #include "improve/target.hpp"
 #include <array>
 #include <cstdint>
@@ -22,6 +23,7 @@ struct Guard {
   double angle = 32;      ///< degrees between its normal and the target's at its centroid
   double distance = 0.12; ///< of its centroid, in spacings
   double reach = 0.5;     ///< of a projection, in edge lengths: further, and pinches drop two points on one place
+  bool operator==(const Guard&) const = default;
 };
 
 /// What one part may touch. Reserved slots are those of dead elements and vertices.
@@ -56,17 +58,19 @@ public:
 
   // Each tries its operation and tells whether it was done: the worst quality among the elements concerned has
   // risen.
-  bool smooth(int32_t v, float goal);        ///< moves v until its elements reach the goal
-  bool remove_edge(int32_t e, int i, int j); ///< edge v[i] v[j] of element e; flips a surface edge
-  bool swap_face(int32_t e, int i);          ///< face i: two elements become three
-  bool contract(int32_t e, int i, int j);    ///< v[i] goes to v[j]
-  bool split(int32_t e, int i, int j);       ///< a new vertex near the middle of the edge
+  bool smooth(int32_t v, float goal);              ///< moves v until its elements reach the goal
+  bool remove_edge(int32_t e, int i, int j);       ///< edge v[i] v[j] of element e; flips a surface edge
+  bool swap_face(int32_t e, int i);                ///< face i: two elements become three
+  bool contract(int32_t e, int i, int j);          ///< v[i] goes to v[j]
+  bool merge(int32_t e, int i, int j, float goal); ///< v[i] and v[j] meet where their elements are best
+  bool split(int32_t e, int i, int j, float goal); ///< a new vertex near the middle of the edge
   /// Moves a surface vertex onto the target, all the way or part of it; no element falls under `floor`.
   bool settle(int32_t v, float floor);
 
   /// Elements made or changed by operations since the caller last cleared it.
   std::vector<int32_t> changed;
   Counts counts;
+  int32_t time = 1; ///< what operations write to DynamicMesh::touched
 
 private:
   bool owned(int32_t e) const;
@@ -81,7 +85,20 @@ private:
   bool surface_link_holds(int32_t a, int32_t b, const Ring& r);
   float worst(const std::vector<int32_t>& elements) const;
   bool outward(const Element& e, size_t face) const;
-  bool constrain(int32_t v, Vec3d& x, double reach) const;
+  bool constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const;
+  /// A triangle on the target with one vertex that moves, running as the target's normal.
+  struct Sail {
+    std::array<Vec3d, 3> p;
+    int moving;
+  };
+  void add_sail(const Element& e, size_t face, int32_t from);
+  bool sails_fit(Vec3d x, double limit) const;
+  void gather(const std::vector<int32_t>& elements, int32_t v, double& length, double& limit);
+  bool search(const Vertex& k, Vec3d& x, float& best, float goal, double length, double limit);
+  bool take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above);
+  bool may_contract(const Vertex& a, const Vertex& b) const;
+  void finish_contraction(int32_t a, int32_t b);
+  bool borders_allow(int32_t e, int32_t a, int32_t b);
 
   DynamicMesh& m_;
   const Target* target_;
@@ -103,6 +120,8 @@ private:
   std::vector<int32_t> star_, star2_, old_;
   std::vector<Candidate> now_;
   Ring ring_;
+  Spokes spokes_;
+  std::vector<Sail> sails_;
 };
 
 } // namespace molmesh::improve

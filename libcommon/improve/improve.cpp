@@ -90,7 +90,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     const double part = share[std::min<size_t>(size_t(round), std::size(share) - 1)];
     Pass pass;
     pass.goal = static_cast<float>(part * part * goal);
-    pass.split = round >= 2;
+    pass.effort = round >= 2;
     for (int repeat = 0; repeat < 2; ++repeat) {
       result.counts += schedule.run(pass);
       if (density)

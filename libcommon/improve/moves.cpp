@@ -1,12 +1,9 @@
-// moves.cpp — vertices move: pattern search for the worst element, and settling on the target.
+// moves.cpp — vertices move or come: search for the worst element, settling on the target, edge splits.
 #include "improve/editor.hpp"
-#include "improve/search.hpp"
 #include <algorithm>
 
 namespace molmesh::improve {
 namespace {
-
-thread_local Spokes spokes;
 
 // Directions a vertex may take: all, the free axes, or the plane across the normal.
 int basis_of(const Vertex& k, const Target* target, Vec3d x, Vec3d basis[3]) {
@@ -34,21 +31,55 @@ int basis_of(const Vertex& k, const Target* target, Vec3d x, Vec3d basis[3]) {
 
 } // namespace
 
-bool Editor::smooth(int32_t v, float goal) {
-  const Vertex& k = m_.vertex[size_t(v)];
-  if (k.kind == Kind::fixed || !star(v, star_))
-    return false;
-  const float before = worst(star_);
-  if (before >= goal)
-    return false;
-  const Vec3d from = m_.point[size_t(v)];
+// A labelled face of e seen from the side that counts it, with vertex `from` moving.
+void Editor::add_sail(const Element& e, size_t face, int32_t from) {
+  if (!target_ || !m_.labels[e.label[face]].curved())
+    return;
+  if (e.n[face] >= 0 && m_.element[size_t(e.n[face])].region < e.region)
+    return; // its other side counts it
+  Sail s{{}, -1};
+  for (size_t i = 0; i < 3; ++i) {
+    const int32_t v = e.v[size_t(outward_face[face][i])];
+    s.p[i] = m_.point[size_t(v)];
+    if (v == from)
+      s.moving = static_cast<int>(i);
+  }
+  if (!outward(e, face)) {
+    std::swap(s.p[1], s.p[2]);
+    s.moving = s.moving == 1 ? 2 : s.moving == 2 ? 1 : s.moving;
+  }
+  sails_.push_back(s);
+}
+
+bool Editor::sails_fit(Vec3d x, double limit) const {
+  for (const Sail& s : sails_) {
+    auto p = s.p;
+    p[size_t(s.moving)] = x;
+    if (misfit(p[0], p[1], p[2]) > limit)
+      return false;
+  }
+  return true;
+}
+
+bool Editor::search(const Vertex& k, Vec3d& x, float& best, float goal, double length, double limit) {
   Vec3d basis[3];
-  const int dimensions = basis_of(k, target_, from, basis);
+  const int dimensions = basis_of(k, target_, x, basis);
   if (dimensions == 0)
     return false;
-  spokes.clear();
-  double length = 0, limit = 1;
-  for (const int32_t t : star_) {
+  const Vec3d from = x;
+  return pattern_search(
+      spokes_, x, best, goal, length, basis, dimensions,
+      [&](Vec3d& y) { return constrain(k, from, y, guard_.reach * length); },
+      [&](Vec3d y) { return sails_fit(y, limit); });
+}
+
+// Spokes and sails of v's star; the mean length of its edges, and the worst misfit now.
+void Editor::gather(const std::vector<int32_t>& elements, int32_t v, double& length, double& limit) {
+  const Vec3d from = m_.point[size_t(v)];
+  spokes_.clear();
+  sails_.clear();
+  length = 0;
+  for (const int32_t t : elements) {
     const Element& e = m_.element[size_t(t)];
     const int i = e.find(v);
     std::array<Vec3d, 4> p;
@@ -56,46 +87,56 @@ bool Editor::smooth(int32_t v, float goal) {
       p[j] = m_.point[size_t(e.v[j])];
       length += norm(p[j] - from);
     }
-    spokes.add(p, i);
-    for (size_t f = 0; f < 4; ++f)
-      if (e.label[f] != 0 && f != size_t(i))
-        limit = std::max(limit, misfit_face(e, f, v, from));
-  }
-  length /= 3. * double(star_.size());
-  const auto accept = [&](Vec3d y) {
-    if (k.kind != Kind::surface)
-      return true;
-    for (const int32_t t : star_) {
-      const Element& e = m_.element[size_t(t)];
+    spokes_.add(p, i);
+    if (m_.vertex[size_t(v)].kind == Kind::surface)
       for (size_t f = 0; f < 4; ++f)
-        if (e.label[f] != 0 && e.v[f] != v && misfit_face(e, f, v, y) > limit)
-          return false;
-    }
-    return true;
-  };
-  Vec3d x = from;
-  float best = before;
-  if (!pattern_search(
-          spokes, x, best, goal, length, basis, dimensions,
-          [&](Vec3d& y) { return constrain(v, y, guard_.reach * length); }, accept))
-    return false;
-  m_.point[size_t(v)] = x;
+        if (e.label[f] != 0 && f != size_t(i))
+          add_sail(e, f, v);
+  }
+  length /= 3. * double(elements.size());
+  limit = 1;
+  for (const Sail& s : sails_)
+    limit = std::max(limit, misfit(s.p[0], s.p[1], s.p[2]));
+}
+
+// v is at its new place: takes it when every element of the star is above.
+bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above) {
   now_.clear();
-  bool good = true;
-  for (const int32_t t : star_) {
+  for (const int32_t t : elements) {
     const Element& e = m_.element[size_t(t)];
     now_.push_back({e.v, e.region, 0, {}});
-    good = good && judge(now_.back(), before);
+    if (!judge(now_.back(), above)) {
+      m_.point[size_t(v)] = from;
+      return false;
+    }
   }
-  if (!good) {
-    m_.point[size_t(v)] = from;
-    return false;
+  for (size_t i = 0; i < elements.size(); ++i) {
+    Element& e = m_.element[size_t(elements[i])];
+    e.q = now_[i].q;
+    for (const int32_t w : e.v)
+      m_.touched[size_t(w)] = time;
   }
-  for (size_t i = 0; i < star_.size(); ++i)
-    m_.element[size_t(star_[i])].q = now_[i].q;
-  changed.insert(changed.end(), star_.begin(), star_.end());
+  changed.insert(changed.end(), elements.begin(), elements.end());
   ++counts.moves;
   return true;
+}
+
+bool Editor::smooth(int32_t v, float goal) {
+  const Vertex& k = m_.vertex[size_t(v)];
+  if (k.kind == Kind::fixed || !star(v, star_))
+    return false;
+  const float before = worst(star_);
+  if (before >= goal)
+    return false;
+  double length, limit;
+  gather(star_, v, length, limit);
+  const Vec3d from = m_.point[size_t(v)];
+  Vec3d x = from;
+  float best = before;
+  if (!search(k, x, best, goal, length, limit))
+    return false;
+  m_.point[size_t(v)] = x;
+  return take(star_, v, from, before);
 }
 
 bool Editor::settle(int32_t v, float floor) {
@@ -108,45 +149,27 @@ bool Editor::settle(int32_t v, float floor) {
     return false;
   if (!star(v, star_))
     return false;
-  double length = 0;
-  for (const int32_t t : star_)
-    for (const int32_t w : m_.element[size_t(t)].v)
-      length += norm(m_.point[size_t(w)] - from);
-  length /= 3. * double(star_.size());
+  double length, limit;
+  gather(star_, v, length, limit);
   Vec3d to = from;
   if (!target_->project(to, guard_.reach * length))
     return false;
   const float above = std::min(floor, worst(star_)) * 0.999999f;
   for (double step = 1; step > 0.1; step *= 0.5) {
     m_.point[size_t(v)] = step == 1 ? to : from + step * (to - from);
-    now_.clear();
-    bool good = true;
-    for (const int32_t t : star_) {
-      const Element& e = m_.element[size_t(t)];
-      now_.push_back({e.v, e.region, 0, {}});
-      good = good && judge(now_.back(), above);
-      if (!good)
-        break;
-    }
-    if (!good)
-      continue;
-    for (size_t i = 0; i < star_.size(); ++i)
-      m_.element[size_t(star_[i])].q = now_[i].q;
-    ++counts.moves;
-    return true;
+    if (take(star_, v, from, above))
+      return true;
   }
-  m_.point[size_t(v)] = from;
   return false;
 }
 
-bool Editor::split(int32_t e, int i, int j) {
+bool Editor::split(int32_t e, int i, int j, float goal) {
   const int32_t a = m_.element[size_t(e)].v[size_t(i)], b = m_.element[size_t(e)].v[size_t(j)];
   if (room_.vertex.empty() || !ring(e, a, b, ring_) || !has_room(ring_.element.size(), 2 * ring_.element.size()))
     return false;
-  const size_t borders = ring_.border.size();
   Vertex kind;
-  if (borders != 0) {
-    if (borders != 2 || ring_.label[0] != ring_.label[1])
+  if (!ring_.border.empty()) {
+    if (ring_.border.size() != 2 || ring_.label[0] != ring_.label[1])
       return false;
     const Label& label = m_.labels[ring_.label[0]];
     kind.label = ring_.label[0];
@@ -156,57 +179,42 @@ bool Editor::split(int32_t e, int i, int j) {
     if (label.curved() && !target_)
       return false;
   }
-  const Vec3d pa = m_.point[size_t(a)], pb = m_.point[size_t(b)];
-  const double length = norm(pb - pa);
-  Vec3d x = 0.5 * (pa + pb);
-  const int32_t v = room_.vertex.back();
-  m_.vertex[size_t(v)] = kind;
-  m_.point[size_t(v)] = x;
-  const float before = worst(ring_.element);
+  const float before = worst(ring_.element), aim = before + 1e-4f + 0.02f * before;
   double limit = 1;
   now_.clear();
-  spokes.clear();
+  spokes_.clear();
+  sails_.clear();
+  const int32_t v = room_.vertex.back(), ends[2] = {a, b};
   for (const int32_t t : ring_.element) {
     const Element& el = m_.element[size_t(t)];
-    const int32_t ends[2] = {a, b};
     for (const int32_t end : ends) {
       Candidate c{el.v, el.region, 0, {}};
       const int k = el.find(end);
-      c.v[size_t(k)] = v;
       std::array<Vec3d, 4> p;
       for (size_t n = 0; n < 4; ++n)
         p[n] = m_.point[size_t(c.v[n])];
-      spokes.add(p, k);
+      c.v[size_t(k)] = v;
+      spokes_.add(p, k);
       now_.push_back(c);
-    }
-    for (size_t f = 0; f < 4; ++f)
-      if (el.label[f] != 0 && el.v[f] != a && el.v[f] != b)
-        limit = std::max(limit, misfit_face(el, f, -1, {}));
-  }
-  const auto fits = [&](Vec3d y) {
-    if (kind.kind != Kind::surface)
-      return true;
-    for (const int32_t t : ring_.element) {
-      const Element& el = m_.element[size_t(t)];
       for (size_t f = 0; f < 4; ++f)
-        if (el.label[f] != 0 && el.v[f] != a && el.v[f] != b &&
-            (misfit_face(el, f, a, y) > limit || misfit_face(el, f, b, y) > limit))
-          return false;
+        if (el.label[f] != 0 && el.v[f] != a && el.v[f] != b)
+          add_sail(el, f, end);
     }
-    return true;
-  };
-  const auto bound = [&](Vec3d& y) { return constrain(v, y, guard_.reach * length); };
-  Vec3d basis[3];
-  if (!bound(x) || !fits(x))
+  }
+  for (const Sail& s : sails_)
+    limit = std::max(limit, misfit(s.p[0], s.p[1], s.p[2]));
+  const Vec3d pa = m_.point[size_t(a)], pb = m_.point[size_t(b)];
+  const double length = norm(pb - pa);
+  Vec3d x = 0.5 * (pa + pb);
+  if (!constrain(kind, x, x, guard_.reach * length) || !sails_fit(x, limit))
     return false;
-  const int dimensions = basis_of(kind, target_, x, basis);
-  float best = spokes.worst(x, -1);
-  if (!(best > 0))
-    return false;
-  const float aim = before + 1e-4f + 0.02f * before;
-  pattern_search(spokes, x, best, 0.3f, length, basis, dimensions, bound, fits);
+  float best = spokes_.worst(x, 0.25f * before);
+  if (!(best > 0.25f * before))
+    return false; // too far from a gain to search for it
+  search(kind, x, best, std::max(goal, aim), length, limit);
   if (best < aim)
     return false;
+  m_.vertex[size_t(v)] = kind;
   m_.point[size_t(v)] = x;
   for (Candidate& c : now_)
     if (!judge(c, before))

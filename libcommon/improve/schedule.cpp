@@ -19,22 +19,26 @@ bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass
     if (editor.swap_face(t, f))
       return true;
   const float q = element().q;
+  bool done = false;
   for (size_t i = 0; i < 4; ++i) {
-    editor.smooth(element().v[i], pass.goal);
+    done |= editor.smooth(element().v[i], pass.goal);
     if (element().q >= pass.goal)
       return true;
   }
   if (element().q > 1.05f * q)
     return true;
-  if (pass.contract)
+  for (const auto& [i, j] : edges)
+    if (editor.contract(t, i, j) || editor.contract(t, j, i))
+      return true;
+  if (pass.effort >= 1) {
     for (const auto& [i, j] : edges)
-      if (editor.contract(t, i, j) || editor.contract(t, j, i))
+      if (editor.merge(t, i, j, pass.goal))
         return true;
-  if (pass.split)
     for (const auto& [i, j] : edges)
-      if (editor.split(t, i, j))
+      if (editor.split(t, i, j, pass.goal))
         return true;
-  return false;
+  }
+  return done;
 }
 
 } // namespace
@@ -53,7 +57,7 @@ int64_t Schedule::below(float goal) const {
       [](int64_t a, int64_t b) { return a + b; });
 }
 
-void Schedule::set_owners() {
+void Schedule::set_owners(int shift) {
   Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   for (size_t v = 0; v < m_.point.size(); ++v)
     for (int a = 0; a < 3; ++a) {
@@ -62,7 +66,7 @@ void Schedule::set_owners() {
     }
   // Halves along one, two or three axes in turn.
   static constexpr int shifts[4] = {0, 7, 3, 5};
-  const int s = shifts[shift_++ % 4];
+  const int s = shifts[shift % 4];
   int64_t n[3];
   double cell = cell_;
   for (;; cell *= 2) {
@@ -125,6 +129,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     m_.point.resize(vertex_size);
     m_.vertex.resize(vertex_size);
     m_.incident.resize(vertex_size, -1);
+    m_.touched.resize(vertex_size, 0);
     owner_.resize(vertex_size);
     for (const int32_t v : job.room.vertex)
       owner_[size_t(v)] = job.room.part;
@@ -146,18 +151,30 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
 }
 
 Counts Schedule::run(const Pass& pass) {
-  set_owners();
+  if (pass != last_)
+    since_ = time_; // what failed before may work now
+  last_ = pass;
+  set_owners(passes_++);
+  constexpr int32_t sweeps = 4;
+  const int32_t start = time_, since = since_;
+  time_ += sweeps;
+  const auto worthwhile = [&](int32_t t) {
+    const Element& e = m_.element[size_t(t)];
+    if (!e.alive() || e.q >= pass.goal)
+      return false;
+    const auto& v = e.v;
+    return e.tried <= since || std::max({m_.touched[size_t(v[0])], m_.touched[size_t(v[1])],
+                                         m_.touched[size_t(v[2])], m_.touched[size_t(v[3])]}) >= e.tried;
+  };
   std::vector<int32_t> items, part;
   for (size_t e = 0; e < m_.element.size(); ++e)
-    if (m_.element[e].alive() && m_.element[e].q < pass.goal) {
+    if (worthwhile(static_cast<int32_t>(e))) {
       items.push_back(static_cast<int32_t>(e));
       part.push_back(part_of(m_.element[e]));
     }
   return for_parts(items, part, pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
-    const auto bad = [&](int32_t e) {
-      return m_.element[size_t(e)].alive() && m_.element[size_t(e)].q < pass.goal;
-    };
-    for (int sweep = 0; sweep < 4 && !list.empty(); ++sweep) {
+    for (int32_t sweep = 1; sweep <= sweeps && !list.empty(); ++sweep) {
+      editor.time = start + sweep;
       std::sort(list.begin(), list.end(), [&](int32_t a, int32_t b) {
         const float qa = m_.element[size_t(a)].q, qb = m_.element[size_t(b)].q;
         return qa != qb ? qa < qb : a < b;
@@ -165,18 +182,18 @@ Counts Schedule::run(const Pass& pass) {
       list.erase(std::unique(list.begin(), list.end()), list.end());
       editor.changed.clear();
       for (const int32_t e : list)
-        if (bad(e))
-          improve_element(editor, m_, e, pass);
+        if (worthwhile(e) && !improve_element(editor, m_, e, pass))
+          m_.element[size_t(e)].tried = editor.time;
       list.clear();
       for (const int32_t e : editor.changed)
-        if (bad(e))
+        if (worthwhile(e))
           list.push_back(e);
     }
   });
 }
 
 Counts Schedule::settle(float floor, const Guard& guard) {
-  set_owners();
+  set_owners(settles_++);
   std::vector<int32_t> items, part;
   for (size_t v = 0; v < m_.point.size(); ++v)
     if (m_.incident[v] >= 0 && m_.vertex[v].kind == Kind::surface) {

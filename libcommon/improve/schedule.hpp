@@ -10,9 +10,9 @@ namespace molmesh::improve {
 /// What a pass does with an element below its goal.
 struct Pass {
   float goal = 0; ///< quality
-  bool contract = true;
-  bool split = false;
+  int effort = 0; ///< 1: merges and splits too
   Guard guard;
+  bool operator==(const Pass&) const = default;
 };
 
 /// Runs passes over a mesh that lives as long as it.
@@ -32,14 +32,16 @@ private:
   using Work = std::function<void(Editor&, std::vector<int32_t>&)>;
   Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
                    const Work& work);
-  void set_owners();
+  void set_owners(int shift);
   int32_t part_of(const Element& e) const;
 
   DynamicMesh& m_;
   const Target* target_;
   double cell_;
   int threads_;
-  int shift_ = 0;
+  int passes_ = 0, settles_ = 0;
+  int32_t time_ = 0, since_ = 0; ///< sweeps so far; when this kind of pass began
+  Pass last_;
   int32_t parts_ = 0;
   std::vector<int32_t> owner_;
   std::vector<uint32_t> stamp_;
