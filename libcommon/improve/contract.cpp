@@ -110,6 +110,8 @@ bool Editor::contract(int32_t e, int i, int j) {
       return false;
     now_.push_back(c);
   }
+  if (lack(now_) > lack(star_))
+    return false;
   if (ka.kind != Kind::interior) {
     double length, limit;
     gather(star_, a, length, limit);
@@ -123,7 +125,7 @@ bool Editor::contract(int32_t e, int i, int j) {
 }
 
 // As contract(), but b moves too: both stars are judged at the best place for it.
-bool Editor::merge(int32_t e, int i, int j, float goal) {
+bool Editor::merge(int32_t e, int i, int j) {
   int32_t a = m_.element[size_t(e)].v[size_t(i)], b = m_.element[size_t(e)].v[size_t(j)];
   if (!may_contract(m_.vertex[size_t(a)], m_.vertex[size_t(b)]))
     std::swap(a, b);
@@ -187,14 +189,17 @@ bool Editor::merge(int32_t e, int i, int j, float goal) {
   bool good = true;
   for (size_t c = 0; c < made && good; ++c)
     good = judge(now_[c], before);
+  float sum = lack(now_), allowed = lack(star_);
   std::vector<float> q;
   for (size_t t = 0; t < star2_.size() && good; ++t) {
     const Element& el = m_.element[size_t(star2_[t])];
     Candidate c{el.v, el.region, 0, {}};
     good = el.find(a) >= 0 || judge(c, before);
     q.push_back(c.q);
+    if (el.find(a) < 0)
+      sum += lack(c.q), allowed += lack(el.q);
   }
-  if (!good) {
+  if (!good || sum > allowed) {
     m_.point[size_t(b)] = pb;
     return false;
   }

@@ -130,6 +130,20 @@ float Editor::worst(const std::vector<int32_t>& elements) const {
   return w;
 }
 
+float Editor::lack(const std::vector<int32_t>& elements) const {
+  float sum = 0;
+  for (const int32_t e : elements)
+    sum += lack(m_.element[size_t(e)].q);
+  return sum;
+}
+
+float Editor::lack(const std::vector<Candidate>& elements) const {
+  float sum = 0;
+  for (const Candidate& c : elements)
+    sum += lack(c.q);
+  return sum;
+}
+
 // Whether the face, seen as an outward one of e, runs as the target's normal does.
 bool Editor::outward(const Element& e, size_t face) const {
   const bool lower = e.n[face] < 0 || e.region < m_.element[size_t(e.n[face])].region;

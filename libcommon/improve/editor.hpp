@@ -58,18 +58,19 @@ public:
 
   // Each tries its operation and tells whether it was done: the worst quality among the elements concerned has
   // risen.
-  bool smooth(int32_t v, float goal);              ///< moves v until its elements reach the goal
+  bool smooth(int32_t v);              ///< moves v until its elements reach the goal
   bool remove_edge(int32_t e, int i, int j);       ///< edge v[i] v[j] of element e; flips a surface edge
   bool swap_face(int32_t e, int i);                ///< face i: two elements become three
   bool contract(int32_t e, int i, int j);          ///< v[i] goes to v[j]
-  bool merge(int32_t e, int i, int j, float goal); ///< v[i] and v[j] meet where their elements are best
-  bool split(int32_t e, int i, int j, float goal); ///< a new vertex near the middle of the edge
+  bool merge(int32_t e, int i, int j); ///< v[i] and v[j] meet where their elements are best
+  bool split(int32_t e, int i, int j); ///< a new vertex near the middle of the edge
   /// Moves a surface vertex onto the target, all the way or part of it; no element falls under `floor`.
   bool settle(int32_t v, float floor);
 
   /// Elements made or changed by operations since the caller last cleared it.
   std::vector<int32_t> changed;
   Counts counts;
+  float goal = 1;   ///< quality that elements are missed by in the deficit
   int32_t time = 1; ///< what operations write to DynamicMesh::touched
 
 private:
@@ -84,6 +85,10 @@ private:
   bool edge_is_labelled(int32_t a, int32_t b);
   bool surface_link_holds(int32_t a, int32_t b, const Ring& r);
   float worst(const std::vector<int32_t>& elements) const;
+  /// What an element lacks: (1 - q / goal)² below the goal.
+  float lack(float q) const { return q < goal ? (1 - q / goal) * (1 - q / goal) : 0; }
+  float lack(const std::vector<int32_t>& elements) const;
+  float lack(const std::vector<Candidate>& elements) const;
   bool outward(const Element& e, size_t face) const;
   bool constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const;
   /// A triangle on the target with one vertex that moves, running as the target's normal.
@@ -94,8 +99,8 @@ private:
   void add_sail(const Element& e, size_t face, int32_t from);
   bool sails_fit(Vec3d x, double limit) const;
   void gather(const std::vector<int32_t>& elements, int32_t v, double& length, double& limit);
-  bool search(const Vertex& k, Vec3d& x, float& best, float goal, double length, double limit);
-  bool take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above);
+  bool search(const Vertex& k, Vec3d& x, float& best, float aim, double length, double limit);
+  bool take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above, float allowed);
   bool may_contract(const Vertex& a, const Vertex& b) const;
   void finish_contraction(int32_t a, int32_t b);
   bool borders_allow(int32_t e, int32_t a, int32_t b);

@@ -152,7 +152,7 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
         if (m_.element[size_t(x)].find(vt) >= 0)
           return false;
   }
-  if (!has_room(ring_.element.size(), now_.size()))
+  if (!has_room(ring_.element.size(), now_.size()) || lack(now_) > lack(ring_.element))
     return false;
   old_ = ring_.element;
   replace(old_, now_);
@@ -180,9 +180,9 @@ bool Editor::swap_face(int32_t e, int i) {
       return false;
     now_.push_back(c);
   }
-  if (!has_room(2, 3))
-    return false;
   old_ = {e, n};
+  if (!has_room(2, 3) || lack(now_) > lack(old_))
+    return false;
   replace(old_, now_);
   ++counts.face_swaps;
   return true;

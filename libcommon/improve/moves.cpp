@@ -61,14 +61,14 @@ bool Editor::sails_fit(Vec3d x, double limit) const {
   return true;
 }
 
-bool Editor::search(const Vertex& k, Vec3d& x, float& best, float goal, double length, double limit) {
+bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double length, double limit) {
   Vec3d basis[3];
   const int dimensions = basis_of(k, target_, x, basis);
   if (dimensions == 0)
     return false;
   const Vec3d from = x;
   return pattern_search(
-      spokes_, x, best, goal, length, basis, dimensions,
+      spokes_, x, best, aim, length, basis, dimensions,
       [&](Vec3d& y) { return constrain(k, from, y, guard_.reach * length); },
       [&](Vec3d y) { return sails_fit(y, limit); });
 }
@@ -100,7 +100,7 @@ void Editor::gather(const std::vector<int32_t>& elements, int32_t v, double& len
 }
 
 // v is at its new place: takes it when every element of the star is above.
-bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above) {
+bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above, float allowed) {
   now_.clear();
   for (const int32_t t : elements) {
     const Element& e = m_.element[size_t(t)];
@@ -109,6 +109,10 @@ bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, f
       m_.point[size_t(v)] = from;
       return false;
     }
+  }
+  if (lack(now_) > allowed) {
+    m_.point[size_t(v)] = from;
+    return false;
   }
   for (size_t i = 0; i < elements.size(); ++i) {
     Element& e = m_.element[size_t(elements[i])];
@@ -121,7 +125,7 @@ bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, f
   return true;
 }
 
-bool Editor::smooth(int32_t v, float goal) {
+bool Editor::smooth(int32_t v) {
   const Vertex& k = m_.vertex[size_t(v)];
   if (k.kind == Kind::fixed || !star(v, star_))
     return false;
@@ -136,7 +140,7 @@ bool Editor::smooth(int32_t v, float goal) {
   if (!search(k, x, best, goal, length, limit))
     return false;
   m_.point[size_t(v)] = x;
-  return take(star_, v, from, before);
+  return take(star_, v, from, before, lack(star_));
 }
 
 bool Editor::settle(int32_t v, float floor) {
@@ -157,13 +161,13 @@ bool Editor::settle(int32_t v, float floor) {
   const float above = std::min(floor, worst(star_)) * 0.999999f;
   for (double step = 1; step > 0.1; step *= 0.5) {
     m_.point[size_t(v)] = step == 1 ? to : from + step * (to - from);
-    if (take(star_, v, from, above))
+    if (take(star_, v, from, above, 1e30f))
       return true;
   }
   return false;
 }
 
-bool Editor::split(int32_t e, int i, int j, float goal) {
+bool Editor::split(int32_t e, int i, int j) {
   const int32_t a = m_.element[size_t(e)].v[size_t(i)], b = m_.element[size_t(e)].v[size_t(j)];
   if (room_.vertex.empty() || !ring(e, a, b, ring_) || !has_room(ring_.element.size(), 2 * ring_.element.size()))
     return false;
@@ -219,6 +223,8 @@ bool Editor::split(int32_t e, int i, int j, float goal) {
   for (Candidate& c : now_)
     if (!judge(c, before))
       return false;
+  if (lack(now_) > lack(ring_.element))
+    return false;
   room_.vertex.pop_back();
   old_ = ring_.element;
   replace(old_, now_);

@@ -21,7 +21,7 @@ bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass
   const float q = element().q;
   bool done = false;
   for (size_t i = 0; i < 4; ++i) {
-    done |= editor.smooth(element().v[i], pass.goal);
+    done |= editor.smooth(element().v[i]);
     if (element().q >= pass.goal)
       return true;
   }
@@ -32,10 +32,10 @@ bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass
       return true;
   if (pass.effort >= 1) {
     for (const auto& [i, j] : edges)
-      if (editor.merge(t, i, j, pass.goal))
+      if (editor.merge(t, i, j))
         return true;
     for (const auto& [i, j] : edges)
-      if (editor.split(t, i, j, pass.goal))
+      if (editor.split(t, i, j))
         return true;
   }
   return done;
@@ -173,6 +173,7 @@ Counts Schedule::run(const Pass& pass) {
       part.push_back(part_of(m_.element[e]));
     }
   return for_parts(items, part, pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
+    editor.goal = pass.goal;
     for (int32_t sweep = 1; sweep <= sweeps && !list.empty(); ++sweep) {
       editor.time = start + sweep;
       std::sort(list.begin(), list.end(), [&](int32_t a, int32_t b) {
