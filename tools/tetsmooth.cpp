@@ -13,7 +13,7 @@ namespace {
 
 struct Options : cli::Common {
   std::string density;
-  int iterations = 10;
+  int iterations = 12;
   double min_dihedral = 0, max_dihedral = 180; // degrees asked for
 };
 
@@ -73,6 +73,8 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.counts["face_swaps"] = c.face_swaps;
   run.counts["contractions"] = c.contractions;
   run.counts["splits"] = c.splits;
+  if (grid)
+    run.counts["points_off_surface"] = result.off_surface;
   run.counts["quality_before"] = json(result.before);
   run.counts["quality_after"] = json(result.after);
 

@@ -58,19 +58,20 @@ public:
 
   // Each tries its operation and tells whether it was done: the worst quality among the elements concerned has
   // risen.
-  bool smooth(int32_t v);              ///< moves v until its elements reach the goal
-  bool remove_edge(int32_t e, int i, int j);       ///< edge v[i] v[j] of element e; flips a surface edge
-  bool swap_face(int32_t e, int i);                ///< face i: two elements become three
-  bool contract(int32_t e, int i, int j);          ///< v[i] goes to v[j]
-  bool merge(int32_t e, int i, int j); ///< v[i] and v[j] meet where their elements are best
-  bool split(int32_t e, int i, int j); ///< a new vertex near the middle of the edge
+  bool smooth(int32_t v);                    ///< moves v until its elements reach the goal
+  bool remove_edge(int32_t e, int i, int j); ///< edge v[i] v[j] of element e; flips a surface edge
+  bool swap_face(int32_t e, int i);          ///< face i: two elements become three
+  bool contract(int32_t e, int i, int j);    ///< v[i] goes to v[j]
+  bool merge(int32_t e, int i, int j);       ///< v[i] and v[j] meet where their elements are best
+  bool split(int32_t e, int i, int j);       ///< a new vertex near the middle of the edge
   /// Moves a surface vertex onto the target, all the way or part of it; no element falls under `floor`.
   bool settle(int32_t v, float floor);
 
   /// Elements made or changed by operations since the caller last cleared it.
   std::vector<int32_t> changed;
   Counts counts;
-  float goal = 1;   ///< quality that elements are missed by in the deficit
+  float goal = 1; ///< quality that elements are missed by in the deficit
+  bool worst_first = true;
   int32_t time = 1; ///< what operations write to DynamicMesh::touched
 
 private:
@@ -85,8 +86,10 @@ private:
   bool edge_is_labelled(int32_t a, int32_t b);
   bool surface_link_holds(int32_t a, int32_t b, const Ring& r);
   float worst(const std::vector<int32_t>& elements) const;
-  /// What an element lacks: (1 - q / goal)² below the goal.
-  float lack(float q) const { return q < goal ? (1 - q / goal) * (1 - q / goal) : 0; }
+  /// What an element below the goal lacks: goal / q - 1 when the worst matter most, (1 - q / goal)² when all do.
+  float lack(float q) const {
+    return q >= goal ? 0 : worst_first ? goal / std::max(q, 1e-4f) - 1 : (1 - q / goal) * (1 - q / goal);
+  }
   float lack(const std::vector<int32_t>& elements) const;
   float lack(const std::vector<Candidate>& elements) const;
   bool outward(const Element& e, size_t face) const;

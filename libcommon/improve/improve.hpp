@@ -9,8 +9,8 @@
 namespace molmesh::improve {
 
 struct Options {
-  double min_dihedral = 28, max_dihedral = 134; ///< degrees aimed at; the work stops where they are reached
-  int iterations = 8;                           ///< rounds at most; 0 leaves the mesh as it is
+  double min_dihedral = 26, max_dihedral = 138.5; ///< degrees aimed at; the work stops where they are reached
+  int iterations = 12;                            ///< rounds at most; 0 leaves the mesh as it is
   int threads = 1;
 };
 

@@ -57,18 +57,19 @@ int64_t Schedule::below(float goal) const {
       [](int64_t a, int64_t b) { return a + b; });
 }
 
-void Schedule::set_owners(int shift) {
+void Schedule::set_owners(int shift, double cell) {
   Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   for (size_t v = 0; v < m_.point.size(); ++v)
     for (int a = 0; a < 3; ++a) {
       low[a] = std::min(low[a], m_.point[v][a]);
       high[a] = std::max(high[a], m_.point[v][a]);
     }
-  // Halves along one, two or three axes in turn.
-  static constexpr int shifts[4] = {0, 7, 3, 5};
-  const int s = shifts[shift % 4];
+  // Fractions of a cell that never line up again on all axes: every neighborhood lies inside some part soon.
+  double offset[3];
+  static constexpr double stride[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+  for (int a = 0; a < 3; ++a)
+    offset[a] = shift * stride[a] - std::floor(shift * stride[a]);
   int64_t n[3];
-  double cell = cell_;
   for (;; cell *= 2) {
     double cells = 1;
     for (int a = 0; a < 3; ++a) {
@@ -82,7 +83,7 @@ void Schedule::set_owners(int shift) {
   par::for_n(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
     int64_t part = 0;
     for (int a = 0; a < 3; ++a)
-      part = part * n[a] + static_cast<int64_t>((m_.point[size_t(v)][a] - low[a]) / cell + (s >> a & 1 ? 0.5 : 0));
+      part = part * n[a] + static_cast<int64_t>((m_.point[size_t(v)][a] - low[a]) / cell + offset[a]);
     owner_[size_t(v)] = static_cast<int32_t>(part);
   });
   parts_ = static_cast<int32_t>(n[0] * n[1] * n[2]);
@@ -154,7 +155,7 @@ Counts Schedule::run(const Pass& pass) {
   if (pass != last_)
     since_ = time_; // what failed before may work now
   last_ = pass;
-  set_owners(passes_++);
+  set_owners(passes_++, pass.cell * cell_);
   constexpr int32_t sweeps = 4;
   const int32_t start = time_, since = since_;
   time_ += sweeps;
@@ -174,6 +175,7 @@ Counts Schedule::run(const Pass& pass) {
     }
   return for_parts(items, part, pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
     editor.goal = pass.goal;
+    editor.worst_first = pass.worst_first;
     for (int32_t sweep = 1; sweep <= sweeps && !list.empty(); ++sweep) {
       editor.time = start + sweep;
       std::sort(list.begin(), list.end(), [&](int32_t a, int32_t b) {
@@ -194,7 +196,7 @@ Counts Schedule::run(const Pass& pass) {
 }
 
 Counts Schedule::settle(float floor, const Guard& guard) {
-  set_owners(settles_++);
+  set_owners(settles_++, cell_);
   std::vector<int32_t> items, part;
   for (size_t v = 0; v < m_.point.size(); ++v)
     if (m_.incident[v] >= 0 && m_.vertex[v].kind == Kind::surface) {

@@ -9,7 +9,9 @@ namespace molmesh::improve {
 
 /// What a pass does with an element below its goal.
 struct Pass {
-  float goal = 0; ///< quality
+  float goal = 0;  ///< quality
+  double cell = 1; ///< size of the parts, in the schedule's cells
+  bool worst_first = true;
   int effort = 0; ///< 1: merges and splits too
   Guard guard;
   bool operator==(const Pass&) const = default;
@@ -32,7 +34,7 @@ private:
   using Work = std::function<void(Editor&, std::vector<int32_t>&)>;
   Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
                    const Work& work);
-  void set_owners(int shift);
+  void set_owners(int shift, double cell);
   int32_t part_of(const Element& e) const;
 
   DynamicMesh& m_;
