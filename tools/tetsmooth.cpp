@@ -4,6 +4,7 @@
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "improve/improve.hpp"
+#include "mesh/partition.hpp"
 #include <optional>
 #include <sstream>
 
@@ -13,7 +14,7 @@ namespace {
 
 struct Options : cli::Common {
   std::string density;
-  int iterations = 12;
+  int iterations = 12, parts = 8;
   double min_dihedral = 0, max_dihedral = 180; // degrees asked for
 };
 
@@ -22,6 +23,8 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("FILE");
   app.add_option("--iterations", o.iterations, "rounds at most; 0 leaves the mesh as it is")
       ->check(CLI::Range(0, 1000));
+  app.add_option("--parts", o.parts, "METIS parts that the elements are numbered by in the output")
+      ->check(CLI::Range(1, 1000000));
   app.add_option("--min-dihedral", o.min_dihedral, "quality asked for, degrees: status 5 when an angle is smaller")
       ->check(CLI::Range(0., 70.5));
   app.add_option("--max-dihedral", o.max_dihedral, "quality asked for, degrees: status 5 when an angle is larger")
@@ -78,6 +81,8 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.counts["quality_before"] = json(result.before);
   run.counts["quality_after"] = json(result.after);
 
+  run.phase("partition");
+  mesh.part = partition(mesh, o.parts, threads);
   run.phase("write");
   mesh.creator = cli::creator("tetsmooth");
   cli::OutputFile output(o.output);
