@@ -66,17 +66,17 @@ density::Options density_options(const Options& o) {
   return d;
 }
 
-void report(cli::Run& r, const BlockGrid& grid, const density::Counts& counts) {
-  const Vec3i n = grid.frame.points;
-  r.counts["atoms"] = grid.info.atoms;
+void report(cli::Run& r, const density::Band& band, const density::Counts& counts) {
+  const Vec3i n = band.frame.points;
+  r.counts["atoms"] = band.info.atoms;
   r.counts["grid_points"] = {n.x, n.y, n.z};
-  r.counts["spacing"] = grid.frame.spacing;
+  r.counts["spacing"] = band.frame.spacing;
   r.counts["margin"] = counts.margin;
-  r.counts["analyzed_points"] = grid.info.analyzed_points;
-  r.counts["k_A"] = double(grid.info.analyzed_points) / (double(n.x) * n.y * n.z);
+  r.counts["analyzed_points"] = band.info.analyzed_points;
+  r.counts["k_A"] = double(band.info.analyzed_points) / (double(n.x) * n.y * n.z);
   r.counts["active_points"] = counts.search.active_points;
-  r.counts["blocks"] = grid.corner.size();
-  r.counts["inside_blocks"] = grid.inside.size();
+  r.counts["blocks"] = band.block.size();
+  r.counts["inside_blocks"] = band.inside.size();
   r.counts["blocks_visited"] = counts.search.blocks_visited;
   r.counts["blocks_evaluated"] = counts.search.blocks_evaluated;
   r.counts["group_visits"] = counts.search.group_visits;
@@ -91,16 +91,16 @@ Status run(const Options& o, cli::Run& r) {
   const Hierarchy h = formats::read_hier(in.stream(), in.name());
   r.phase("density");
   density::Counts counts;
-  BlockGrid grid;
+  density::Band band;
   {
     cli::Progress progress("density", "nodes", o.quiet);
     d.progress = [&progress](int64_t done, int64_t total) { progress(done, total); };
-    grid = density::compute(h, d, counts);
+    band = density::compute(h, d, counts);
   }
-  grid.info.creator = cli::creator(r.tool);
-  report(r, grid, counts);
+  band.info.creator = cli::creator(r.tool);
+  report(r, band, counts);
   r.phase("write");
-  formats::write_vdb(out.stream(), grid);
+  formats::write_vdb(out.stream(), band);
   out.commit();
   return Status::good;
 }

@@ -3,6 +3,7 @@
 #include "par/par.hpp"
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <blosc.h>
 #include <cstring>
 #include <ostream>
@@ -71,7 +72,7 @@ std::string fresh_uuid() {
   return u;
 }
 
-void write_preamble(Bytes& out, const BlockGrid& grid) {
+void write_preamble(Bytes& out, const GridFrame& f, const FieldInfo& info) {
   out.number(int64_t{0x56444220});
   out.number(uint32_t{224}); // file version
   out.number(uint32_t{10});  // library version
@@ -88,8 +89,6 @@ void write_preamble(Bytes& out, const BlockGrid& grid) {
     out.number(int64_t{0});
   out.number(uint32_t{2 | 4}); // active values only, Blosc
 
-  const FieldInfo& info = grid.info;
-  const GridFrame& f = grid.frame;
   MetadataWriter m;
   m.add("name", std::string("density"));
   m.add("class", std::string("unknown"));
@@ -170,8 +169,9 @@ Iterator end_of(Iterator begin, Iterator end, int bits) {
   return std::find_if(begin, end, [&](const Entry& e) { return !(shifted(e.corner, bits) == p); });
 }
 
-void write_topology(Bytes& out, const BlockGrid& grid, const std::vector<Entry>& entry) {
-  const auto inside_value = static_cast<float>(grid.info.inside_value);
+/// active(b): the mask of leaf b.
+template <class Active>
+void write_topology(Bytes& out, float inside_value, const std::vector<Entry>& entry, Active&& active) {
   out.number(int32_t{1});  // buffers
   out.number(0.0f);        // background
   out.number(uint32_t{0}); // root tiles
@@ -205,77 +205,114 @@ void write_topology(Bytes& out, const BlockGrid& grid, const std::vector<Entry>&
       lower.write(out, inside_value);
       for (Iterator x = b; x != e; ++x)
         if (x->leaf >= 0)
-          out.raw(&grid.active[8 * static_cast<size_t>(x->leaf)], 64);
+          out.raw(active(x->leaf), 64);
     }
   }
 }
 
-void write_leaf(Bytes& out, const BlockGrid& grid, size_t b) {
-  const float* value = &grid.value[512 * b];
-  const uint64_t* active = &grid.active[8 * b];
-  float packed[512];
+/// A leaf: its masks [8] of active points and of inactive points inside, and the values of the active ones in
+/// order.
+struct LeafView {
+  const uint64_t *active, *inside;
+  const float* packed;
+};
+
+void write_leaf(Bytes& out, const LeafView& leaf, float inside_value) {
   size_t count = 0;
   std::array<uint64_t, 8> outside{};
   bool any_inside = false;
-  for (size_t s = 0; s < 512; ++s) {
-    const uint64_t bit = uint64_t{1} << (s & 63);
-    if (active[s >> 6] & bit)
-      packed[count++] = value[s];
-    else if (value[s] == 0)
-      outside[s >> 6] |= bit;
-    else
-      any_inside = true;
+  for (size_t w = 0; w < 8; ++w) {
+    count += static_cast<size_t>(std::popcount(leaf.active[w]));
+    outside[w] = ~leaf.active[w] & ~leaf.inside[w];
+    any_inside = any_inside || (~leaf.active[w] & leaf.inside[w]) != 0;
   }
-  out.raw(active, 64);
+  out.raw(leaf.active, 64);
   out.number(static_cast<int8_t>(any_inside ? 4 : 0));
   if (any_inside) {
-    out.number(static_cast<float>(grid.info.inside_value));
+    out.number(inside_value);
     out.raw(outside.data(), sizeof outside);
   }
   const size_t bytes = 4 * count;
-  char compressed[sizeof packed + BLOSC_MAX_OVERHEAD];
+  char compressed[4 * 512 + BLOSC_MAX_OVERHEAD];
   constexpr size_t worth_it = 128; // below, OpenVDB expects padding
   const int size = bytes < worth_it ? 0
-                                    : blosc_compress_ctx(5, BLOSC_SHUFFLE, sizeof(float), bytes, packed, compressed,
-                                                         bytes, BLOSC_LZ4_COMPNAME, 0, 1);
+                                    : blosc_compress_ctx(5, BLOSC_SHUFFLE, sizeof(float), bytes, leaf.packed,
+                                                         compressed, bytes, BLOSC_LZ4_COMPNAME, 0, 1);
   if (size > 0) {
     out.number(static_cast<int64_t>(size));
     out.raw(compressed, static_cast<size_t>(size));
   } else {
     out.number(-static_cast<int64_t>(bytes)); // stored as it is
-    out.raw(packed, bytes);
+    out.raw(leaf.packed, bytes);
   }
 }
 
-} // namespace
-
-void write_vdb(std::ostream& out, const BlockGrid& grid) {
+/// corner(b) of n leaves, active(b): its mask, with_leaf(b, f): f(LeafView).
+template <class Corner, class Active, class WithLeaf>
+void write(std::ostream& out, const GridFrame& frame, const FieldInfo& info, const std::vector<Vec3i>& inside,
+           int64_t n, Corner&& corner, Active&& active, WithLeaf&& with_leaf) {
   const int threads = par::default_threads();
+  const auto inside_value = static_cast<float>(info.inside_value);
   std::vector<Entry> entry;
-  entry.reserve(grid.corner.size() + grid.inside.size());
-  for (size_t b = 0; b < grid.corner.size(); ++b)
-    entry.push_back({grid.corner[b], static_cast<int64_t>(b)});
-  for (const Vec3i& c : grid.inside)
+  entry.reserve(static_cast<size_t>(n) + inside.size());
+  for (int64_t b = 0; b < n; ++b)
+    entry.push_back({corner(b), b});
+  for (const Vec3i& c : inside)
     entry.push_back({c, -1});
   par::sort(entry, threads, depth_first);
   Bytes head;
-  write_preamble(head, grid);
-  write_topology(head, grid, entry);
+  write_preamble(head, frame, info);
+  write_topology(head, inside_value, entry, active);
   out.write(head.str().data(), static_cast<std::streamsize>(head.str().size()));
 
   std::erase_if(entry, [](const Entry& e) { return e.leaf < 0; });
   constexpr int64_t per_part = 256, parts_at_once = 256;
-  const auto n = static_cast<int64_t>(entry.size()), parts = (n + per_part - 1) / per_part;
+  const int64_t parts = (n + per_part - 1) / per_part;
   for (int64_t first = 0; first < parts && out; first += parts_at_once) {
     std::vector<Bytes> part(static_cast<size_t>(std::min(parts_at_once, parts - first)));
     par::for_n(static_cast<int64_t>(part.size()), threads, 1, [&](int64_t p) {
       const int64_t begin = (first + p) * per_part;
       for (int64_t i = begin; i < std::min(n, begin + per_part); ++i)
-        write_leaf(part[static_cast<size_t>(p)], grid, static_cast<size_t>(entry[static_cast<size_t>(i)].leaf));
+        with_leaf(entry[static_cast<size_t>(i)].leaf,
+                  [&](const LeafView& leaf) { write_leaf(part[static_cast<size_t>(p)], leaf, inside_value); });
     });
     for (const Bytes& b : part)
       out.write(b.str().data(), static_cast<std::streamsize>(b.str().size()));
   }
+}
+
+} // namespace
+
+void write_vdb(std::ostream& out, const density::Band& band) {
+  const auto block = [&](int64_t b) -> const density::BandBlock& { return band.block[static_cast<size_t>(b)]; };
+  write(
+      out, band.frame, band.info, band.inside, static_cast<int64_t>(band.block.size()),
+      [&](int64_t b) { return block(b).corner; }, [&](int64_t b) { return block(b).active.data(); },
+      [&](int64_t b, auto&& use) {
+        use({block(b).active.data(), block(b).above.data(), block(b).value});
+      });
+}
+
+void write_vdb(std::ostream& out, const BlockGrid& grid) {
+  write(
+      out, grid.frame, grid.info, grid.inside, static_cast<int64_t>(grid.corner.size()),
+      [&](int64_t b) { return grid.corner[static_cast<size_t>(b)]; },
+      [&](int64_t b) { return &grid.active[8 * static_cast<size_t>(b)]; },
+      [&](int64_t b, auto&& use) {
+        const float* value = &grid.value[512 * static_cast<size_t>(b)];
+        const uint64_t* active = &grid.active[8 * static_cast<size_t>(b)];
+        float packed[512];
+        uint64_t inside[8] = {};
+        size_t count = 0;
+        for (size_t s = 0; s < 512; ++s) {
+          const uint64_t bit = uint64_t{1} << (s & 63);
+          if (active[s >> 6] & bit)
+            packed[count++] = value[s];
+          else if (value[s] != 0)
+            inside[s >> 6] |= bit;
+        }
+        use({active, inside, packed});
+      });
 }
 
 } // namespace molmesh::formats

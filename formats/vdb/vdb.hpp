@@ -1,5 +1,6 @@
 // vdb.hpp — reader and writer of the sparse density grid in OpenVDB's format (VDBv1.md).
 #pragma once
+#include "density/band.hpp"
 #include "density/block_grid.hpp"
 #include <iosfwd>
 #include <string>
@@ -10,5 +11,6 @@ namespace molmesh::formats {
 BlockGrid read_vdb(std::istream& in, const std::string& file);
 /// Contents depend on the grid alone; OpenVDB adds a fresh UUID to the bytes.
 void write_vdb(std::ostream& out, const BlockGrid& grid);
+void write_vdb(std::ostream& out, const density::Band& band);
 
 } // namespace molmesh::formats

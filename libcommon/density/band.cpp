@@ -1,161 +1,318 @@
-// band.cpp — corners of band cells by row masks: ten points a row, one bit each.
+// band.cpp — corners of band cells by row masks, with cursors along the sorted blocks instead of look-ups.
 #include "density/band.hpp"
+#include "density/block_kernel.hpp"
 #include "par/par.hpp"
 #include <algorithm>
-#include <array>
 #include <bit>
+#include <cstring>
 
 namespace molmesh::density {
 namespace {
 
-/// Points of a block that are below and above the band: bit 8·j + k of word i.
-struct Classes {
-  std::array<uint64_t, 8> below{}, above{};
-};
+constexpr Mask filled(uint64_t word) {
+  Mask m{};
+  for (uint64_t& w : m)
+    w = word;
+  return m;
+}
+constexpr Mask none = filled(0), all = filled(~uint64_t{0});
 
-class Band {
+Vec3i neighbor(Vec3i corner, int n) {
+  return corner + 8 * Vec3i{n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1};
+}
+
+/// Finds the 27 blocks around corners that come in ascending order.
+class Cursors {
 public:
-  Band(const BlockGrid& grid, int threads) : grid_(grid), index_(grid), classes_(grid.corner.size()) {
-    par::for_n(static_cast<int64_t>(classes_.size()), threads, 64, [&](int64_t i) {
-      const auto b = static_cast<size_t>(i);
-      for (size_t s = 0; s < 512; ++s) {
-        const double v = grid.value[512 * b + s];
-        classes_[b].below[s >> 6] |= uint64_t{v < grid.info.band_lower} << (s & 63);
-        classes_[b].above[s >> 6] |= uint64_t{v > grid.info.band_upper} << (s & 63);
+  enum : int64_t { outside = -1, inside = -2 };
+  /// first: the lowest corner that will be asked for.
+  Cursors(const KnownBlocks& b, Vec3i first) : b_(b) {
+    for (int row = 0; row < 9; ++row) {
+      const Vec3i at = neighbor(first, 3 * row);
+      known_[row] = std::lower_bound(b.known.begin(), b.known.end(), at,
+                                     [](const KnownBlock& k, Vec3i c) { return k.corner < c; }) -
+                    b.known.begin();
+      inside_[row] = std::lower_bound(b.inside.begin(), b.inside.end(), at) - b.inside.begin();
+    }
+  }
+  /// around[27]: position in `known`, or a side.
+  void find(Vec3i corner, int64_t* around) {
+    for (int row = 0; row < 9; ++row) {
+      Vec3i at = neighbor(corner, 3 * row);
+      int64_t &k = known_[row], &i = inside_[row];
+      const auto known_end = static_cast<int64_t>(b_.known.size()),
+                 inside_end = static_cast<int64_t>(b_.inside.size());
+      while (k < known_end && b_.known[static_cast<size_t>(k)].corner < at)
+        ++k;
+      while (i < inside_end && b_.inside[static_cast<size_t>(i)] < at)
+        ++i;
+      int64_t next_k = k, next_i = i;
+      for (int z = 0; z < 3; ++z, at.z += 8) {
+        int64_t& to = around[3 * row + z];
+        to = outside;
+        if (next_k < known_end && b_.known[static_cast<size_t>(next_k)].corner == at)
+          to = next_k++;
+        else if (next_i < inside_end && b_.inside[static_cast<size_t>(next_i)] == at)
+          to = inside, ++next_i;
       }
-    });
-    all_below_.below.fill(~uint64_t{0});
-    all_above_.above.fill(~uint64_t{0});
+    }
   }
-  bool known(Vec3i corner) const { return index_.find(corner) >= 0; }
-  const Classes& classes(Vec3i corner) const {
-    const int64_t b = index_.find(corner);
-    return b >= 0 ? classes_[static_cast<size_t>(b)] : b == BlockIndex::inside ? all_above_ : all_below_;
-  }
-  std::array<uint64_t, 8> active(Vec3i corner) const;
 
 private:
-  const BlockGrid& grid_;
-  BlockIndex index_;
-  std::vector<Classes> classes_;
-  Classes all_below_, all_above_;
+  const KnownBlocks& b_;
+  int64_t known_[9], inside_[9];
 };
 
-/// Rows of the 10³ points around a block, along z: bit k + 1 is point k.
-using Rows = std::array<std::array<uint16_t, 10>, 10>;
-
-std::array<uint64_t, 8> Band::active(Vec3i corner) const {
-  const Classes* around[27];
+/// Points of a block that face neighbor n.
+constexpr std::array<Mask, 27> make_layers() {
+  std::array<Mask, 27> layer{};
   for (int n = 0; n < 27; ++n)
-    around[n] = &classes(corner + 8 * Vec3i{n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1});
-  Rows below, above;
-  const auto byte = [](uint64_t word, int j) { return static_cast<uint16_t>(word >> 8 * j & 0xff); };
-  for (int i = 0; i < 10; ++i)
-    for (int j = 0; j < 10; ++j) {
-      const Classes* const* row = &around[9 * ((i + 7) / 8) + 3 * ((j + 7) / 8)];
-      const auto w = static_cast<size_t>((i + 7) % 8);
-      const int bj = (j + 7) % 8;
-      const auto join = [&](auto part) {
-        return static_cast<uint16_t>(byte(part(row[0]), bj) >> 7 | byte(part(row[1]), bj) << 1 |
-                                     (byte(part(row[2]), bj) & 1) << 9);
-      };
-      const auto si = static_cast<size_t>(i), sj = static_cast<size_t>(j);
-      below[si][sj] = join([w](const Classes* c) { return c->below[w]; });
-      above[si][sj] = join([w](const Classes* c) { return c->above[w]; });
+    for (int s = 0; s < 512; ++s) {
+      const int p[3] = {s >> 6, s >> 3 & 7, s & 7}, d[3] = {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1};
+      bool on = true;
+      for (int a = 0; a < 3; ++a)
+        on = on && (d[a] == 0 || p[a] == (d[a] < 0 ? 0 : 7));
+      if (on)
+        layer[static_cast<size_t>(n)][static_cast<size_t>(s >> 6)] |= uint64_t{1} << (s & 63);
     }
-  // Cell (i,j,k), corners up to (i+1,j+1,k+1), of the 9³ around; those beyond the grid are none.
-  const Vec3i lo = grid_.frame.lower, hi = lo + grid_.frame.points; // one past the last point
-  uint16_t inside_z = 0;
+  return layer;
+}
+
+/// True when every point of `layer` has its bit in `in`.
+bool covers(const Mask& in, const Mask& layer) {
+  uint64_t left = 0;
+  for (size_t w = 0; w < 8; ++w)
+    left |= layer[w] & ~in[w];
+  return left == 0;
+}
+
+/// One x-plane of the 10³ points around a block: rows along z, bit k + 1 is point k; row j + 1 is point j.
+struct Plane {
+  uint16_t row[16];
+};
+
+/// word[9]: the plane in the 3 × 3 blocks around, by (y, z).
+Plane make_plane(const uint64_t* const word[9]) {
+  const auto bytes = [](uint64_t w) {
+    std::array<uint8_t, 8> b;
+    std::memcpy(b.data(), &w, 8);
+    return b;
+  };
+  Plane p{};
+  const auto lo = bytes(*word[3]), mid = bytes(*word[4]), hi = bytes(*word[5]);
+  for (size_t j = 0; j < 8; ++j)
+    p.row[j + 1] = static_cast<uint16_t>(mid[j] << 1 | lo[j] >> 7 | (hi[j] & 1) << 9);
+  p.row[0] = static_cast<uint16_t>((*word[1] >> 56) << 1 | *word[0] >> 63 | (*word[2] >> 56 & 1) << 9);
+  p.row[9] = static_cast<uint16_t>((*word[7] & 0xff) << 1 | (*word[6] >> 7 & 1) | (*word[8] & 1) << 9);
+  return p;
+}
+
+/// Bit k of row j: all eight corners of cell (j, k) between two planes are set.
+Plane all_corners(const Plane& a, const Plane& b) {
+  Plane c{};
+  for (int j = 0; j < 9; ++j) {
+    const auto four = static_cast<uint16_t>(a.row[j] & a.row[j + 1] & b.row[j] & b.row[j + 1]);
+    c.row[j] = static_cast<uint16_t>(four & four >> 1);
+  }
+  return c;
+}
+
+/// Active points of a block. Cells that reach beyond the grid are none.
+Mask active_points(const KnownBlocks& b, const GridFrame& frame, Vec3i corner, const int64_t* around) {
+  const Mask *below[27], *above[27];
+  for (int n = 0; n < 27; ++n) {
+    const bool known = around[n] >= 0;
+    below[n] = known ? &b.known[static_cast<size_t>(around[n])].below : around[n] == Cursors::inside ? &none : &all;
+    above[n] = known ? &b.known[static_cast<size_t>(around[n])].above : around[n] == Cursors::inside ? &all : &none;
+  }
+  const auto plane = [](const Mask* const* masks, size_t i) { // i = 0 … 9
+    const uint64_t* word[9];
+    for (size_t n = 0; n < 9; ++n)
+      word[n] = &(*masks[9 * ((i + 7) / 8) + n])[(i + 7) % 8];
+    return make_plane(word);
+  };
+  const Vec3i lo = frame.lower, last = lo + frame.points - Vec3i{1, 1, 1};
+  uint16_t in_z = 0;
   for (int k = 0; k < 9; ++k)
-    if (const int z = corner.z + k - 1; z >= lo.z && z + 1 < hi.z)
-      inside_z |= static_cast<uint16_t>(1u << k);
-  std::array<std::array<uint16_t, 9>, 9> cell;
-  for (size_t i = 0; i < 9; ++i)
-    for (size_t j = 0; j < 9; ++j) {
-      const int x = corner.x + static_cast<int>(i) - 1, y = corner.y + static_cast<int>(j) - 1;
-      const bool in = x >= lo.x && x + 1 < hi.x && y >= lo.y && y + 1 < hi.y;
-      const auto all = [&](const Rows& r) {
-        const int four = r[i][j] & r[i + 1][j] & r[i][j + 1] & r[i + 1][j + 1];
-        return four & four >> 1;
-      };
-      cell[i][j] = static_cast<uint16_t>(in ? ~(all(below) | all(above)) & inside_z : 0);
+    if (const int z = corner.z + k - 1; z >= lo.z && z < last.z)
+      in_z |= static_cast<uint16_t>(1u << k);
+  Plane below_0 = plane(below, 0), above_0 = plane(above, 0), cell_0{};
+  Mask mask{};
+  for (size_t i = 0; i < 9; ++i) {
+    const Plane below_1 = plane(below, i + 1), above_1 = plane(above, i + 1);
+    const Plane all_below = all_corners(below_0, below_1), all_above = all_corners(above_0, above_1);
+    Plane cell{};
+    const int x = corner.x + static_cast<int>(i) - 1;
+    if (x >= lo.x && x < last.x)
+      for (int j = 0; j < 9; ++j) {
+        const int y = corner.y + j - 1;
+        const bool in = y >= lo.y && y < last.y;
+        cell.row[j] = static_cast<uint16_t>(~(all_below.row[j] | all_above.row[j]) & (in ? in_z : 0));
+      }
+    if (i > 0) {
+      std::array<uint8_t, 8> bytes;
+      for (size_t j = 0; j < 8; ++j) {
+        const int four = cell_0.row[j] | cell_0.row[j + 1] | cell.row[j] | cell.row[j + 1];
+        bytes[j] = static_cast<uint8_t>(four | four >> 1);
+      }
+      std::memcpy(&mask[i - 1], bytes.data(), 8);
     }
-  std::array<uint64_t, 8> mask{};
-  for (size_t i = 0; i < 8; ++i)
-    for (size_t j = 0; j < 8; ++j) {
-      const int four = cell[i][j] | cell[i + 1][j] | cell[i][j + 1] | cell[i + 1][j + 1];
-      mask[i] |= static_cast<uint64_t>((four | four >> 1) & 0xff) << 8 * j;
-    }
+    below_0 = below_1;
+    above_0 = above_1;
+    cell_0 = cell;
+  }
   return mask;
+}
+
+constexpr int64_t grain = 512; // blocks that share cursors
+
+bool in_grid(const GridFrame& frame, Vec3i corner) {
+  for (int a = 0; a < 3; ++a)
+    if (corner[a] + 8 <= frame.lower[a] || corner[a] >= int64_t{frame.lower[a]} + frame.points[a])
+      return false;
+  return true;
+}
+
+/// Positions of the blocks of a slab among sorted ones.
+struct Range {
+  int64_t begin, end;
+};
+Range known_in(const KnownBlocks& b, Slab slab) {
+  const auto at = [&](int32_t x) {
+    return std::partition_point(b.known.begin(), b.known.end(),
+                                [x](const KnownBlock& k) { return k.corner.x < x; }) -
+           b.known.begin();
+  };
+  return {at(slab.begin), at(slab.end)};
+}
+Range inside_in(const KnownBlocks& b, Slab slab) {
+  const auto at = [&](int32_t x) {
+    return std::partition_point(b.inside.begin(), b.inside.end(), [x](Vec3i c) { return c.x < x; }) -
+           b.inside.begin();
+  };
+  return {at(slab.begin), at(slab.end)};
 }
 
 } // namespace
 
-std::vector<Vec3i> blocks_missing_from_band(const BlockGrid& grid, int threads) {
-  const Band band(grid, threads);
-  std::vector<Vec3i> candidate;
-  const auto add_unknown_around = [&](Vec3i corner) {
-    for (int n = 0; n < 27; ++n)
-      if (const Vec3i c = corner + 8 * Vec3i{n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1}; !band.known(c))
-        candidate.push_back(c);
-  };
-  for (const Vec3i& c : grid.corner)
-    add_unknown_around(c);
-  for (const Vec3i& c : grid.inside)
-    add_unknown_around(c);
-  par::sort(candidate, threads);
-  candidate.erase(std::unique(candidate.begin(), candidate.end()), candidate.end());
-  std::vector<char> needed(candidate.size());
-  par::for_n(static_cast<int64_t>(candidate.size()), threads, 64, [&](int64_t i) {
-    const auto mask = band.active(candidate[static_cast<size_t>(i)]);
-    needed[static_cast<size_t>(i)] = std::any_of(mask.begin(), mask.end(), [](uint64_t w) { return w != 0; });
+void KnownBlocks::append(const KnownBlocks& more) {
+  known.insert(known.end(), more.known.begin(), more.known.end());
+  inside.insert(inside.end(), more.inside.begin(), more.inside.end());
+}
+
+std::vector<Vec3i> blocks_missing_from_band(const KnownBlocks& b, Slab slab, const GridFrame& frame, int threads) {
+  static constexpr std::array<Mask, 27> layer = make_layers();
+  const Slab wide{slab.begin - 8, slab.end + 8};
+  const Range known = known_in(b, wide), inside = inside_in(b, wide);
+  const int64_t known_parts = (known.end - known.begin + grain - 1) / grain,
+                inside_parts = (inside.end - inside.begin + grain - 1) / grain;
+  std::vector<std::vector<Vec3i>> part(static_cast<size_t>(known_parts + inside_parts));
+  const auto wanted = [&](Vec3i c) { return c.x >= slab.begin && c.x < slab.end && in_grid(frame, c); };
+  par::for_n(known_parts, threads, 1, [&](int64_t p) {
+    const int64_t begin = known.begin + p * grain, end = std::min(known.end, begin + grain);
+    Cursors cursors(b, b.known[static_cast<size_t>(begin)].corner);
+    int64_t around[27];
+    for (int64_t i = begin; i < end; ++i) {
+      const KnownBlock& k = b.known[static_cast<size_t>(i)];
+      cursors.find(k.corner, around);
+      for (int d = 0; d < 27; ++d)
+        if (around[d] < 0 &&
+            !covers(around[d] == Cursors::inside ? k.above : k.below, layer[static_cast<size_t>(d)]) &&
+            wanted(neighbor(k.corner, d)))
+          part[static_cast<size_t>(p)].push_back(neighbor(k.corner, d));
+    }
+  });
+  // Opposite sides next to each other.
+  par::for_n(inside_parts, threads, 1, [&](int64_t p) {
+    const int64_t begin = inside.begin + p * grain, end = std::min(inside.end, begin + grain);
+    Cursors cursors(b, b.inside[static_cast<size_t>(begin)]);
+    int64_t around[27];
+    for (int64_t i = begin; i < end; ++i) {
+      const Vec3i corner = b.inside[static_cast<size_t>(i)];
+      cursors.find(corner, around);
+      for (int d = 0; d < 27; ++d)
+        if (const Vec3i c = neighbor(corner, d); around[d] == Cursors::outside && in_grid(frame, c))
+          for (const Vec3i both : {c, corner})
+            if (wanted(both))
+              part[static_cast<size_t>(known_parts + p)].push_back(both);
+    }
   });
   std::vector<Vec3i> missing;
-  for (size_t i = 0; i < candidate.size(); ++i)
-    if (needed[i])
-      missing.push_back(candidate[i]);
+  for (const std::vector<Vec3i>& v : part)
+    missing.insert(missing.end(), v.begin(), v.end());
+  par::sort(missing, threads);
+  missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
   return missing;
 }
 
-void keep_band(BlockGrid& grid, int threads, int64_t& active_points) {
-  const auto n = static_cast<int64_t>(grid.corner.size());
-  std::vector<int64_t> kept(grid.corner.size());
-  {
-    const Band band(grid, threads);
-    grid.active.resize(8 * grid.corner.size());
-    par::for_n(n, threads, 64, [&](int64_t i) {
-      const auto b = static_cast<size_t>(i);
-      const auto mask = band.active(grid.corner[b]);
-      std::copy(mask.begin(), mask.end(), &grid.active[8 * b]);
-      for (size_t s = 0; s < 512; ++s)
-        if (!(mask[s >> 6] >> (s & 63) & 1)) {
-          float& v = grid.value[512 * b + s];
-          v = v > grid.info.isovalue ? static_cast<float>(grid.info.inside_value) : 0.0f;
-        }
-      for (const uint64_t w : mask)
-        kept[b] += std::popcount(w);
-    });
-  }
-  active_points = 0;
-  size_t to = 0;
-  for (size_t b = 0; b < kept.size(); ++b) {
-    if (kept[b] == 0) {
-      if (grid.value[512 * b] != 0)
-        grid.inside.push_back(grid.corner[b]);
-      continue;
+void append_slab(const KnownBlocks& b, Slab slab, Band& band, int threads) {
+  const Range known = known_in(b, slab), inside = inside_in(b, slab);
+  const int64_t n = known.end - known.begin, parts = (n + grain - 1) / grain;
+  std::vector<Mask> mask(static_cast<size_t>(n));
+  std::vector<int64_t> count(static_cast<size_t>(parts)), points(static_cast<size_t>(parts));
+  par::for_n(parts, threads, 1, [&](int64_t p) {
+    Cursors cursors(b, b.known[static_cast<size_t>(known.begin + p * grain)].corner);
+    int64_t around[27];
+    for (int64_t i = p * grain; i < std::min(n, (p + 1) * grain); ++i) {
+      const Vec3i corner = b.known[static_cast<size_t>(known.begin + i)].corner;
+      cursors.find(corner, around);
+      Mask& m = mask[static_cast<size_t>(i)];
+      m = active_points(b, band.frame, corner, around);
+      count[static_cast<size_t>(p)] += m != none;
+      for (const uint64_t w : m)
+        points[static_cast<size_t>(p)] += std::popcount(w);
     }
-    active_points += kept[b];
-    grid.corner[to] = grid.corner[b];
-    std::copy_n(&grid.value[512 * b], 512, &grid.value[512 * to]);
-    std::copy_n(&grid.active[8 * b], 8, &grid.active[8 * to]);
-    ++to;
-  }
-  grid.corner.resize(to);
-  grid.value.resize(512 * to);
-  grid.active.resize(8 * to);
-  std::erase_if(grid.inside,
-                [&](Vec3i c) { return std::binary_search(grid.corner.begin(), grid.corner.end(), c); });
-  par::sort(grid.inside, threads);
+  });
+  const int64_t blocks = par::exclusive_scan(count), active = par::exclusive_scan(points);
+  const size_t first = band.block.size();
+  band.block.resize(first + static_cast<size_t>(blocks));
+  band.active_points += active;
+  LargeArray<float>& value = band.storage.emplace_back(static_cast<size_t>(active) + 16);
+  par::for_n(parts, threads, 1, [&](int64_t p) {
+    BandBlock* to = band.block.data() + first + count[static_cast<size_t>(p)];
+    float* packed = value.data() + points[static_cast<size_t>(p)];
+    for (int64_t i = p * grain; i < std::min(n, (p + 1) * grain); ++i) {
+      const Mask& m = mask[static_cast<size_t>(i)];
+      if (m == none)
+        continue;
+      const KnownBlock& k = b.known[static_cast<size_t>(known.begin + i)];
+      *to++ = {k.corner, m, k.above, packed};
+      packed += pack_active(k.value, m.data(), packed);
+    }
+  });
+  const auto middle = static_cast<std::ptrdiff_t>(band.inside.size());
+  band.inside.insert(band.inside.end(), b.inside.begin() + inside.begin, b.inside.begin() + inside.end);
+  const auto known_inside = static_cast<std::ptrdiff_t>(band.inside.size());
+  for (int64_t i = 0; i < n; ++i)
+    if (const KnownBlock& k = b.known[static_cast<size_t>(known.begin + i)];
+        mask[static_cast<size_t>(i)] == none && k.value[0] > band.info.isovalue)
+      band.inside.push_back(k.corner);
+  std::inplace_merge(band.inside.begin() + middle, band.inside.begin() + known_inside, band.inside.end());
+}
+
+BlockGrid to_block_grid(const Band& band, int threads) {
+  const size_t n = band.block.size();
+  BlockGrid grid;
+  grid.frame = band.frame;
+  grid.info = band.info;
+  grid.inside = band.inside;
+  grid.corner.resize(n);
+  grid.value.resize(512 * n);
+  grid.active.resize(8 * n);
+  par::for_n(static_cast<int64_t>(n), threads, grain, [&](int64_t i) {
+    const auto b = static_cast<size_t>(i);
+    const BandBlock& block = band.block[b];
+    grid.corner[b] = block.corner;
+    const float* packed = block.value;
+    for (size_t s = 0; s < 512; ++s) {
+      const uint64_t bit = uint64_t{1} << (s & 63);
+      grid.value[512 * b + s] = block.active[s >> 6] & bit  ? *packed++
+                                : block.above[s >> 6] & bit ? static_cast<float>(band.info.inside_value)
+                                                            : 0.0f;
+    }
+    std::copy(block.active.begin(), block.active.end(), &grid.active[8 * b]);
+  });
+  return grid;
 }
 
 } // namespace molmesh::density

@@ -1,6 +1,7 @@
 // block_grid.hpp — the density on the grid points near the surface, in blocks of 8³; everything else is a side.
 // What hier2density makes, the .vdb file holds and density2tet reads (design §2 and §3).
 #pragma once
+#include "density/large_array.hpp"
 #include "geom/vec.hpp"
 #include <array>
 #include <cstdint>
@@ -43,8 +44,8 @@ struct BlockGrid {
   /// active [8 n]      word 8·b + i, bit 8·j + k
   /// inside [m]        corners of the blocks without active points that lie wholly inside, ascending
   std::vector<Vec3i> corner;
-  std::vector<float> value;
-  std::vector<uint64_t> active;
+  LargeArray<float> value;
+  LargeArray<uint64_t> active;
   std::vector<Vec3i> inside;
 };
 

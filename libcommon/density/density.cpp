@@ -7,7 +7,7 @@
 
 namespace molmesh::density {
 
-BlockGrid compute(const Hierarchy& hierarchy, const Options& o, Counts& counts) {
+Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts) {
   const Field f = make_field(hierarchy, o.decay, Budget(o.tolerance).far);
   const Box box = f.bounds();
   const bool derived = o.margin < 0;
@@ -30,18 +30,18 @@ BlockGrid compute(const Hierarchy& hierarchy, const Options& o, Counts& counts) 
   s.full = o.full_search;
   s.threads = o.threads;
   s.progress = o.progress;
-  BlockGrid grid = find_band(f, frame, s, counts.search);
-  grid.info.source = hierarchy.source;
+  Band band = find_band(f, frame, s, counts.search);
+  band.info.source = hierarchy.source;
   for (const Level& l : hierarchy.level)
-    grid.info.levels += (grid.info.levels.empty() ? "" : " ") + l.name;
-  if (!derived && wall_cuts_surface(grid)) {
+    band.info.levels += (band.info.levels.empty() ? "" : " ") + l.name;
+  if (!derived && wall_cuts_surface(band)) {
     char text[128];
     std::snprintf(text, sizeof text,
                   "the grid's wall cuts the surface: a margin of %g Å is too small, %.2f Å suffices", margin,
                   sufficient_margin(f, o.band_lower));
     fail(Status::failed, text);
   }
-  return grid;
+  return band;
 }
 
 } // namespace molmesh::density

@@ -1,6 +1,5 @@
 // density.hpp — the room's front door: a hierarchy and options to the sparse density grid.
 #pragma once
-#include "density/block_grid.hpp"
 #include "density/search.hpp"
 #include "molecule/hierarchy.hpp"
 
@@ -23,8 +22,8 @@ struct Counts {
   double margin = 0; ///< Å, as used
 };
 
-/// Everything of the grid but info.creator. Throws Error(failed) when the wall of a grid with the caller's margin
+/// Everything of the band but info.creator. Throws Error(failed) when the wall of a grid with the caller's margin
 /// cuts the surface, Error(usage) when the grid is too large to index.
-BlockGrid compute(const Hierarchy& h, const Options& options, Counts& counts);
+Band compute(const Hierarchy& h, const Options& options, Counts& counts);
 
 } // namespace molmesh::density

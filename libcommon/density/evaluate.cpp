@@ -1,8 +1,10 @@
 // evaluate.cpp — separable sums per unit, powers, sums of the groups above.
 #include "density/evaluate.hpp"
+#include "density/block_kernel.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace molmesh::density {
 namespace {
@@ -11,17 +13,15 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int edge = 8, points = 512;
 
 /// start·ratio^i for the eight points of an axis.
-template <class Real>
-void geometric(double start, double ratio, Real* out) {
+void geometric(double start, double ratio, double* out) {
   for (int i = 0; i < edge; ++i, start *= ratio)
-    out[i] = static_cast<Real>(start);
+    out[i] = start;
 }
 
 /// T of a unit at every point.
-template <class Real>
-void sum_atoms(const Selection& s, const Unit& u, double decay, double h, Real* T) {
-  std::fill_n(T, points, Real(0));
-  Real ex[edge], ey[edge], ez[edge], eyz[edge * edge];
+void sum_atoms(const Selection& s, const Unit& u, double decay, double h, double* T) {
+  std::fill_n(T, points, 0.0);
+  double ex[edge], ey[edge], ez[edge], eyz[edge * edge];
   for (auto a = static_cast<size_t>(u.begin); a < static_cast<size_t>(u.end); ++a) {
     const double step = 2 * decay * h;
     const double tx = step * s.offset_x[a], ty = step * s.offset_y[a], tz = step * s.offset_z[a];
@@ -46,25 +46,24 @@ void quadratic(const Unit& u, double decay, Vec3d middle, double h, int axis, do
 }
 
 /// sum += (S)^P at every point.
-template <class Real>
-void add_unit(const Unit& u, double decay, Vec3d middle, double h, const Real* T, Real* sum) {
+void add_power(const Unit& u, double decay, Vec3d middle, double h, const double* T, double* sum) {
   double qx[edge], qy[edge], qz[edge];
-  Real qyz[64];
+  double qyz[64];
   quadratic(u, decay, middle, h, 0, qx);
   quadratic(u, decay, middle, h, 1, qy);
   quadratic(u, decay, middle, h, 2, qz);
   for (int j = 0; j < edge; ++j)
     for (int k = 0; k < edge; ++k)
-      qyz[8 * j + k] = static_cast<Real>(qy[j] + qz[k]);
-  const auto p = static_cast<Real>(u.exponent);
+      qyz[8 * j + k] = qy[j] + qz[k];
+  const auto p = u.exponent;
   for (int i = 0; i < edge; ++i) {
-    const auto q = static_cast<Real>(qx[i] + u.exponent * u.ln_center);
+    const auto q = qx[i] + u.exponent * u.ln_center;
     for (int jk = 0; jk < 64; ++jk) {
-      const Real t = T[64 * i + jk];
-      const Real e = q + qyz[jk];
-      sum[64 * i + jk] += p == 1           ? std::exp(e) * t
-                          : p == Real(0.5) ? std::exp(e) * std::sqrt(t)
-                                           : std::exp(e + p * std::log(t));
+      const double t = T[64 * i + jk];
+      const double e = q + qyz[jk];
+      sum[64 * i + jk] += p == 1     ? std::exp(e) * t
+                          : p == 0.5 ? std::exp(e) * std::sqrt(t)
+                                     : std::exp(e + p * std::log(t));
     }
   }
 }
@@ -75,7 +74,7 @@ Arithmetic arithmetic_for(const Field& f, double tolerance) {
   // The smallest term of a group above the innermost level that can matter, as cutoffs see it.
   const bool coarse = tolerance >= 2e-5 * std::max(1.0, f.steepest);
   if (f.plain_above)
-    return coarse ? Arithmetic::single : Arithmetic::twice;
+    return coarse ? Arithmetic::in_single : Arithmetic::in_double;
   double least = 0;
   for (size_t c = 0; c < f.group.size(); ++c) {
     const double p = f.level[0].exponent[static_cast<size_t>(f.group[c])];
@@ -83,37 +82,58 @@ Arithmetic arithmetic_for(const Field& f, double tolerance) {
   }
   constexpr double margin = 10;
   if (least < -700 + margin)
-    return Arithmetic::logarithm;
-  return least < -87 + margin || !coarse ? Arithmetic::twice : Arithmetic::single;
+    return Arithmetic::in_logarithms;
+  return least < -87 + margin || !coarse ? Arithmetic::in_double : Arithmetic::in_single;
 }
 
-template <class Real>
-void Evaluator::direct(const Field& f, const Selection& s, Vec3d middle, double h, float* out) {
+/// The kernel's form of a unit: every argument in log2, products of three axes near their final size.
+void Evaluator::in_single(const Field& f, const Selection& s, Vec3d middle, double h, float* out) {
+  constexpr double log2e = std::numbers::log2e;
   OpenGroups groups(f);
-  std::vector<Real>& sums = [this]() -> std::vector<Real>& {
-    if constexpr (sizeof(Real) == sizeof(float))
-      return single_;
-    else
-      return twice_;
-  }();
-  sums.assign((groups.levels() + 1) * points, Real(0)); // [0]: G, [l]: the open group of level l, last: T
-  Real* const T = &sums[groups.levels() * points];
+  single_.assign(groups.levels() * points, 0.0f); // [l]: the open group of level l
+  std::fill_n(out, points, 0.0f);
+  const auto sum_of = [&](size_t l) { return l < groups.levels() && l > 0 ? &single_[l * points] : out; };
   const auto close = [&](size_t l, int64_t g) {
-    const auto p = static_cast<Real>(f.level[l].exponent[static_cast<size_t>(g)]);
-    Real* const from = &sums[l * points];
-    Real* const to = l + 1 < groups.levels() ? from + points : sums.data();
+    raise_group(static_cast<float>(f.level[l].exponent[static_cast<size_t>(g)]), sum_of(l), sum_of(l + 1));
+  };
+  const double step = 2 * f.decay * h * log2e;
+  arguments_.resize(s.ln_weight.size());
+  for (size_t a = 0; a < arguments_.size(); ++a)
+    arguments_[a] = {static_cast<float>(step * s.offset_x[a]), static_cast<float>(step * s.offset_y[a]),
+                     static_cast<float>(step * s.offset_z[a]), static_cast<float>(log2e * s.ln_weight[a])};
+  for (const Unit& u : s.unit) {
+    groups.enter(u.group, close);
+    const Vec3d slope = -u.exponent * step * (middle - u.centroid);
+    const AxisArguments outer{static_cast<float>(slope.x), static_cast<float>(slope.y), static_cast<float>(slope.z),
+                              static_cast<float>(u.exponent * log2e * u.ln_center)};
+    scratch_.resize(std::max(scratch_.size(), static_cast<size_t>(96 * (u.end - u.begin + 1) + 64)));
+    add_unit({outer, static_cast<float>(-u.exponent * f.decay * h * h * log2e), static_cast<float>(u.exponent),
+              arguments_.data() + u.begin, u.end - u.begin},
+             scratch_.data(), sum_of(1));
+  }
+  groups.finish(close);
+}
+
+void Evaluator::in_double(const Field& f, const Selection& s, Vec3d middle, double h, float* out) {
+  OpenGroups groups(f);
+  double_.assign((groups.levels() + 1) * points, 0.0); // [0]: G, [l]: the open group of level l, last: T
+  double* const T = &double_[groups.levels() * points];
+  const auto close = [&](size_t l, int64_t g) {
+    const double p = f.level[l].exponent[static_cast<size_t>(g)];
+    double* const from = &double_[l * points];
+    double* const to = l + 1 < groups.levels() ? from + points : double_.data();
     for (int i = 0; i < points; ++i)
       to[i] += p == 1 ? from[i] : std::pow(from[i], p);
-    std::fill_n(from, points, Real(0));
+    std::fill_n(from, points, 0.0);
   };
   for (const Unit& u : s.unit) {
     groups.enter(u.group, close);
     sum_atoms(s, u, f.decay, h, T);
-    add_unit(u, f.decay, middle, h, T, groups.levels() > 1 ? &sums[points] : sums.data());
+    add_power(u, f.decay, middle, h, T, groups.levels() > 1 ? &double_[points] : double_.data());
   }
   groups.finish(close);
   for (int i = 0; i < points; ++i)
-    out[i] = static_cast<float>(sums[static_cast<size_t>(i)]);
+    out[i] = static_cast<float>(double_[static_cast<size_t>(i)]);
 }
 
 void Evaluator::by_logarithms(const Field& f, const Selection& s, Vec3d middle, double h, float* out) {
@@ -149,17 +169,17 @@ void Evaluator::by_logarithms(const Field& f, const Selection& s, Vec3d middle, 
 
 void Evaluator::evaluate(const Field& f, const Selection& s, Vec3d middle, double h, Arithmetic arithmetic,
                          float* out) {
-  // T itself must not overflow: coarse grids, steep kernels.
-  if (arithmetic == Arithmetic::single && s.range > 80)
-    arithmetic = Arithmetic::twice;
-  if (arithmetic == Arithmetic::twice && s.range > 690)
-    arithmetic = Arithmetic::logarithm;
+  // Nothing may overflow: coarse grids, steep kernels.
+  if (arithmetic == Arithmetic::in_single && s.range > 80)
+    arithmetic = Arithmetic::in_double;
+  if (arithmetic == Arithmetic::in_double && s.range > 690)
+    arithmetic = Arithmetic::in_logarithms;
   switch (arithmetic) {
-  case Arithmetic::single:
-    return direct<float>(f, s, middle, h, out);
-  case Arithmetic::twice:
-    return direct<double>(f, s, middle, h, out);
-  case Arithmetic::logarithm:
+  case Arithmetic::in_single:
+    return in_single(f, s, middle, h, out);
+  case Arithmetic::in_double:
+    return in_double(f, s, middle, h, out);
+  case Arithmetic::in_logarithms:
     return by_logarithms(f, s, middle, h, out);
   }
 }

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <mutex>
 #include <numeric>
 
 namespace molmesh::density {
@@ -26,11 +29,61 @@ struct NodeList {
   }
 };
 
+/// Slots for the values of blocks, handed out one by one; they stay where they are until all are given back.
+class Arena {
+public:
+  float* take() {
+    if (used_ == blocks_a_chunk * chunk_.size())
+      chunk_.emplace_back(512 * blocks_a_chunk);
+    float* const slot = &chunk_[used_ / blocks_a_chunk][512 * (used_ % blocks_a_chunk)];
+    ++used_;
+    return slot;
+  }
+  void give_back_last() { --used_; }
+  void give_back_all() { used_ = 0; }
+
+private:
+  static constexpr size_t blocks_a_chunk = 256; // 512 KiB
+  std::vector<LargeArray<float>> chunk_;
+  size_t used_ = 0;
+};
+
+/// What a thread works with, one node after the other.
+struct Workspace {
+  Selection selection;
+  Evaluator evaluator;
+  Arena arena[2]; ///< for slabs of even and odd number
+};
+
+class Workspaces {
+public:
+  template <class Make>
+  std::unique_ptr<Workspace> borrow(Make&& make) {
+    const std::lock_guard<std::mutex> lock(guard_);
+    if (free_.empty())
+      return make();
+    std::unique_ptr<Workspace> w = std::move(free_.back());
+    free_.pop_back();
+    return w;
+  }
+  void give_back(std::unique_ptr<Workspace> w) {
+    const std::lock_guard<std::mutex> lock(guard_);
+    free_.push_back(std::move(w));
+  }
+
+  void forget_values(int bank) {
+    for (const std::unique_ptr<Workspace>& w : free_)
+      w->arena[bank].give_back_all();
+  }
+
+private:
+  std::mutex guard_;
+  std::vector<std::unique_ptr<Workspace>> free_;
+};
+
 /// What one node found.
 struct Found {
-  std::vector<Vec3i> corner;
-  std::vector<float> value;
-  std::vector<Vec3i> inside;
+  KnownBlocks blocks; ///< not sorted
   SearchCounts counts;
   int64_t points = 0;
 };
@@ -38,25 +91,44 @@ struct Found {
 class Search {
 public:
   Search(const Field& f, const GridFrame& frame, const SearchOptions& o)
-      : f_(f), frame_(frame), o_(o), budget_(o.tolerance), arithmetic_(arithmetic_for(f, o.tolerance)) {}
-  BlockGrid run(SearchCounts& counts);
+      : f_(f), frame_(frame), o_(o), budget_(o.tolerance), arithmetic_(arithmetic_for(f, o.tolerance)),
+        lower_(float_at_least(o.band_lower)), upper_(-float_at_least(-o.band_upper)) {}
+  Band run(SearchCounts& counts);
 
 private:
+  /// The smallest float >= v: comparing floats with it is comparing them with v.
+  static float float_at_least(double v) {
+    const auto f = static_cast<float>(v);
+    return f >= v ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
+  }
   Box box_of(Vec3i corner, int32_t blocks) const;
   bool in_grid(Vec3i corner) const;
   void descend();
-  void work_through(const Node& node, Found& found, Selection& selection, Evaluator& evaluator) const;
-  /// classify: leave out what bounds place. discard: forget a block that lies wholly on one side of the band.
-  void evaluate(Vec3i corner, std::span<const int32_t> clusters, bool classify, bool discard, Found& found,
-                Selection& selection, Evaluator& evaluator) const;
-  void collect(std::vector<Found>& found, BlockGrid& grid, SearchCounts& counts) const;
+  KnownBlocks find_slab(std::span<const Node> nodes);
+  void work_through(const Node& node, Found& found, Workspace& w) const;
+  /// discard: forget a block that lies wholly on one side of the band.
+  void evaluate(Vec3i corner, bool classify, bool discard, Found& found, Workspace& w) const;
+  void add_missing(KnownBlocks& blocks, Slab slab);
+  void collect(const std::vector<Found>& found, KnownBlocks& blocks);
+  std::unique_ptr<Workspace> workspace() {
+    return workspaces_.borrow([this] {
+      return std::make_unique<Workspace>(
+          Workspace{Selection(f_, budget_, o_.band_lower, o_.band_upper), {}, {{}, {}}});
+    });
+  }
 
   const Field& f_;
   const GridFrame& frame_;
   const SearchOptions& o_;
   const Budget budget_;
   const Arithmetic arithmetic_;
+  const float lower_, upper_;
   NodeList nodes_; ///< ascending
+  Workspaces workspaces_;
+  SearchCounts counts_;
+  int64_t analyzed_ = 0;
+  int bank_ = 0; ///< of arenas, for the slab at work
+  std::atomic<int64_t> done_{0};
 };
 
 /// Of the points of a cube of blocks, from block `corner`.
@@ -123,146 +195,190 @@ int64_t points_in_grid(const GridFrame& frame, Vec3i corner) {
   return n;
 }
 
-void Search::evaluate(Vec3i corner, std::span<const int32_t> clusters, bool classify, bool discard, Found& found,
-                      Selection& selection, Evaluator& evaluator) const {
+void Search::evaluate(Vec3i corner, bool classify, bool discard, Found& found, Workspace& w) const {
   const Box box = box_of(corner, 1);
   const Vec3d middle = 0.5 * (box.lo + box.hi);
   ++found.counts.blocks_visited;
-  selection.select(f_, middle, 0.5 * (box.hi - box.lo), clusters, budget_, classify, o_.band_lower, o_.band_upper);
-  if (selection.side == Side::outside)
+  w.selection.select(middle, 0.5 * (box.hi - box.lo), classify);
+  if (w.selection.side == Side::outside)
     return;
-  if (selection.side == Side::inside)
-    return found.inside.push_back(8 * corner);
-  found.corner.push_back(8 * corner);
-  found.value.resize(found.value.size() + 512);
-  evaluator.evaluate(f_, selection, middle, frame_.spacing, arithmetic_, &found.value[found.value.size() - 512]);
+  if (w.selection.side == Side::inside)
+    return found.blocks.inside.push_back(8 * corner);
+  float* const value = w.arena[bank_].take();
+  w.evaluator.evaluate(f_, w.selection, middle, frame_.spacing, arithmetic_, value);
+  KnownBlock block{8 * corner, value, {}, {}};
+  classify_points(value, lower_, upper_, block.below.data(), block.above.data());
   ++found.counts.blocks_evaluated;
-  found.counts.group_visits += static_cast<int64_t>(selection.unit.size());
-  found.counts.atom_visits += static_cast<int64_t>(selection.ln_weight.size());
+  found.counts.group_visits += static_cast<int64_t>(w.selection.unit.size());
+  found.counts.atom_visits += static_cast<int64_t>(w.selection.ln_weight.size());
   found.points += points_in_grid(frame_, 8 * corner);
   if (discard) {
-    const auto value = std::span(found.value).last(512);
-    const bool below = std::all_of(value.begin(), value.end(), [&](double v) { return v < o_.band_lower; });
-    const bool above = std::all_of(value.begin(), value.end(), [&](double v) { return v > o_.band_upper; });
-    if (!below && !above)
+    const auto all = [](uint64_t word) { return word == ~uint64_t{0}; };
+    const bool above = std::all_of(block.above.begin(), block.above.end(), all);
+    if (above || std::all_of(block.below.begin(), block.below.end(), all)) {
+      w.arena[bank_].give_back_last();
+      if (above)
+        found.blocks.inside.push_back(8 * corner);
       return;
-    if (above)
-      found.inside.push_back(8 * corner);
-    found.corner.pop_back();
-    found.value.resize(found.value.size() - 512);
+    }
+  }
+  found.blocks.known.push_back(block);
+}
+
+void Search::work_through(const Node& node, Found& found, Workspace& w) const {
+  const Box all = box_of(node.corner, node_blocks);
+  w.selection.enter(0.5 * (all.lo + all.hi), nodes_.clusters(node));
+  for (int32_t octant = 0; octant < 8; ++octant) {
+    const Vec3i part = node.corner + 2 * Vec3i{octant >> 2, octant >> 1 & 1, octant & 1};
+    const Box box = box_of(part, 2);
+    if (!in_grid(part) || (!w.selection.narrow(0.5 * (box.lo + box.hi), 0.5 * (box.hi - box.lo)) && !o_.full))
+      continue;
+    for (int32_t i = 0; i < 8; ++i)
+      if (const Vec3i corner = part + Vec3i{i >> 2, i >> 1 & 1, i & 1}; in_grid(corner))
+        evaluate(corner, !o_.full, o_.full, found, w);
   }
 }
 
-void Search::work_through(const Node& node, Found& found, Selection& selection, Evaluator& evaluator) const {
-  for (int32_t i = 0; i < node_blocks * node_blocks * node_blocks; ++i) {
-    const Vec3i corner = node.corner + Vec3i{i / 16, i / 4 % 4, i % 4};
-    if (in_grid(corner))
-      evaluate(corner, nodes_.clusters(node), !o_.full, o_.full, found, selection, evaluator);
-  }
-}
-
-/// Sorts blocks by corner and joins them into the grid.
-void Search::collect(std::vector<Found>& found, BlockGrid& grid, SearchCounts& counts) const {
-  struct From {
-    Vec3i corner;
-    const float* value;
-  };
-  std::vector<From> from;
-  for (size_t b = 0; b < grid.corner.size(); ++b)
-    from.push_back({grid.corner[b], &grid.value[512 * b]});
+/// Sorts what was found into `blocks`.
+void Search::collect(const std::vector<Found>& found, KnownBlocks& blocks) {
   for (const Found& f : found) {
-    for (size_t b = 0; b < f.corner.size(); ++b)
-      from.push_back({f.corner[b], &f.value[512 * b]});
-    grid.inside.insert(grid.inside.end(), f.inside.begin(), f.inside.end());
-    counts.blocks_visited += f.counts.blocks_visited;
-    counts.blocks_evaluated += f.counts.blocks_evaluated;
-    counts.group_visits += f.counts.group_visits;
-    counts.atom_visits += f.counts.atom_visits;
-    grid.info.analyzed_points += f.points;
+    blocks.append(f.blocks);
+    counts_.blocks_visited += f.counts.blocks_visited;
+    counts_.blocks_evaluated += f.counts.blocks_evaluated;
+    counts_.group_visits += f.counts.group_visits;
+    counts_.atom_visits += f.counts.atom_visits;
+    analyzed_ += f.points;
   }
-  par::sort(from, o_.threads, [](const From& a, const From& b) { return a.corner < b.corner; });
-  std::vector<Vec3i> corner(from.size());
-  std::vector<float> value(512 * from.size());
-  par::for_n(static_cast<int64_t>(from.size()), o_.threads, 256, [&](int64_t i) {
-    const auto b = static_cast<size_t>(i);
-    corner[b] = from[b].corner;
-    std::copy_n(from[b].value, 512, &value[512 * b]);
-  });
-  grid.corner = std::move(corner);
-  grid.value = std::move(value);
-  par::sort(grid.inside, o_.threads);
+  par::sort(blocks.known, o_.threads, [](const KnownBlock& a, const KnownBlock& b) { return a.corner < b.corner; });
+  par::sort(blocks.inside, o_.threads);
 }
 
-BlockGrid Search::run(SearchCounts& counts) {
-  BlockGrid grid;
-  grid.frame = frame_;
-  grid.info.isovalue = o_.isovalue;
-  grid.info.decay = f_.decay;
-  grid.info.band_lower = o_.band_lower;
-  grid.info.band_upper = o_.band_upper;
-  grid.info.tolerance = o_.tolerance;
-  grid.info.inside_value = static_cast<float>(std::max(2 * o_.isovalue, o_.band_upper));
-  grid.info.atoms = f_.atoms();
-  descend();
-  const auto n = static_cast<int64_t>(nodes_.node.size());
-  std::vector<Found> found(static_cast<size_t>(n));
-  std::atomic<int64_t> done{0};
-  par::for_n(n, o_.threads, 1, [&](int64_t i) {
-    Selection selection;
-    Evaluator evaluator;
-    work_through(nodes_.node[static_cast<size_t>(i)], found[static_cast<size_t>(i)], selection, evaluator);
+KnownBlocks Search::find_slab(std::span<const Node> nodes) {
+  std::vector<Found> found(nodes.size());
+  par::for_n(static_cast<int64_t>(nodes.size()), o_.threads, 1, [&](int64_t i) {
+    std::unique_ptr<Workspace> w = workspace();
+    work_through(nodes[static_cast<size_t>(i)], found[static_cast<size_t>(i)], *w);
+    workspaces_.give_back(std::move(w));
     if (o_.progress)
-      o_.progress(++done, n);
+      o_.progress(++done_, static_cast<int64_t>(nodes_.node.size()));
   });
-  collect(found, grid, counts);
+  KnownBlocks blocks;
+  collect(found, blocks);
+  return blocks;
+}
 
-  // Blocks that bounds left out next to a band cell: their points are on its corners, and lie where the bounds say.
-  const std::vector<Vec3i> missing = blocks_missing_from_band(grid, o_.threads);
-  found.assign(missing.size(), {});
-  par::for_n(static_cast<int64_t>(missing.size()), o_.threads, 16, [&](int64_t i) {
-    const auto b = static_cast<size_t>(i);
-    const Vec3i block{missing[b].x >> 3, missing[b].y >> 3, missing[b].z >> 3};
-    const Vec3i first{frame_.lower.x >> 3, frame_.lower.y >> 3, frame_.lower.z >> 3};
-    const Vec3i in = block - first, node = first + Vec3i{in.x & ~3, in.y & ~3, in.z & ~3};
+/// Evaluates the blocks that bounds left out next to a band cell: their points are on its corners, and lie where
+/// the bounds say.
+void Search::add_missing(KnownBlocks& blocks, Slab slab) {
+  const std::vector<Vec3i> missing = blocks_missing_from_band(blocks, slab, frame_, o_.threads);
+  if (missing.empty())
+    return;
+  struct Task {
+    Vec3i node, block; ///< in blocks
+  };
+  const Vec3i first{frame_.lower.x >> 3, frame_.lower.y >> 3, frame_.lower.z >> 3};
+  std::vector<Task> task;
+  for (const Vec3i& m : missing) {
+    const Vec3i block{m.x >> 3, m.y >> 3, m.z >> 3}, in = block - first;
+    constexpr int32_t mask = ~(node_blocks - 1);
+    task.push_back({first + Vec3i{in.x & mask, in.y & mask, in.z & mask}, block});
+  }
+  par::sort(task, o_.threads,
+            [](const Task& a, const Task& b) { return a.node == b.node ? a.block < b.block : a.node < b.node; });
+  std::vector<size_t> begin;
+  for (size_t i = 0; i < task.size(); ++i)
+    if (i == 0 || !(task[i].node == task[i - 1].node))
+      begin.push_back(i);
+  begin.push_back(task.size());
+  std::vector<Found> found(begin.size() - 1);
+  par::for_n(static_cast<int64_t>(found.size()), o_.threads, 1, [&](int64_t n) {
+    const auto t = static_cast<size_t>(n);
+    const Vec3i node = task[begin[t]].node;
     const auto at = std::lower_bound(nodes_.node.begin(), nodes_.node.end(), node,
                                      [](const Node& a, Vec3i c) { return a.corner < c; });
     const bool there = at != nodes_.node.end() && at->corner == node;
-    Selection selection;
-    Evaluator evaluator;
-    evaluate(block, there ? nodes_.clusters(*at) : std::span<const int32_t>(), false, false, found[b], selection,
-             evaluator);
+    std::unique_ptr<Workspace> w = workspace();
+    const Box box = box_of(node, node_blocks);
+    const Vec3d middle = 0.5 * (box.lo + box.hi);
+    w->selection.enter(middle, there ? nodes_.clusters(*at) : std::span<const int32_t>());
+    w->selection.narrow(middle, 0.5 * (box.hi - box.lo));
+    for (size_t i = begin[t]; i < begin[t + 1]; ++i)
+      evaluate(task[i].block, false, false, found[t], *w);
+    workspaces_.give_back(std::move(w));
   });
-  collect(found, grid, counts);
-  if (o_.full)
-    grid.info.analyzed_points = int64_t{frame_.points.x} * frame_.points.y * frame_.points.z;
-  keep_band(grid, o_.threads, counts.active_points);
-  return grid;
+  std::erase_if(blocks.inside, [&](Vec3i c) { return std::binary_search(missing.begin(), missing.end(), c); });
+  collect(found, blocks);
+}
+
+/// Slab by slab of nodes along x, so that only two slabs hold the values of all their points.
+Band Search::run(SearchCounts& counts) {
+  Band band;
+  band.frame = frame_;
+  band.info.isovalue = o_.isovalue;
+  band.info.decay = f_.decay;
+  band.info.band_lower = o_.band_lower;
+  band.info.band_upper = o_.band_upper;
+  band.info.tolerance = o_.tolerance;
+  band.info.inside_value = static_cast<float>(std::max(2 * o_.isovalue, o_.band_upper));
+  band.info.atoms = f_.atoms();
+  descend();
+  KnownBlocks before, current; // `before` without values
+  const std::span<const Node> nodes(nodes_.node);
+  const int32_t first = frame_.lower.x >> 3, end = (frame_.lower.x + frame_.points.x + 7) >> 3;
+  const auto slab_at = [](int32_t x) { return Slab{8 * x, 8 * (x + node_blocks)}; };
+  for (int32_t x = first; x < end + node_blocks; x += node_blocks) {
+    const auto at = [&](int32_t corner_x) {
+      return std::partition_point(nodes.begin(), nodes.end(), [=](const Node& n) { return n.corner.x < corner_x; });
+    };
+    bank_ = (x - first) / node_blocks & 1;
+    KnownBlocks next = find_slab({at(x), at(x + node_blocks)});
+    if (x > first) {
+      const Slab slab = slab_at(x - node_blocks);
+      KnownBlocks window = std::move(before);
+      window.append(current);
+      window.append(next);
+      add_missing(window, slab);
+      append_slab(window, slab, band, o_.threads);
+      workspaces_.forget_values(bank_ ^ 1);
+    }
+    before = std::move(current);
+    current = std::move(next);
+  }
+  band.info.analyzed_points = o_.full ? int64_t{frame_.points.x} * frame_.points.y * frame_.points.z : analyzed_;
+  counts = counts_;
+  counts.active_points = band.active_points;
+  return band;
 }
 
 } // namespace
 
-BlockGrid find_band(const Field& f, const GridFrame& frame, const SearchOptions& options, SearchCounts& counts) {
+Band find_band(const Field& f, const GridFrame& frame, const SearchOptions& options, SearchCounts& counts) {
   return Search(f, frame, options).run(counts);
 }
 
-bool wall_cuts_surface(const BlockGrid& grid) {
-  const Vec3i lo = grid.frame.lower, last = lo + grid.frame.points - Vec3i{1, 1, 1};
-  const auto on_wall = [&](Vec3i p) {
-    return p.x == lo.x || p.y == lo.y || p.z == lo.z || p.x == last.x || p.y == last.y || p.z == last.z;
-  };
+bool wall_cuts_surface(const Band& band) {
+  const Vec3i lo = band.frame.lower, last = lo + band.frame.points - Vec3i{1, 1, 1};
   const auto cut = [&](Vec3i corner, auto inside) {
     for (int s = 0; s < 512; ++s) {
       const Vec3i p = corner + Vec3i{s >> 6, s >> 3 & 7, s & 7};
-      if (on_wall(p) && inside(s))
+      const bool wall =
+          p.x == lo.x || p.y == lo.y || p.z == lo.z || p.x == last.x || p.y == last.y || p.z == last.z;
+      if (wall && inside(s))
         return true;
     }
     return false;
   };
-  for (size_t b = 0; b < grid.corner.size(); ++b)
-    if (cut(grid.corner[b],
-            [&](int s) { return grid.value[512 * b + static_cast<size_t>(s)] > grid.info.isovalue; }))
+  for (const BandBlock& b : band.block) {
+    float value[512];
+    const float* packed = b.value;
+    for (size_t s = 0; s < 512; ++s) {
+      const bool active = b.active[s >> 6] >> (s & 63) & 1, above = b.above[s >> 6] >> (s & 63) & 1;
+      value[s] = active ? *packed++ : above ? static_cast<float>(band.info.inside_value) : 0.0f;
+    }
+    if (cut(b.corner, [&](int s) { return value[s] > band.info.isovalue; }))
       return true;
-  return std::any_of(grid.inside.begin(), grid.inside.end(),
+  }
+  return std::any_of(band.inside.begin(), band.inside.end(),
                      [&](Vec3i c) { return cut(c, [](int) { return true; }); });
 }
 

@@ -1,7 +1,7 @@
 // search.hpp — the sparse density grid: neighboring search over blocks of 8³ points (§3.1 of Liao et al. 2013) from
 // seeds that bounds on G prove complete, active points, sides. Nothing is dense over the grid.
 #pragma once
-#include "density/block_grid.hpp"
+#include "density/band.hpp"
 #include "density/field.hpp"
 #include <functional>
 
@@ -23,9 +23,9 @@ struct SearchCounts {
 
 /// The field must be made with Budget(tolerance).far. The result has frame, values, sides and the numbers of `info`
 /// that it knows; the texts are the caller's. Same result for any number of threads.
-BlockGrid find_band(const Field& f, const GridFrame& frame, const SearchOptions& options, SearchCounts& counts);
+Band find_band(const Field& f, const GridFrame& frame, const SearchOptions& options, SearchCounts& counts);
 
 /// True when a point on the grid's outermost layer has G > isovalue: the wall cuts the surface.
-bool wall_cuts_surface(const BlockGrid& grid);
+bool wall_cuts_surface(const Band& band);
 
 } // namespace molmesh::density

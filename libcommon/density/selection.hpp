@@ -1,6 +1,7 @@
 // selection.hpp — what matters in one block of 8³ grid points: the kept atoms, and bounds on G over the block.
 // Derivations in field.md.
 #pragma once
+#include "density/block_kernel.hpp"
 #include "density/field.hpp"
 #include <span>
 #include <vector>
@@ -18,7 +19,7 @@ enum class Side : uint8_t { outside, inside, mixed };
 
 /// A sum of atoms that is raised to one power: an innermost group, or one cluster of it when its exponent is 1.
 /// In the block S(x) = exp(ln_center - κ(2δ·(m - centroid) + δ²)) · T(x), δ = x - m, m the block's middle,
-/// T(x) = Σ exp(ln_weight + 2κ δ·offset) ≥ 1.
+/// T(x) = Σ exp(ln_weight + 2κ δ·offset), at least about 1.
 struct Unit {
   int64_t group;      ///< innermost group
   double exponent;    ///< P
@@ -27,40 +28,49 @@ struct Unit {
   Vec3d centroid; ///< Å
 };
 
-/// Scratch of one thread, refilled for each block.
+/// Works through the blocks of a node. One thread; refilled for each node and block.
 class Selection {
 public:
-  /// middle, half: Å, of the box of the block's points. clusters: candidates, ascending; those beyond their cutoff
-  /// are passed over. With `classify`, blocks that are surely below `lower` or above `upper` get their side and no
-  /// units; otherwise side is mixed.
-  void select(const Field& f, Vec3d middle, Vec3d half, std::span<const int32_t> clusters, const Budget& budget,
-              bool classify, double lower, double upper);
+  Selection(const Field& f, const Budget& budget, double lower, double upper)
+      : f_(f), budget_(budget), lower_(lower), upper_(upper) {}
+
+  /// A node: the candidates for all its blocks, positions taken relative to `middle` (Å).
+  void enter(Vec3d middle, std::span<const int32_t> clusters);
+  /// A box within the node: candidates for the blocks in it. False when G is surely below the band there.
+  bool narrow(Vec3d middle, Vec3d half);
+  /// A block: middle and half edges, Å, of the box of its points. With `classify`, blocks that are surely below
+  /// `lower` or above `upper` get their side and no units; otherwise side is mixed.
+  void select(Vec3d middle, Vec3d half, bool classify);
 
   Side side = Side::mixed;
   std::vector<Unit> unit;
   std::vector<double> ln_weight, offset_x, offset_y, offset_z; ///< per kept atom; offsets in Å
-  double range = 0;                                            ///< largest ln T can be
+  double range = 0; ///< how far logarithms of T, or of what it is multiplied with, can be from their middle
 
 private:
   struct Candidate {
     int64_t group;
-    double exponent;
-    int32_t begin, end; ///< in ln_upper_, ln_middle_, atom_
-    double ln_upper;    ///< upper bound of ln S over the block
-    double ln_middle;   ///< ln S at the middle
-    Vec3d centroid;
-    double ln_effect; ///< ln of the most that dropping it can change G
+    float exponent;
+    int32_t begin, end; ///< in near_
+    float log2_upper;   ///< upper bound over the block of log2 S
     bool kept;
   };
-  void gather(const Field& f, Vec3d middle, Vec3d half, std::span<const int32_t> clusters);
-  void find_effects(const Field& f);
-  double drop(double budget);
-  void keep_atoms(const Field& f, const Candidate& c, Vec3d half, double within);
+  LocalBox local(Vec3d middle, Vec3d half) const;
+  void gather(const LocalBox& box);
+  void find_effects();
+  void drop();
+  void take_middles(Vec3d middle);
+  bool surely_inside(Vec3d middle, Vec3d half) const;
+  void filter(Vec3d middle, Vec3d half);
 
+  const Field& f_;
+  const Budget budget_;
+  const double lower_, upper_;
+  Vec3d node_middle_;
+  LocalClusters local_;
+  std::vector<int32_t> all_, narrowed_, near_, kept_;
   std::vector<Candidate> candidate_;
-  std::vector<int64_t> atom_;
-  std::vector<double> ln_upper_, ln_middle_;
-  std::vector<int32_t> order_;
+  std::vector<float> upper_bound_, effect_, middle_sum_, x_, y_, z_;
   std::vector<std::vector<double>> sum_; ///< per level, per run of candidates of one group: upper bound of ln S
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 BlockGrid compute(const Hierarchy& h, const density::Options& o) {
   density::Counts counts;
-  return density::compute(h, o, counts);
+  return density::to_block_grid(density::compute(h, o, counts), 1);
 }
 
 /// Worst |G_file - G| over ε·max(1, G) on a sample of the active points.
