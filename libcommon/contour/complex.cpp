@@ -66,7 +66,15 @@ Complex::Complex(const Lattice& l, const Octree& t, const std::vector<SurfaceCel
     }
   });
   number_grid_vertices(threads);
+  keep_distance(threads);
   place_duals(threads);
+}
+
+int32_t Complex::leaf_of(int32_t vertex) const {
+  const int32_t leaf = vertex - dual0, pieces = leaf - tree.size();
+  if (leaf < 0 || pieces >= static_cast<int32_t>(split_leaf_.size()))
+    return -1;
+  return pieces < 0 ? leaf : split_leaf_[at(pieces)];
 }
 
 CellTopology Complex::topology(int32_t leaf) const {
@@ -161,7 +169,17 @@ void Complex::place_duals(int threads) {
       return;
     }
     if (extent == 1) {
-      dual_position = fine_centre(cells[at(first_cell[at(i)])]);
+      Vec3d sum;
+      int crossings = 0;
+      for (int c = 0; c < 8; ++c)
+        for (int bit = 1; bit < 8; bit *= 2) {
+          const int32_t a = grid_vertex[at(8 * i + c)], b = grid_vertex[at(8 * i + (c | bit))];
+          if ((c & bit) || inside(a) == inside(b))
+            continue;
+          sum += crossing(a, b);
+          ++crossings;
+        }
+      dual_position = sum / double(crossings);
       const CellTopology t = topology(leaf);
       if (t.split())
         extra[at(i)] = 1 + SplitCell(t).pieces + (t.chop >= 0);
@@ -195,6 +213,13 @@ void Complex::place_duals(int threads) {
   for (int64_t i = 0; i < leaves; ++i)
     if ((i + 1 < leaves ? extra[at(i + 1)] : total) > extra[at(i)])
       split[at(i)] = first + extra[at(i)];
+  split_leaf_.assign(at(total), -1);
+  for (int64_t i = 0; i < leaves; ++i)
+    if (split[at(i)] >= 0) {
+      const int32_t end = i + 1 < leaves ? extra[at(i + 1)] : total;
+      for (int32_t k = extra[at(i)]; k < end; ++k)
+        split_leaf_[at(k)] = static_cast<int32_t>(i);
+    }
   par::for_n(leaves, threads, [&](int64_t i) {
     if (split[at(i)] >= 0)
       place_split(static_cast<int32_t>(i));
@@ -270,8 +295,14 @@ Vec3d Complex::crossing(int32_t a, int32_t b) const {
       ((v > lattice.isovalue) == in ? qa : qb) = middle;
       ((v > lattice.isovalue) == in ? va : vb) = v;
     }
-    pa = lattice.position(qa);
-    pb = lattice.position(qb);
+    if (qa == point[at(a)] && qb == point[at(b)]) {
+      const double da = distance[at(a)], db = distance[at(b)];
+      if (da != 0 && db != 0)
+        return pa + std::clamp(da / (da - db), 0.02, 0.98) * (pb - pa);
+    } else {
+      pa = lattice.position(qa);
+      pb = lattice.position(qb);
+    }
   }
   return pa + crossing_share(va, vb, lattice.isovalue) * (pb - pa);
 }

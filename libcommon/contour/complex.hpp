@@ -48,10 +48,14 @@ struct Complex {
   std::vector<Vec3d> position; ///< [vertices] Å
   std::vector<float> value;    ///< [vertices] G at grid points and split centres; isovalue elsewhere
   std::vector<Vec3i> point;    ///< [grid vertices] lattice point
+  /// [grid vertices] estimated distance to the surface, Å, positive inside; 0: unknown
+  std::vector<float> distance;
 
   bool inside(int32_t vertex) const { return value[static_cast<size_t>(vertex)] > lattice.isovalue; }
   bool is_split(int32_t leaf) const { return split[static_cast<size_t>(leaf)] >= 0; }
   int32_t dual(int32_t leaf) const { return dual0 + leaf; }
+  /// Leaf of a dual vertex, a split cell's centre or a piece; -1 for grid points and anything after.
+  int32_t leaf_of(int32_t vertex) const;
   /// Topology of a fine surface cell's leaf.
   CellTopology topology(int32_t leaf) const;
   /// Dual vertex of the piece of a split leaf behind face f; off: the triangle's corner off the diagonal, -1 for a
@@ -60,14 +64,20 @@ struct Complex {
   int32_t piece_dual(int32_t leaf, const SplitCell& s, const Patch& p) const {
     return split[static_cast<size_t>(leaf)] + 1 + (p.piece < 0 ? s.pieces : p.piece);
   }
+  /// Puts moved grid points back where the lattice has them, and places all dual vertices anew.
+  void restore(const std::vector<int32_t>& grid_vertex_ids, int threads);
+  bool moved(int32_t vertex) const { return vertex < grid_vertices && moved_[static_cast<size_t>(vertex)]; }
   /// Where the surface crosses the edge between two vertices on opposite sides, Å. Coarse edges are searched on the
   /// fine grid.
   Vec3d crossing(int32_t a, int32_t b) const;
 
 private:
   void number_grid_vertices(int threads);
+  void keep_distance(int threads);
   void place_duals(int threads);
   void place_split(int32_t leaf);
+  std::vector<uint8_t> moved_;
+  std::vector<int32_t> split_leaf_; ///< [vertices after the leaves' duals]
 };
 
 } // namespace molmesh::contour

@@ -30,6 +30,8 @@ public:
   float isovalue = 1;
 
   float value(Vec3i p) const;
+  /// Whether the grid holds G there, not only the side.
+  bool active(Vec3i p) const { return is_active(grid_, index_, base_ + p); }
   bool inside(Vec3i p) const { return value(p) > isovalue; }
   Vec3d position(Vec3i p) const {
     return {axis_[0][static_cast<size_t>(p.x)], axis_[1][static_cast<size_t>(p.y)],

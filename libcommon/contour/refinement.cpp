@@ -11,6 +11,7 @@ namespace {
 
 constexpr double least_share = 0.02;
 constexpr double least_cosine = 0.82; // normals within 35° of their mean: one sheet, no crease
+constexpr double least_margin = 0.25; // of the mean point from a merged cell's faces, in its edge length
 constexpr int most_merges = 5;        // surface cells of 32 fine spacings at most
 
 /// True when [begin, end) stays within `tolerance` of its mean plane.
@@ -28,6 +29,21 @@ bool nearly_plane(const SurfaceSample* begin, const SurfaceSample* end, double t
   return std::all_of(begin, end, [&](const SurfaceSample& s) {
     return dot(s.normal, normal) >= least_cosine && std::fabs(dot(s.point - point, normal)) <= tolerance;
   });
+}
+
+/// The dual vertex of a cell merged from these would lie well within it: one near the cell's boundary makes
+/// slivers.
+bool central(const SurfaceSample* begin, const SurfaceSample* end, Vec3i corner, int32_t extent) {
+  Vec3d mean;
+  for (const SurfaceSample* s = begin; s < end; ++s)
+    mean += s->point;
+  mean = mean / double(end - begin);
+  for (int a = 0; a < 3; ++a) {
+    const double share = (mean[a] - corner[a]) / extent;
+    if (share < least_margin || share > 1 - least_margin)
+      return false;
+  }
+  return true;
 }
 
 bool one_disc(const double value[8]) {
@@ -133,7 +149,8 @@ RefinedNodes refine(const Lattice& lattice, const std::vector<SurfaceCell>& cell
     return refined;
   const double isovalue = lattice.isovalue;
   std::vector<SurfaceSample> samples;
-  std::vector<uint8_t> whole(static_cast<size_t>(n), 0); // the cell's node so far may be one cell
+  std::vector<uint8_t> whole(static_cast<size_t>(n), 0); // the cell's node so far is one plain sheet
+  std::vector<int8_t> merged(static_cast<size_t>(n), 0); // highest level at which the cell's node makes a good cell
   if (options.adapt > 0) {
     samples.resize(static_cast<size_t>(n));
     par::for_n(n, threads, [&](int64_t i) {
@@ -147,33 +164,40 @@ RefinedNodes refine(const Lattice& lattice, const std::vector<SurfaceCell>& cell
   } else {
     append_uniform(lattice, options, refined[1]);
   }
-  for (int l = 1; l <= lattice.top_level; ++l) {
-    std::vector<int64_t> begin; // of each node's range of surface cells
+  // Nodes of a level: ranges of surface cells.
+  const auto ranges = [&](int l) {
+    std::vector<int64_t> begin;
     for (int64_t i = 0; i < n; ++i)
       if (i == 0 || cells[static_cast<size_t>(i)].key >> 3 * l != cells[static_cast<size_t>(i) - 1].key >> 3 * l)
         begin.push_back(i);
     begin.push_back(n);
-    const auto nodes = static_cast<int64_t>(begin.size()) - 1;
-    par::for_n(nodes, threads, 64, [&](int64_t node) {
+    return begin;
+  };
+  for (int l = 1; l <= std::min(most_merges, lattice.top_level) && options.adapt > 0; ++l) {
+    const std::vector<int64_t> begin = ranges(l);
+    par::for_n(static_cast<int64_t>(begin.size()) - 1, threads, 64, [&](int64_t node) {
       const auto b = static_cast<size_t>(begin[static_cast<size_t>(node)]),
                  e = static_cast<size_t>(begin[static_cast<size_t>(node) + 1]);
+      const SurfaceSample *first = &samples[b], *last = first + (e - b);
       const Vec3i corner = morton_point(cells[b].key >> 3 * l << 3 * l);
       const int32_t extent = 1 << l;
-      bool one = l <= most_merges && corner.x + extent <= lattice.cells.x && corner.y + extent <= lattice.cells.y &&
+      bool one = corner.x + extent <= lattice.cells.x && corner.y + extent <= lattice.cells.y &&
                  corner.z + extent <= lattice.cells.z;
       for (size_t i = b; one && i < e; ++i)
         one = whole[i];
-      one = one && nearly_plane(&samples[b], &samples[b] + (e - b), options.adapt) &&
-            keeps_topology(lattice, corner, extent);
-      for (size_t i = b; i < e; ++i)
+      one = one && nearly_plane(first, last, options.adapt) && keeps_topology(lattice, corner, extent);
+      const bool good = one && central(first, last, corner, extent);
+      for (size_t i = b; i < e; ++i) {
         whole[i] = one;
+        if (good)
+          merged[i] = static_cast<int8_t>(l);
+      }
     });
-    for (int64_t node = 0; node < nodes; ++node) {
-      const auto b = static_cast<size_t>(begin[static_cast<size_t>(node)]);
-      if (!whole[b])
-        refined[static_cast<size_t>(l)].push_back(cells[b].key >> 3 * l);
-    }
   }
+  for (int l = 1; l <= lattice.top_level; ++l)
+    for (const std::vector<int64_t> begin = ranges(l); int64_t first : begin)
+      if (first < n && merged[static_cast<size_t>(first)] < l)
+        refined[static_cast<size_t>(l)].push_back(cells[static_cast<size_t>(first)].key >> 3 * l);
   return refined;
 }
 

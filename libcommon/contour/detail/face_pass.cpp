@@ -20,7 +20,7 @@ struct Polygon {
 };
 
 /// Volumes below this share of the cube of the face's shortest edge get a face point instead.
-constexpr double least_volume = 0.02;
+constexpr double least_volume = 0.03;
 
 class FacePass {
 public:
@@ -125,7 +125,8 @@ private:
       return false;
     if (c_.is_split(leaf) || c_.is_split(other))
       return true;
-    return c_.tree.level[at(leaf)] != c_.tree.level[at(other)] && c_.side[at(other)] == Side::crossed;
+    return c_.tree.level[at(leaf)] != c_.tree.level[at(other)] &&
+           (c_.side[at(leaf)] == Side::crossed || c_.side[at(other)] == Side::crossed);
   }
 
   int32_t cell_dual(int32_t leaf, int f, int off) const {
@@ -136,9 +137,11 @@ private:
   void polygon(const Polygon& p, int32_t behind, int32_t front, int f, bool test) {
     const bool wall = front == no_vertex;
     int32_t via = no_vertex;
-    if (wall)
-      front = out_.add_point(face_point(p), box_x0 + f);
-    else if (test && !pierced(p, behind, front))
+    if (wall) {
+      Vec3d w = face_point(p);
+      w[f / 2] = c_.position[at(p.vertex[0])][f / 2]; // planar to the last bit
+      front = out_.add_point(w, box_x0 + f);
+    } else if (test && !pierced(p, behind, front))
       via = out_.add_point(face_point(p), 0);
     for (int i = 0; i < p.n; ++i) {
       const int32_t a = p.vertex[at(i)], b = p.vertex[at((i + 1) % p.n)];
