@@ -47,15 +47,15 @@ void describe(CLI::App& app, Options& o) {
   app.add_option(
          "--box", o.box,
          "outer box: auto (at least twice the surface's extents), tight (the grid), a factor of the surface's "
-         "extents [>1], or x0,y0,z0,x1,y1,z1 in Å, which may cut the molecule")
+         "extents (> 1), or x0,y0,z0,x1,y1,z1 in Å, which may cut the molecule")
       ->type_name("BOX");
-  app.add_option(
-         "--adapt", o.adapt,
-         "how far the surface may lie from a coarser cell's mean plane, in grid spacings [0..100]; 0: uniform")
+  app.add_option("--adapt", o.adapt,
+                 "how far the surface may lie from a coarser cell's mean plane, in grid spacings; 0: uniform")
       ->check(CLI::Range(0., 100.));
   app.add_option("--cavities", o.cavities, "closed cavities: keep (region 3) or fill (region 1)")
       ->check(CLI::IsMember({"keep", "fill"}));
-  app.add_option("--drop-below", o.drop_below, "parts of the molecule smaller than this become outside, Å³ [0..]")
+  app.add_option("--drop-below", o.drop_below, "parts of the molecule smaller than this become outside")
+      ->type_name("Å³")
       ->check(CLI::Range(0., 1e300));
 }
 

@@ -20,19 +20,21 @@ struct Options : cli::Common {
 
 void describe(CLI::App& app, Options& o) {
   CLI::Option* spacing =
-      app.add_option("--spacing", o.spacing, "grid spacing h, Å [> 0]")->check(CLI::PositiveNumber);
+      app.add_option("--spacing", o.spacing, "grid spacing h")->type_name("Å")->check(CLI::PositiveNumber);
   app.add_option("--grid", o.grid,
-                 "points along the longest axis, instead of --spacing; 0: use --spacing [4..536870912]")
+                 "points along the longest axis, 4 or more, instead of --spacing; 0: use --spacing")
       ->check(CLI::Range(0, 1 << 29))
       ->excludes(spacing);
   app.add_option(
-      "--margin", o.margin,
-      "grid beyond the outermost atom centres, Å [>= 0]; auto: as far as the surface and its band can reach");
-  app.add_option("--decay", o.decay, "decay rate of an atom's term, 1/Å² [> 0]")->check(CLI::PositiveNumber);
-  app.add_option("--isovalue", o.isovalue, "the surface is where the field has this value [> 0]")
+         "--margin", o.margin,
+         "grid beyond the outermost atom centres, 0 or more; auto: as far as the surface and its band can reach")
+      ->type_name("Å");
+  app.add_option("--decay", o.decay, "decay rate of an atom's term")->type_name("Å⁻²")->check(CLI::PositiveNumber);
+  app.add_option("--isovalue", o.isovalue, "the surface is where the field has this value")
       ->check(CLI::PositiveNumber);
-  app.add_option("--band", o.band, "limits of the band to keep, in multiples of the isovalue [0 < LO <= 1 <= HI]");
-  app.add_option("--tolerance", o.tolerance, "largest error of a value G, in units of max(1, G) [1e-6..1e-2]")
+  app.add_option("--band", o.band, "limits of the band to keep, in multiples of the isovalue, 0 < LO <= 1 <= HI")
+      ->type_name("LO,HI");
+  app.add_option("--tolerance", o.tolerance, "largest error of a value G, in units of max(1, G)")
       ->check(CLI::Range(1e-6, 1e-2));
   app.add_option("--search", o.search, "neighbor: only near the surface, full: every grid point")
       ->check(CLI::IsMember({"neighbor", "full"}));

@@ -25,9 +25,11 @@ void describe(CLI::App& app, Options& o) {
       ->check(CLI::Range(0, 1000));
   app.add_option("--parts", o.parts, "METIS parts that the elements are numbered by in the output")
       ->check(CLI::Range(1, 1000000));
-  app.add_option("--min-dihedral", o.min_dihedral, "quality asked for, degrees: status 5 when an angle is smaller")
+  app.add_option("--min-dihedral", o.min_dihedral, "quality asked for: status 5 when an angle is smaller")
+      ->type_name("°")
       ->check(CLI::Range(0., 70.5));
-  app.add_option("--max-dihedral", o.max_dihedral, "quality asked for, degrees: status 5 when an angle is larger")
+  app.add_option("--max-dihedral", o.max_dihedral, "quality asked for: status 5 when an angle is larger")
+      ->type_name("°")
       ->check(CLI::Range(70.6, 180.));
 }
 

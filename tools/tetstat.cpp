@@ -19,9 +19,11 @@ void describe(CLI::App& app, Options& o) {
   app.add_flag("--json", o.json, "one JSON object instead of text (formats/tetstat/TETSTATv1.md)");
   app.add_option("--compare", o.compare, "a mesh to compare with: --compare BEFORE AFTER; the status is AFTER's")
       ->type_name("FILE");
-  app.add_option("--min-dihedral", o.min_dihedral, "quality asked for, degrees: status 5 when an angle is smaller")
+  app.add_option("--min-dihedral", o.min_dihedral, "quality asked for: status 5 when an angle is smaller")
+      ->type_name("°")
       ->check(CLI::Range(0., 70.5));
-  app.add_option("--max-dihedral", o.max_dihedral, "quality asked for, degrees: status 5 when an angle is larger")
+  app.add_option("--max-dihedral", o.max_dihedral, "quality asked for: status 5 when an angle is larger")
+      ->type_name("°")
       ->check(CLI::Range(70.6, 180.));
 }
 
