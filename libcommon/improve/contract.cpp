@@ -146,7 +146,7 @@ bool Editor::merge(int32_t e, int i, int j) {
       ends += (p == pa) + (p == pb);
     return ends == 2;
   });
-  spokes_.clear();
+  spokes_.clear(pb);
   now_.clear();
   const auto add = [&](const std::vector<int32_t>& elements, int32_t from, int32_t other) {
     for (const int32_t t : elements) {

@@ -246,6 +246,8 @@ void Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
       ++open;
       if (n < 0)
         continue;
+      for (const int32_t w : v)
+        m_.incident[size_t(w)] = n; // where nothing new comes
       const Element& beyond = m_.element[size_t(n)];
       for (size_t g = 0; g < 4; ++g)
         if (beyond.n[g] == t)

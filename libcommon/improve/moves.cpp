@@ -76,7 +76,7 @@ bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double le
 // Spokes and sails of v's star; the mean length of its edges, and the worst misfit now.
 void Editor::gather(const std::vector<int32_t>& elements, int32_t v, double& length, double& limit) {
   const Vec3d from = m_.point[size_t(v)];
-  spokes_.clear();
+  spokes_.clear(from);
   sails_.clear();
   length = 0;
   for (const int32_t t : elements) {
@@ -186,7 +186,7 @@ bool Editor::split(int32_t e, int i, int j) {
   const float before = worst(ring_.element), aim = before + 1e-4f + 0.02f * before;
   double limit = 1;
   now_.clear();
-  spokes_.clear();
+  spokes_.clear(0.5 * (m_.point[size_t(a)] + m_.point[size_t(b)]));
   sails_.clear();
   const int32_t v = room_.vertex.back(), ends[2] = {a, b};
   for (const int32_t t : ring_.element) {
