@@ -3,7 +3,7 @@
 #include "cli/run.hpp"
 #include "formats/pdb/pdb.hpp"
 #include "molecule/words.hpp"
-#include <algorithm>
+#include <sstream>
 
 using namespace molmesh;
 
@@ -85,14 +85,14 @@ void resolve_rules(const Options& o, formats::PdbOptions& p) {
 void resolve(Options& o) {
   formats::PdbOptions& p = o.pdb;
   p.levels.clear();
-  std::string levels = o.levels == "none" ? "" : o.levels;
-  std::replace(levels.begin(), levels.end(), ',', ' ');
-  for (const std::string_view level : words(levels))
-    p.levels.emplace_back(level);
+  std::istringstream levels(o.levels == "none" ? "" : o.levels + ","); // a last comma is a level without a name
+  for (std::string level; o.levels != "" && std::getline(levels, level, ',');)
+    p.levels.push_back(level);
 
-  const bool number = !p.model.empty() && p.model.find_first_not_of("0123456789") == std::string::npos;
+  const bool number =
+      !p.model.empty() && p.model[0] != '0' && p.model.find_first_not_of("0123456789") == std::string::npos;
   if (p.model != "first" && p.model != "all" && !number)
-    usage("--model", p.model, "first, all or a number");
+    usage("--model", p.model, "first, all or a number from 1");
   if (p.altloc.size() != 1 && p.altloc != "occupancy" && p.altloc != "first" && p.altloc != "all")
     usage("--altloc", p.altloc, "occupancy, first, all or one letter");
   p.hydrogens = o.hydrogens == "keep";
