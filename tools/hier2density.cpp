@@ -49,8 +49,6 @@ density::Options density_options(const Options& o) {
     fail(Status::usage, "--band: found '" + o.band + "', expected LO,HI with 0 < LO <= 1 <= HI");
   if (o.grid > 0 && o.grid < 4)
     fail(Status::usage, "--grid: found " + std::to_string(o.grid) + ", expected 4 or more");
-  if (o.atoms != "bvh")
-    fail(Status::usage, "--atoms " + o.atoms + ": not available yet, expected bvh");
   d.spacing = o.spacing;
   d.grid_points = o.grid;
   if (o.margin != "auto") {
@@ -64,6 +62,9 @@ density::Options density_options(const Options& o) {
   d.band_upper = band[1] * o.isovalue;
   d.tolerance = o.tolerance;
   d.full_search = o.search == "full";
+  d.atoms = o.atoms == "all"      ? density::AtomSearch::all
+            : o.atoms == "kdtree" ? density::AtomSearch::kdtree
+                                  : density::AtomSearch::bvh;
   d.threads = o.resolved_threads();
   return d;
 }

@@ -4,7 +4,6 @@
 #include "par/par.hpp"
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
 namespace molmesh::density {
 namespace {
@@ -30,7 +29,7 @@ public:
     for (int row = 0; row < 9; ++row) {
       const Vec3i at = neighbor(first, 3 * row);
       known_[row] = std::lower_bound(b.known.begin(), b.known.end(), at,
-                                     [](const KnownBlock& k, Vec3i c) { return k.corner < c; }) -
+                                     [](const KnownCorner& k, Vec3i c) { return k.corner < c; }) -
                     b.known.begin();
       inside_[row] = std::lower_bound(b.inside.begin(), b.inside.end(), at) - b.inside.begin();
     }
@@ -86,81 +85,28 @@ bool covers(const Mask& in, const Mask& layer) {
   return left == 0;
 }
 
-/// One x-plane of the 10³ points around a block: rows along z, bit k + 1 is point k; row j + 1 is point j.
-struct Plane {
-  uint16_t row[16];
-};
-
-/// word[9]: the plane in the 3 × 3 blocks around, by (y, z).
-Plane make_plane(const uint64_t* const word[9]) {
-  const auto bytes = [](uint64_t w) {
-    std::array<uint8_t, 8> b;
-    std::memcpy(b.data(), &w, 8);
-    return b;
-  };
-  Plane p{};
-  const auto lo = bytes(*word[3]), mid = bytes(*word[4]), hi = bytes(*word[5]);
-  for (size_t j = 0; j < 8; ++j)
-    p.row[j + 1] = static_cast<uint16_t>(mid[j] << 1 | lo[j] >> 7 | (hi[j] & 1) << 9);
-  p.row[0] = static_cast<uint16_t>((*word[1] >> 56) << 1 | *word[0] >> 63 | (*word[2] >> 56 & 1) << 9);
-  p.row[9] = static_cast<uint16_t>((*word[7] & 0xff) << 1 | (*word[6] >> 7 & 1) | (*word[8] & 1) << 9);
-  return p;
-}
-
-/// Bit k of row j: all eight corners of cell (j, k) between two planes are set.
-Plane all_corners(const Plane& a, const Plane& b) {
-  Plane c{};
-  for (int j = 0; j < 9; ++j) {
-    const auto four = static_cast<uint16_t>(a.row[j] & a.row[j + 1] & b.row[j] & b.row[j + 1]);
-    c.row[j] = static_cast<uint16_t>(four & four >> 1);
-  }
-  return c;
-}
-
 /// Active points of a block. Cells that reach beyond the grid are none.
 Mask active_points(const KnownBlocks& b, const GridFrame& frame, Vec3i corner, const int64_t* around) {
-  const Mask *below[27], *above[27];
+  const uint64_t *below[27], *above[27];
   for (int n = 0; n < 27; ++n) {
-    const bool known = around[n] >= 0;
-    below[n] = known ? &b.known[static_cast<size_t>(around[n])].below : around[n] == Cursors::inside ? &none : &all;
-    above[n] = known ? &b.known[static_cast<size_t>(around[n])].above : around[n] == Cursors::inside ? &all : &none;
+    const KnownBlock* k = around[n] >= 0 ? b.known[static_cast<size_t>(around[n])].block : nullptr;
+    below[n] = (k ? k->below : around[n] == Cursors::inside ? none : all).data();
+    above[n] = (k ? k->above : around[n] == Cursors::inside ? all : none).data();
   }
-  const auto plane = [](const Mask* const* masks, size_t i) { // i = 0 … 9
-    const uint64_t* word[9];
-    for (size_t n = 0; n < 9; ++n)
-      word[n] = &(*masks[9 * ((i + 7) / 8) + n])[(i + 7) % 8];
-    return make_plane(word);
+  const Vec3i last = frame.lower + frame.points - Vec3i{1, 1, 1};
+  const auto cell_in = [&](int axis, int i) { // between points i - 1 and i of the block
+    const int at = corner[axis] + i - 1;
+    return at >= frame.lower[axis] && at < last[axis];
   };
-  const Vec3i lo = frame.lower, last = lo + frame.points - Vec3i{1, 1, 1};
   uint16_t in_z = 0;
   for (int k = 0; k < 9; ++k)
-    if (const int z = corner.z + k - 1; z >= lo.z && z < last.z)
-      in_z |= static_cast<uint16_t>(1u << k);
-  Plane below_0 = plane(below, 0), above_0 = plane(above, 0), cell_0{};
-  Mask mask{};
-  for (size_t i = 0; i < 9; ++i) {
-    const Plane below_1 = plane(below, i + 1), above_1 = plane(above, i + 1);
-    const Plane all_below = all_corners(below_0, below_1), all_above = all_corners(above_0, above_1);
-    Plane cell{};
-    const int x = corner.x + static_cast<int>(i) - 1;
-    if (x >= lo.x && x < last.x)
-      for (int j = 0; j < 9; ++j) {
-        const int y = corner.y + j - 1;
-        const bool in = y >= lo.y && y < last.y;
-        cell.row[j] = static_cast<uint16_t>(~(all_below.row[j] | all_above.row[j]) & (in ? in_z : 0));
-      }
-    if (i > 0) {
-      std::array<uint8_t, 8> bytes;
-      for (size_t j = 0; j < 8; ++j) {
-        const int four = cell_0.row[j] | cell_0.row[j + 1] | cell.row[j] | cell.row[j + 1];
-        bytes[j] = static_cast<uint8_t>(four | four >> 1);
-      }
-      std::memcpy(&mask[i - 1], bytes.data(), 8);
-    }
-    below_0 = below_1;
-    above_0 = above_1;
-    cell_0 = cell;
-  }
+    in_z |= static_cast<uint16_t>(cell_in(2, k) << k);
+  uint16_t cells[81];
+  for (int i = 0; i < 9; ++i)
+    for (int j = 0; j < 9; ++j)
+      cells[9 * i + j] = cell_in(0, i) && cell_in(1, j) ? in_z : uint16_t{0};
+  Mask mask;
+  band_points(below, above, cells, mask.data());
   return mask;
 }
 
@@ -180,7 +126,7 @@ struct Range {
 Range known_in(const KnownBlocks& b, Slab slab) {
   const auto at = [&](int32_t x) {
     return std::partition_point(b.known.begin(), b.known.end(),
-                                [x](const KnownBlock& k) { return k.corner.x < x; }) -
+                                [x](const KnownCorner& k) { return k.corner.x < x; }) -
            b.known.begin();
   };
   return {at(slab.begin), at(slab.end)};
@@ -213,13 +159,14 @@ std::vector<Vec3i> blocks_missing_from_band(const KnownBlocks& b, Slab slab, con
     Cursors cursors(b, b.known[static_cast<size_t>(begin)].corner);
     int64_t around[27];
     for (int64_t i = begin; i < end; ++i) {
-      const KnownBlock& k = b.known[static_cast<size_t>(i)];
-      cursors.find(k.corner, around);
+      const Vec3i corner = b.known[static_cast<size_t>(i)].corner;
+      const KnownBlock& k = *b.known[static_cast<size_t>(i)].block;
+      cursors.find(corner, around);
       for (int d = 0; d < 27; ++d)
         if (around[d] < 0 &&
             !covers(around[d] == Cursors::inside ? k.above : k.below, layer[static_cast<size_t>(d)]) &&
-            wanted(neighbor(k.corner, d)))
-          part[static_cast<size_t>(p)].push_back(neighbor(k.corner, d));
+            wanted(neighbor(corner, d)))
+          part[static_cast<size_t>(p)].push_back(neighbor(corner, d));
     }
   });
   // Opposite sides next to each other.
@@ -275,17 +222,17 @@ void append_slab(const KnownBlocks& b, Slab slab, Band& band, int threads) {
       const Mask& m = mask[static_cast<size_t>(i)];
       if (m == none)
         continue;
-      const KnownBlock& k = b.known[static_cast<size_t>(known.begin + i)];
-      *to++ = {k.corner, m, k.above, packed};
-      packed += pack_active(k.value, m.data(), packed);
+      const KnownCorner& k = b.known[static_cast<size_t>(known.begin + i)];
+      *to++ = {k.corner, m, k.block->above, packed};
+      packed += pack_active(k.block->value, m.data(), packed);
     }
   });
   const auto middle = static_cast<std::ptrdiff_t>(band.inside.size());
   band.inside.insert(band.inside.end(), b.inside.begin() + inside.begin, b.inside.begin() + inside.end);
   const auto known_inside = static_cast<std::ptrdiff_t>(band.inside.size());
   for (int64_t i = 0; i < n; ++i)
-    if (const KnownBlock& k = b.known[static_cast<size_t>(known.begin + i)];
-        mask[static_cast<size_t>(i)] == none && k.value[0] > band.info.isovalue)
+    if (const KnownCorner& k = b.known[static_cast<size_t>(known.begin + i)];
+        mask[static_cast<size_t>(i)] == none && (k.block->above[0] & 1))
       band.inside.push_back(k.corner);
   std::inplace_merge(band.inside.begin() + middle, band.inside.begin() + known_inside, band.inside.end());
 }

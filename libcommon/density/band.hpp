@@ -30,15 +30,19 @@ BlockGrid to_block_grid(const Band& band, int threads);
 
 /// A block whose values are known.
 struct KnownBlock {
-  Vec3i corner;
   const float* value; ///< [512]
   Mask below, above;  ///< of the band
 };
 
+struct KnownCorner {
+  Vec3i corner;
+  const KnownBlock* block;
+};
+
 /// What is known of the grid: blocks with values; blocks above the band at every point; all others are below it.
 struct KnownBlocks {
-  std::vector<KnownBlock> known; ///< ascending
-  std::vector<Vec3i> inside;     ///< ascending, none of them known
+  std::vector<KnownCorner> known; ///< ascending
+  std::vector<Vec3i> inside;      ///< ascending, none of them known
   void append(const KnownBlocks& more);
 };
 

@@ -35,9 +35,9 @@ HWY_INLINE V exp2(V x) {
   constexpr float c[] = {1.00000007545f, 0.69314718803f, 0.24022107485f,
                          0.05550357114f, 0.00967603192f, 0.00133908634f};
   x = hn::Min(hn::Max(x, hn::Set(f, -126.0f)), hn::Set(f, 127.0f));
-  const V n = hn::Round(x);
-  const auto scale = hn::ShiftLeft<23>(hn::ConvertTo(I(), n));
-  return hn::BitCast(f, hn::Add(hn::BitCast(I(), polynomial(hn::Sub(x, n), c)), scale));
+  const V big = hn::Set(f, 12582912.0f), shifted = hn::Add(x, big); // 1.5·2^23: the sum's low bits are x rounded
+  const V t = hn::Sub(x, hn::Sub(shifted, big));
+  return hn::BitCast(f, hn::Add(hn::BitCast(I(), polynomial(t, c)), hn::ShiftLeft<23>(hn::BitCast(I(), shifted))));
 }
 
 /// x normal and positive. Chebyshev interpolant of log2(1 + t)/t on [√½ - 1, √2 - 1]: 1.9e-7.
@@ -97,72 +97,89 @@ HWY_INLINE float shift(const LocalClusters& c, int32_t k, const LocalBox& b, flo
   return c.peak[s] - decay * d2;
 }
 
-void log2_add(const float* base, float* v, int32_t n) {
-  for (int32_t i = 0; i < n; i += lanes)
-    hn::StoreU(hn::Add(hn::LoadU(f, base + i), log2(hn::LoadU(f, v + i))), f, v + i);
-}
-
 void upper_bounds_simd(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& b, float decay,
-                       float* out) {
-  std::vector<float>& base = []() -> std::vector<float>& {
-    static thread_local std::vector<float> v;
-    return v;
-  }();
-  base.assign(static_cast<size_t>(n) + 16, 0.0f);
+                       bool scaled, float* out) {
+  const V mx = hn::Set(f, b.middle[0]), my = hn::Set(f, b.middle[1]), mz = hn::Set(f, b.middle[2]);
+  const V hx = hn::Set(f, b.half[0]), hy = hn::Set(f, b.half[1]), hz = hn::Set(f, b.half[2]);
+  const V k = hn::Set(f, decay), zero = hn::Zero(f);
+  const auto beyond = [zero](const float* v, V middle, V half) {
+    return hn::Max(hn::Sub(hn::Abs(hn::Sub(hn::LoadU(f, v), middle)), half), zero);
+  };
   for (int32_t i = 0; i < n; ++i) {
     const size_t first = 16 * static_cast<size_t>(list[i]);
-    const float s = shift(c, list[i], b, decay, false);
-    V sum = hn::Zero(f);
+    const float base = scaled ? shift(c, list[i], b, decay, false) : 0.0f;
+    V sum = zero;
     for (int32_t l = 0; l < 16; l += lanes) {
       const size_t a = first + static_cast<size_t>(l);
-      const auto beyond = [&](const std::vector<float>& v, int axis) {
-        const V d = hn::Abs(hn::Sub(hn::LoadU(f, &v[a]), hn::Set(f, b.middle[axis])));
-        return hn::Max(hn::Sub(d, hn::Set(f, b.half[axis])), hn::Zero(f));
-      };
-      const V dx = beyond(c.atom_x, 0), dy = beyond(c.atom_y, 1), dz = beyond(c.atom_z, 2);
+      const V dx = beyond(&c.atom_x[a], mx, hx), dy = beyond(&c.atom_y[a], my, hy),
+              dz = beyond(&c.atom_z[a], mz, hz);
       const V d2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-      sum = hn::Add(
-          sum, exp2(hn::NegMulAdd(d2, hn::Set(f, decay), hn::Sub(hn::LoadU(f, &c.atom_peak[a]), hn::Set(f, s)))));
+      sum = hn::Add(sum, exp2(hn::NegMulAdd(d2, k, hn::Sub(hn::LoadU(f, &c.atom_peak[a]), hn::Set(f, base)))));
     }
-    base[static_cast<size_t>(i)] = s;
     out[i] = hn::GetLane(hn::SumOfLanes(f, sum));
   }
   std::fill_n(out + n, 16, 1.0f);
-  log2_add(base.data(), out, n);
+  for (int32_t i = 0; i < n; i += lanes)
+    hn::StoreU(log2(hn::LoadU(f, out + i)), f, out + i);
+  if (scaled)
+    for (int32_t i = 0; i < n; ++i)
+      out[i] += shift(c, list[i], b, decay, false);
 }
 
-void middle_sums_simd(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& b, float decay,
-                      float* sum, float* x, float* y, float* z) {
-  std::vector<float>& base = []() -> std::vector<float>& {
-    static thread_local std::vector<float> v;
-    return v;
-  }();
-  base.assign(static_cast<size_t>(n) + 16, 0.0f);
-  for (int32_t i = 0; i < n; ++i) {
-    const size_t first = 16 * static_cast<size_t>(list[i]);
-    const float s = shift(c, list[i], b, decay, true);
-    V w = hn::Zero(f), wx = w, wy = w, wz = w;
+bool take_unit_simd(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& b, float decay,
+                    float log2_small, const AtomArguments& to, UnitMiddle& middle) {
+  float base = -1e30f;
+  for (int32_t i = 0; i < n; ++i)
+    base = std::max(base, shift(c, list[i], b, decay, true));
+  const V mx = hn::Set(f, b.middle[0]), my = hn::Set(f, b.middle[1]), mz = hn::Set(f, b.middle[2]);
+  const V k = hn::Set(f, decay);
+  const auto log2_term = [&](size_t a) {
+    const V dx = hn::Sub(hn::LoadU(f, &c.atom_x[a]), mx), dy = hn::Sub(hn::LoadU(f, &c.atom_y[a]), my),
+            dz = hn::Sub(hn::LoadU(f, &c.atom_z[a]), mz);
+    const V d2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+    return hn::NegMulAdd(d2, k, hn::LoadU(f, &c.atom_peak[a]));
+  };
+  V w = hn::Zero(f), wx = w, wy = w, wz = w;
+  for (int32_t i = 0; i < n; ++i)
     for (int32_t l = 0; l < 16; l += lanes) {
-      const size_t a = first + static_cast<size_t>(l);
-      const V px = hn::LoadU(f, &c.atom_x[a]), py = hn::LoadU(f, &c.atom_y[a]), pz = hn::LoadU(f, &c.atom_z[a]);
-      const V dx = hn::Sub(px, hn::Set(f, b.middle[0])), dy = hn::Sub(py, hn::Set(f, b.middle[1])),
-              dz = hn::Sub(pz, hn::Set(f, b.middle[2]));
-      const V d2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-      const V e = exp2(hn::NegMulAdd(d2, hn::Set(f, decay), hn::Sub(hn::LoadU(f, &c.atom_peak[a]), hn::Set(f, s))));
+      const size_t a = 16 * static_cast<size_t>(list[i]) + static_cast<size_t>(l);
+      const V e = exp2(hn::Sub(log2_term(a), hn::Set(f, base)));
       w = hn::Add(w, e);
-      wx = hn::MulAdd(e, px, wx);
-      wy = hn::MulAdd(e, py, wy);
-      wz = hn::MulAdd(e, pz, wz);
+      wx = hn::MulAdd(e, hn::LoadU(f, &c.atom_x[a]), wx);
+      wy = hn::MulAdd(e, hn::LoadU(f, &c.atom_y[a]), wy);
+      wz = hn::MulAdd(e, hn::LoadU(f, &c.atom_z[a]), wz);
     }
-    const float total = hn::GetLane(hn::SumOfLanes(f, w));
-    base[static_cast<size_t>(i)] = s;
-    sum[i] = total;
-    x[i] = hn::GetLane(hn::SumOfLanes(f, wx)) / total;
-    y[i] = hn::GetLane(hn::SumOfLanes(f, wy)) / total;
-    z[i] = hn::GetLane(hn::SumOfLanes(f, wz)) / total;
-  }
-  std::fill_n(sum + n, 16, 1.0f);
-  log2_add(base.data(), sum, n);
+  const V total = hn::SumOfLanes(f, w);
+  if (hn::GetLane(total) < 1e-30f)
+    return false;
+  const V cx = hn::Div(hn::SumOfLanes(f, wx), total), cy = hn::Div(hn::SumOfLanes(f, wy), total),
+          cz = hn::Div(hn::SumOfLanes(f, wz), total), sum = hn::Add(log2(total), hn::Set(f, base));
+  const V sx = hn::Set(f, 2 * decay * b.half[0] / 3.5f), sy = hn::Set(f, 2 * decay * b.half[1] / 3.5f),
+          sz = hn::Set(f, 2 * decay * b.half[2] / 3.5f);
+  V widest = hn::Zero(f);
+  size_t kept = 0;
+  for (int32_t i = 0; i < n; ++i)
+    for (int32_t l = 0; l < 16; l += lanes) {
+      const size_t a = 16 * static_cast<size_t>(list[i]) + static_cast<size_t>(l);
+      const V x = hn::Mul(hn::Sub(hn::LoadU(f, &c.atom_x[a]), cx), sx),
+              y = hn::Mul(hn::Sub(hn::LoadU(f, &c.atom_y[a]), cy), sy),
+              z = hn::Mul(hn::Sub(hn::LoadU(f, &c.atom_z[a]), cz), sz);
+      const V swing = hn::Mul(hn::Set(f, 3.5f), hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z))));
+      const V weight = hn::Sub(log2_term(a), sum);
+      // Unused slots have a peak of -1e30: never kept.
+      const auto keep =
+          hn::And(hn::Ge(hn::Add(weight, swing), hn::Set(f, log2_small)), hn::Gt(weight, hn::Set(f, -1e29f)));
+      widest = hn::Max(widest, hn::IfThenElseZero(keep, swing));
+      hn::CompressBlendedStore(x, keep, f, to.x + kept);
+      hn::CompressBlendedStore(y, keep, f, to.y + kept);
+      hn::CompressBlendedStore(z, keep, f, to.z + kept);
+      kept += hn::CompressBlendedStore(weight, keep, f, to.constant + kept);
+    }
+  middle = {hn::GetLane(sum),
+            {hn::GetLane(cx), hn::GetLane(cy), hn::GetLane(cz)},
+            hn::GetLane(hn::MaxOfLanes(f, widest)),
+            static_cast<int32_t>(kept)};
+  return true;
 }
 
 void exp2_all_simd(float* v, int32_t n) {
@@ -221,26 +238,29 @@ void add_unit_simd(const UnitArguments& u, float* scratch, float* sum) {
   const int32_t n = u.atoms;
   float* const x = scratch;                                  // 24·(n + 1), then to a multiple of 16
   float* const yz = scratch + (24 * (n + 1) + 15) / 16 * 16; // 64·(n + 1)
-  const auto axis = [](float* to, float a, float b, float c) {
-    for (int32_t i = 0; i < 8; ++i) {
-      const float t = static_cast<float>(i) - 3.5f;
-      to[i] = (c * t + b) * t + a;
+  using F8 = hn::CappedTag<float, 8>;
+  constexpr F8 f8{};
+  constexpr int32_t lanes8 = static_cast<int32_t>(HWY_MIN(8, HWY_LANES(float)));
+  for (int32_t l = 0; l < 8; l += lanes8) {
+    const auto t = hn::Add(hn::Iota(f8, static_cast<float>(l)), hn::Set(f8, -3.5f));
+    for (int32_t a = 0; a < n; ++a) {
+      hn::StoreU(hn::MulAdd(hn::Set(f8, u.atom.x[a]), t, hn::Set(f8, u.atom.constant[a])), f8, x + 24 * a + l);
+      hn::StoreU(hn::Mul(hn::Set(f8, u.atom.y[a]), t), f8, x + 24 * a + 8 + l);
+      hn::StoreU(hn::Mul(hn::Set(f8, u.atom.z[a]), t), f8, x + 24 * a + 16 + l);
     }
-  };
-  const auto arguments = [&](int32_t row, const AxisArguments& g, float c) {
-    axis(x + 24 * row, g.constant, g.x, c);
-    axis(x + 24 * row + 8, 0, g.y, c);
-    axis(x + 24 * row + 16, 0, g.z, c);
-  };
-  for (int32_t a = 0; a < n; ++a)
-    arguments(a, u.atom[a], 0);
-  arguments(n, u.outer, u.curvature);
+    for (int32_t axis = 0; axis < 3; ++axis) {
+      const auto slope = hn::MulAdd(hn::Set(f8, u.curvature), t, hn::Set(f8, u.slope[axis]));
+      hn::StoreU(hn::MulAdd(slope, t, hn::Set(f8, axis == 0 ? u.constant : 0.0f)), f8, x + 24 * n + 8 * axis + l);
+    }
+  }
   std::fill(x + 24 * (n + 1), yz, 0.0f);
   exp2_all_simd(x, static_cast<int32_t>(yz - x));
   for (int32_t a = 0; a <= n; ++a)
-    for (int32_t j = 0; j < 8; ++j)
-      for (int32_t k = 0; k < 8; ++k)
-        yz[64 * a + 8 * j + k] = x[24 * a + 8 + j] * x[24 * a + 16 + k];
+    for (int32_t l = 0; l < 8; l += lanes8) {
+      const auto z = hn::LoadU(f8, x + 24 * a + 16 + l);
+      for (int32_t j = 0; j < 8; ++j)
+        hn::StoreU(hn::Mul(hn::Set(f8, x[24 * a + 8 + j]), z), f8, yz + 64 * a + 8 * j + l);
+    }
   if (u.exponent == 1.0f)
     accumulate(x, yz, n, One{}, sum);
   else if (u.exponent == 0.5f)
@@ -281,6 +301,67 @@ void classify_points_simd(const float* v, float lower, float upper, uint64_t* be
 #endif
 }
 
+/// One x-plane of the 10³ points around a block: rows along z, bit k + 1 is point k; row j + 1 is point j.
+struct Plane {
+  uint16_t row[16];
+};
+
+/// word[9]: the plane in the 3 × 3 blocks around, by (y, z).
+HWY_INLINE Plane make_plane(const uint64_t* word) {
+  uint8_t lo[8], mid[8], hi[8];
+  std::memcpy(lo, word + 3, 8);
+  std::memcpy(mid, word + 4, 8);
+  std::memcpy(hi, word + 5, 8);
+  Plane p{};
+  for (size_t j = 0; j < 8; ++j)
+    p.row[j + 1] = static_cast<uint16_t>(mid[j] << 1 | lo[j] >> 7 | (hi[j] & 1) << 9);
+  p.row[0] = static_cast<uint16_t>((word[1] >> 56) << 1 | word[0] >> 63 | (word[2] >> 56 & 1) << 9);
+  p.row[9] = static_cast<uint16_t>((word[7] & 0xff) << 1 | (word[6] >> 7 & 1) | (word[8] & 1) << 9);
+  return p;
+}
+
+/// Bit k of row j: all eight corners of cell (j, k) between two planes are set.
+HWY_INLINE Plane all_corners(const Plane& a, const Plane& b) {
+  Plane c{};
+  uint16_t both[17] = {};
+  for (int j = 0; j < 16; ++j)
+    both[j] = a.row[j] & b.row[j];
+  for (int j = 0; j < 16; ++j) {
+    const auto four = static_cast<uint16_t>(both[j] & both[j + 1]);
+    c.row[j] = static_cast<uint16_t>(four & four >> 1);
+  }
+  return c;
+}
+
+void band_points_simd(const uint64_t* const* below, const uint64_t* const* above, const uint16_t* cells,
+                      uint64_t* out) {
+  const auto plane = [](const uint64_t* const* masks, size_t i) { // i = 0 … 9
+    uint64_t word[9];
+    for (size_t n = 0; n < 9; ++n)
+      word[n] = masks[9 * ((i + 7) / 8) + n][(i + 7) % 8];
+    return make_plane(word);
+  };
+  Plane below_0 = plane(below, 0), above_0 = plane(above, 0), cell_0{};
+  for (size_t i = 0; i < 9; ++i) {
+    const Plane below_1 = plane(below, i + 1), above_1 = plane(above, i + 1);
+    const Plane all_below = all_corners(below_0, below_1), all_above = all_corners(above_0, above_1);
+    Plane cell{};
+    for (size_t j = 0; j < 9; ++j)
+      cell.row[j] = static_cast<uint16_t>(~(all_below.row[j] | all_above.row[j]) & cells[9 * i + j]);
+    if (i > 0) {
+      uint8_t bytes[8];
+      for (size_t j = 0; j < 8; ++j) {
+        const int four = cell_0.row[j] | cell_0.row[j + 1] | cell.row[j] | cell.row[j + 1];
+        bytes[j] = static_cast<uint8_t>(four | four >> 1);
+      }
+      std::memcpy(out + i - 1, bytes, 8);
+    }
+    below_0 = below_1;
+    above_0 = above_1;
+    cell_0 = cell;
+  }
+}
+
 int32_t pack_active_simd(const float* v, const uint64_t* active, float* out) {
   float* const begin = out;
 #if HWY_TARGET <= HWY_AVX2
@@ -310,7 +391,8 @@ namespace molmesh::density {
 
 HWY_EXPORT(near_clusters_simd);
 HWY_EXPORT(upper_bounds_simd);
-HWY_EXPORT(middle_sums_simd);
+HWY_EXPORT(take_unit_simd);
+HWY_EXPORT(band_points_simd);
 HWY_EXPORT(exp2_all_simd);
 HWY_EXPORT(add_unit_simd);
 HWY_EXPORT(raise_group_simd);
@@ -322,12 +404,15 @@ int32_t near_clusters(const LocalClusters& c, const int32_t* list, int32_t n, co
   return HWY_DYNAMIC_DISPATCH(near_clusters_simd)(c, list, n, box, out);
 }
 void upper_bounds(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& box, float decay,
-                  float* out) {
-  HWY_DYNAMIC_DISPATCH(upper_bounds_simd)(c, list, n, box, decay, out);
+                  bool scaled, float* out) {
+  HWY_DYNAMIC_DISPATCH(upper_bounds_simd)(c, list, n, box, decay, scaled, out);
 }
-void middle_sums(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& box, float decay,
-                 float* sum, float* x, float* y, float* z) {
-  HWY_DYNAMIC_DISPATCH(middle_sums_simd)(c, list, n, box, decay, sum, x, y, z);
+bool take_unit(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& block, float decay,
+               float log2_small, const AtomArguments& to, UnitMiddle& middle) {
+  return HWY_DYNAMIC_DISPATCH(take_unit_simd)(c, list, n, block, decay, log2_small, to, middle);
+}
+void band_points(const uint64_t* const* below, const uint64_t* const* above, const uint16_t* cells, uint64_t* out) {
+  HWY_DYNAMIC_DISPATCH(band_points_simd)(below, above, cells, out);
 }
 void exp2_all(float* v, int32_t n) {
   HWY_DYNAMIC_DISPATCH(exp2_all_simd)(v, n);

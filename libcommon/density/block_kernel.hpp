@@ -25,27 +25,37 @@ struct LocalBox {
 int32_t near_clusters(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& box, int32_t* out);
 
 /// For each of list[n], log2 of an upper bound over `box` of the cluster's sum. decay: κ·log2(e), Å⁻². out holds n
-/// + 16.
+/// + 16. Bounds below 2^-122 are not told apart, unless `scaled`.
 void upper_bounds(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& box, float decay,
-                  float* out);
+                  bool scaled, float* out);
 
-/// For each of list[n], log2 of the sum at the middle of `box` and the sum's centroid. Arrays hold n + 16.
-void middle_sums(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& box, float decay,
-                 float* sum, float* x, float* y, float* z);
+/// Arguments of the factors of kept atoms: term of T = 2^(constant + x·t_i + y·t_j + z·t_k), t = -3.5 … 3.5.
+struct AtomArguments {
+  float *x, *y, *z, *constant;
+};
+
+/// A unit at the middle of a block, positions relative to the node's middle.
+struct UnitMiddle {
+  float log2_sum = 0;     ///< of S
+  float centroid[3] = {}; ///< Å
+  float swing = 0;        ///< largest |x·3.5| + |y·3.5| + |z·3.5| of the kept atoms
+  int32_t kept = 0;
+};
+
+/// The clusters list[n] as one unit: its middle, and the arguments of its atoms whose terms of T can reach
+/// 2^log2_small in the block (all atoms: a low value). `to` holds 16 n + 16 more. False when single precision
+/// cannot tell: all terms are next to nothing beside the bound for their cluster.
+bool take_unit(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& block, float decay,
+               float log2_small, const AtomArguments& to, UnitMiddle& middle);
 
 /// v[i] = 2^v[i]; n a multiple of 16; below 2^-126 and above 2^127 the limit.
 void exp2_all(float* v, int32_t n);
 
-/// One unit of a selection for sum_unit. The three arguments of an axis are log2 of the factor at its eight points,
-/// a + b·t + c·t², t = -3.5 … 3.5.
-struct AxisArguments {
-  float x, y, z, constant; ///< b per axis; the constant belongs to the x axis
-};
+/// One unit of a selection: S^P = T^P · 2^(constant + Σ over axes (slope·t + curvature·t²)).
 struct UnitArguments {
-  AxisArguments outer;       ///< P·ln of what T is multiplied with in S
-  float curvature;           ///< c, the same on each axis
-  float exponent;            ///< P
-  const AxisArguments* atom; ///< terms of T, c = 0
+  float exponent; ///< P
+  float constant, slope[3], curvature;
+  AtomArguments atom;
   int32_t atoms;
 };
 
@@ -57,6 +67,11 @@ void raise_group(float p, float* from, float* to);
 
 /// Bit 8·j + k of word i of below and above: v < lower, v > upper.
 void classify_points(const float* v, float lower, float upper, uint64_t* below, uint64_t* above);
+
+/// Corners of band cells in a block. below, above: for the 27 blocks around it, in order, the points that are below
+/// and above the band (8 words each). cells: bit k of cells[9 i + j] says whether cell (i - 1, j - 1, k - 1),
+/// counted from the block's lowest point, lies in the grid. out: bit 8·j + k of word i.
+void band_points(const uint64_t* const* below, const uint64_t* const* above, const uint16_t* cells, uint64_t* out);
 
 /// Copies the v whose bit of active[8] is set to out, in order; writes nothing more. Returns how many.
 int32_t pack_active(const float* v, const uint64_t* active, float* out);

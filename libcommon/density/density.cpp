@@ -8,7 +8,16 @@
 namespace molmesh::density {
 
 Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts) {
-  const Field f = make_field(hierarchy, o.decay, Budget(o.tolerance).far);
+  SearchOptions s;
+  s.isovalue = o.isovalue;
+  s.band_lower = o.band_lower;
+  s.band_upper = o.band_upper;
+  s.tolerance = o.tolerance;
+  s.full = o.full_search;
+  s.atoms = o.atoms;
+  s.threads = o.threads;
+  s.progress = o.progress;
+  const Field f = make_field(hierarchy, o.decay, budget_for(s).far);
   const Box box = f.bounds();
   const bool derived = o.margin < 0;
   double margin = o.margin, h = o.spacing;
@@ -22,14 +31,6 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts) {
   counts.margin = margin;
   const GridFrame frame =
       o.grid_points > 0 ? frame_with_points(box, margin, o.grid_points) : frame_with_spacing(box, margin, h);
-  SearchOptions s;
-  s.isovalue = o.isovalue;
-  s.band_lower = o.band_lower;
-  s.band_upper = o.band_upper;
-  s.tolerance = o.tolerance;
-  s.full = o.full_search;
-  s.threads = o.threads;
-  s.progress = o.progress;
   Band band = find_band(f, frame, s, counts.search);
   band.info.source = hierarchy.source;
   for (const Level& l : hierarchy.level)

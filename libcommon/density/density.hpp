@@ -13,6 +13,7 @@ struct Options {
   double isovalue = 1, band_lower = 0.9, band_upper = 1.1; ///< in units of G
   double tolerance = 1e-4;                                 ///< ε of I1
   bool full_search = false;
+  AtomSearch atoms = AtomSearch::bvh;
   int threads = 1;
   std::function<void(int64_t done, int64_t total)> progress;
 };

@@ -70,46 +70,30 @@ void add_power(const Unit& u, double decay, Vec3d middle, double h, const double
 
 } // namespace
 
-Arithmetic arithmetic_for(const Field& f, double tolerance) {
-  // The smallest term of a group above the innermost level that can matter, as cutoffs see it.
-  const bool coarse = tolerance >= 2e-5 * std::max(1.0, f.steepest);
-  if (f.plain_above)
-    return coarse ? Arithmetic::in_single : Arithmetic::in_double;
-  double least = 0;
-  for (size_t c = 0; c < f.group.size(); ++c) {
-    const double p = f.level[0].exponent[static_cast<size_t>(f.group[c])];
-    least = std::min(least, p * (f.ln_peak[c] - f.decay * f.cutoff2[c]));
-  }
-  constexpr double margin = 10;
-  if (least < -700 + margin)
-    return Arithmetic::in_logarithms;
-  return least < -87 + margin || !coarse ? Arithmetic::in_double : Arithmetic::in_single;
-}
-
 /// The kernel's form of a unit: every argument in log2, products of three axes near their final size.
-void Evaluator::in_single(const Field& f, const Selection& s, Vec3d middle, double h, float* out) {
+void Evaluator::in_single(const Field& f, Selection& s, Vec3d middle, double h, float* out) {
   constexpr double log2e = std::numbers::log2e;
   OpenGroups groups(f);
   single_.assign(groups.levels() * points, 0.0f); // [l]: the open group of level l
   std::fill_n(out, points, 0.0f);
-  const auto sum_of = [&](size_t l) { return l < groups.levels() && l > 0 ? &single_[l * points] : out; };
+  const auto sum_of = [&](size_t l) { return l < groups.levels() ? &single_[l * points] : out; };
   const auto close = [&](size_t l, int64_t g) {
     raise_group(static_cast<float>(f.level[l].exponent[static_cast<size_t>(g)]), sum_of(l), sum_of(l + 1));
   };
-  const double step = 2 * f.decay * h * log2e;
-  arguments_.resize(s.ln_weight.size());
-  for (size_t a = 0; a < arguments_.size(); ++a)
-    arguments_[a] = {static_cast<float>(step * s.offset_x[a]), static_cast<float>(step * s.offset_y[a]),
-                     static_cast<float>(step * s.offset_z[a]), static_cast<float>(log2e * s.ln_weight[a])};
   for (const Unit& u : s.unit) {
     groups.enter(u.group, close);
-    const Vec3d slope = -u.exponent * step * (middle - u.centroid);
-    const AxisArguments outer{static_cast<float>(slope.x), static_cast<float>(slope.y), static_cast<float>(slope.z),
-                              static_cast<float>(u.exponent * log2e * u.ln_center)};
-    scratch_.resize(std::max(scratch_.size(), static_cast<size_t>(96 * (u.end - u.begin + 1) + 64)));
-    add_unit({outer, static_cast<float>(-u.exponent * f.decay * h * h * log2e), static_cast<float>(u.exponent),
-              arguments_.data() + u.begin, u.end - u.begin},
-             scratch_.data(), sum_of(1));
+    const double step = 2 * u.exponent * f.decay * h * log2e;
+    const Vec3d away = u.centroid - middle;
+    const UnitArguments unit{
+        static_cast<float>(u.exponent),
+        static_cast<float>(u.exponent * log2e * u.ln_center),
+        {static_cast<float>(step * away.x), static_cast<float>(step * away.y), static_cast<float>(step * away.z)},
+        static_cast<float>(-0.5 * step * h),
+        {&s.argument[0][0] + u.begin, &s.argument[1][0] + u.begin, &s.argument[2][0] + u.begin,
+         &s.argument[3][0] + u.begin},
+        u.end - u.begin};
+    scratch_.resize(std::max(scratch_.size(), static_cast<size_t>(96 * (unit.atoms + 1) + 64)));
+    add_unit(unit, scratch_.data(), sum_of(1));
   }
   groups.finish(close);
 }
@@ -167,14 +151,8 @@ void Evaluator::by_logarithms(const Field& f, const Selection& s, Vec3d middle, 
   }
 }
 
-void Evaluator::evaluate(const Field& f, const Selection& s, Vec3d middle, double h, Arithmetic arithmetic,
-                         float* out) {
-  // Nothing may overflow: coarse grids, steep kernels.
-  if (arithmetic == Arithmetic::in_single && s.range > 80)
-    arithmetic = Arithmetic::in_double;
-  if (arithmetic == Arithmetic::in_double && s.range > 690)
-    arithmetic = Arithmetic::in_logarithms;
-  switch (arithmetic) {
+void Evaluator::evaluate(const Field& f, Selection& s, Vec3d middle, double h, float* out) {
+  switch (s.arithmetic) {
   case Arithmetic::in_single:
     return in_single(f, s, middle, h, out);
   case Arithmetic::in_double:

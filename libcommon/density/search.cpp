@@ -1,6 +1,7 @@
 // search.cpp — from the whole grid to nodes of 4³ blocks, to blocks; then the band cells between blocks.
 #include "density/search.hpp"
 #include "density/band.hpp"
+#include "density/cluster_tree.hpp"
 #include "density/evaluate.hpp"
 #include "par/par.hpp"
 #include <algorithm>
@@ -83,15 +84,23 @@ private:
 
 /// What one node found.
 struct Found {
-  KnownBlocks blocks; ///< not sorted
+  std::vector<KnownBlock> known;
+  std::vector<Vec3i> corner; ///< of known
+  std::vector<Vec3i> inside;
   SearchCounts counts;
   int64_t points = 0;
+};
+
+/// The blocks of a slab of nodes, and what they point to.
+struct Layer {
+  KnownBlocks blocks;
+  std::vector<std::vector<Found>> found;
 };
 
 class Search {
 public:
   Search(const Field& f, const GridFrame& frame, const SearchOptions& o)
-      : f_(f), frame_(frame), o_(o), budget_(o.tolerance), arithmetic_(arithmetic_for(f, o.tolerance)),
+      : f_(f), frame_(frame), o_(o), budget_(budget_for(o)), arithmetic_(arithmetic_for(f, o.tolerance)),
         lower_(float_at_least(o.band_lower)), upper_(-float_at_least(-o.band_upper)) {}
   Band run(SearchCounts& counts);
 
@@ -104,16 +113,17 @@ private:
   Box box_of(Vec3i corner, int32_t blocks) const;
   bool in_grid(Vec3i corner) const;
   void descend();
-  KnownBlocks find_slab(std::span<const Node> nodes);
+  void ask_tree();
+  Layer find_slab(std::span<const Node> nodes);
   void work_through(const Node& node, Found& found, Workspace& w) const;
   /// discard: forget a block that lies wholly on one side of the band.
   void evaluate(Vec3i corner, bool classify, bool discard, Found& found, Workspace& w) const;
-  void add_missing(KnownBlocks& blocks, Slab slab);
-  void collect(const std::vector<Found>& found, KnownBlocks& blocks);
+  void add_missing(Layer& window, Slab slab);
+  void collect(std::vector<Found> found, Layer& layer);
   std::unique_ptr<Workspace> workspace() {
     return workspaces_.borrow([this] {
       return std::make_unique<Workspace>(
-          Workspace{Selection(f_, budget_, o_.band_lower, o_.band_upper), {}, {{}, {}}});
+          Workspace{Selection(f_, budget_, o_.band_lower, o_.band_upper, arithmetic_), {}, {{}, {}}});
     });
   }
 
@@ -187,6 +197,30 @@ void Search::descend() {
             [](const Node& a, const Node& b) { return a.corner < b.corner; });
 }
 
+/// Every node of the grid asks a kd-tree; the clusters it gets are those that descend() finds.
+void Search::ask_tree() {
+  const ClusterTree tree(f_);
+  Vec3i n;
+  const Vec3i first{frame_.lower.x >> 3, frame_.lower.y >> 3, frame_.lower.z >> 3};
+  for (int a = 0; a < 3; ++a)
+    n[a] = (((frame_.lower[a] + frame_.points[a] + 7) >> 3) - first[a] + node_blocks - 1) / node_blocks;
+  std::vector<std::vector<int32_t>> lists(static_cast<size_t>(n.z));
+  for (int32_t x = 0; x < n.x; ++x)
+    for (int32_t y = 0; y < n.y; ++y) {
+      const auto corner = [&](int64_t z) { return first + node_blocks * Vec3i{x, y, static_cast<int32_t>(z)}; };
+      par::for_n(n.z, o_.threads, 1,
+                 [&](int64_t z) { lists[static_cast<size_t>(z)] = tree.near(box_of(corner(z), node_blocks)); });
+      for (int64_t z = 0; z < n.z; ++z) {
+        const std::vector<int32_t>& list = lists[static_cast<size_t>(z)];
+        if (list.empty() && !o_.full)
+          continue;
+        const auto begin = static_cast<int64_t>(nodes_.cluster.size());
+        nodes_.cluster.insert(nodes_.cluster.end(), list.begin(), list.end());
+        nodes_.node.push_back({corner(z), begin, static_cast<int64_t>(nodes_.cluster.size())});
+      }
+    }
+}
+
 /// Points of the block that belong to the grid.
 int64_t points_in_grid(const GridFrame& frame, Vec3i corner) {
   int64_t n = 1;
@@ -203,14 +237,14 @@ void Search::evaluate(Vec3i corner, bool classify, bool discard, Found& found, W
   if (w.selection.side == Side::outside)
     return;
   if (w.selection.side == Side::inside)
-    return found.blocks.inside.push_back(8 * corner);
+    return found.inside.push_back(8 * corner);
   float* const value = w.arena[bank_].take();
-  w.evaluator.evaluate(f_, w.selection, middle, frame_.spacing, arithmetic_, value);
-  KnownBlock block{8 * corner, value, {}, {}};
+  w.evaluator.evaluate(f_, w.selection, middle, frame_.spacing, value);
+  KnownBlock block{value, {}, {}};
   classify_points(value, lower_, upper_, block.below.data(), block.above.data());
   ++found.counts.blocks_evaluated;
   found.counts.group_visits += static_cast<int64_t>(w.selection.unit.size());
-  found.counts.atom_visits += static_cast<int64_t>(w.selection.ln_weight.size());
+  found.counts.atom_visits += w.selection.atoms;
   found.points += points_in_grid(frame_, 8 * corner);
   if (discard) {
     const auto all = [](uint64_t word) { return word == ~uint64_t{0}; };
@@ -218,11 +252,12 @@ void Search::evaluate(Vec3i corner, bool classify, bool discard, Found& found, W
     if (above || std::all_of(block.below.begin(), block.below.end(), all)) {
       w.arena[bank_].give_back_last();
       if (above)
-        found.blocks.inside.push_back(8 * corner);
+        found.inside.push_back(8 * corner);
       return;
     }
   }
-  found.blocks.known.push_back(block);
+  found.known.push_back(block);
+  found.corner.push_back(8 * corner);
 }
 
 void Search::work_through(const Node& node, Found& found, Workspace& w) const {
@@ -239,21 +274,36 @@ void Search::work_through(const Node& node, Found& found, Workspace& w) const {
   }
 }
 
-/// Sorts what was found into `blocks`.
-void Search::collect(const std::vector<Found>& found, KnownBlocks& blocks) {
-  for (const Found& f : found) {
-    blocks.append(f.blocks);
+/// Sorts what was found into the blocks of a slab.
+void Search::collect(std::vector<Found> found, Layer& layer) {
+  std::vector<int64_t> known(found.size()), inside(found.size());
+  for (size_t n = 0; n < found.size(); ++n) {
+    const Found& f = found[n];
+    known[n] = static_cast<int64_t>(f.known.size());
+    inside[n] = static_cast<int64_t>(f.inside.size());
     counts_.blocks_visited += f.counts.blocks_visited;
     counts_.blocks_evaluated += f.counts.blocks_evaluated;
     counts_.group_visits += f.counts.group_visits;
     counts_.atom_visits += f.counts.atom_visits;
     analyzed_ += f.points;
   }
-  par::sort(blocks.known, o_.threads, [](const KnownBlock& a, const KnownBlock& b) { return a.corner < b.corner; });
-  par::sort(blocks.inside, o_.threads);
+  KnownBlocks& b = layer.blocks;
+  const auto before = static_cast<int64_t>(b.known.size()), before_inside = static_cast<int64_t>(b.inside.size());
+  b.known.resize(static_cast<size_t>(before + par::exclusive_scan(known)));
+  b.inside.resize(static_cast<size_t>(before_inside + par::exclusive_scan(inside)));
+  par::for_n(static_cast<int64_t>(found.size()), o_.threads, 16, [&](int64_t i) {
+    const Found& f = found[static_cast<size_t>(i)];
+    KnownCorner* to = b.known.data() + before + known[static_cast<size_t>(i)];
+    for (size_t k = 0; k < f.known.size(); ++k)
+      *to++ = {f.corner[k], &f.known[k]};
+    std::copy(f.inside.begin(), f.inside.end(), b.inside.begin() + before_inside + inside[static_cast<size_t>(i)]);
+  });
+  par::sort(b.known, o_.threads, [](const KnownCorner& a, const KnownCorner& c) { return a.corner < c.corner; });
+  par::sort(b.inside, o_.threads);
+  layer.found.push_back(std::move(found));
 }
 
-KnownBlocks Search::find_slab(std::span<const Node> nodes) {
+Layer Search::find_slab(std::span<const Node> nodes) {
   std::vector<Found> found(nodes.size());
   par::for_n(static_cast<int64_t>(nodes.size()), o_.threads, 1, [&](int64_t i) {
     std::unique_ptr<Workspace> w = workspace();
@@ -262,15 +312,15 @@ KnownBlocks Search::find_slab(std::span<const Node> nodes) {
     if (o_.progress)
       o_.progress(++done_, static_cast<int64_t>(nodes_.node.size()));
   });
-  KnownBlocks blocks;
-  collect(found, blocks);
-  return blocks;
+  Layer layer;
+  collect(std::move(found), layer);
+  return layer;
 }
 
 /// Evaluates the blocks that bounds left out next to a band cell: their points are on its corners, and lie where
 /// the bounds say.
-void Search::add_missing(KnownBlocks& blocks, Slab slab) {
-  const std::vector<Vec3i> missing = blocks_missing_from_band(blocks, slab, frame_, o_.threads);
+void Search::add_missing(Layer& window, Slab slab) {
+  const std::vector<Vec3i> missing = blocks_missing_from_band(window.blocks, slab, frame_, o_.threads);
   if (missing.empty())
     return;
   struct Task {
@@ -306,8 +356,9 @@ void Search::add_missing(KnownBlocks& blocks, Slab slab) {
       evaluate(task[i].block, false, false, found[t], *w);
     workspaces_.give_back(std::move(w));
   });
-  std::erase_if(blocks.inside, [&](Vec3i c) { return std::binary_search(missing.begin(), missing.end(), c); });
-  collect(found, blocks);
+  std::erase_if(window.blocks.inside,
+                [&](Vec3i c) { return std::binary_search(missing.begin(), missing.end(), c); });
+  collect(std::move(found), window);
 }
 
 /// Slab by slab of nodes along x, so that only two slabs hold the values of all their points.
@@ -321,8 +372,8 @@ Band Search::run(SearchCounts& counts) {
   band.info.tolerance = o_.tolerance;
   band.info.inside_value = static_cast<float>(std::max(2 * o_.isovalue, o_.band_upper));
   band.info.atoms = f_.atoms();
-  descend();
-  KnownBlocks before, current; // `before` without values
+  o_.atoms == AtomSearch::kdtree ? ask_tree() : descend();
+  Layer before, current; // `before` without values
   const std::span<const Node> nodes(nodes_.node);
   const int32_t first = frame_.lower.x >> 3, end = (frame_.lower.x + frame_.points.x + 7) >> 3;
   const auto slab_at = [](int32_t x) { return Slab{8 * x, 8 * (x + node_blocks)}; };
@@ -331,14 +382,14 @@ Band Search::run(SearchCounts& counts) {
       return std::partition_point(nodes.begin(), nodes.end(), [=](const Node& n) { return n.corner.x < corner_x; });
     };
     bank_ = (x - first) / node_blocks & 1;
-    KnownBlocks next = find_slab({at(x), at(x + node_blocks)});
+    Layer next = find_slab({at(x), at(x + node_blocks)});
     if (x > first) {
       const Slab slab = slab_at(x - node_blocks);
-      KnownBlocks window = std::move(before);
-      window.append(current);
-      window.append(next);
+      Layer window = std::move(before);
+      window.blocks.append(current.blocks);
+      window.blocks.append(next.blocks);
       add_missing(window, slab);
-      append_slab(window, slab, band, o_.threads);
+      append_slab(window.blocks, slab, band, o_.threads);
       workspaces_.forget_values(bank_ ^ 1);
     }
     before = std::move(current);
@@ -351,6 +402,13 @@ Band Search::run(SearchCounts& counts) {
 }
 
 } // namespace
+
+Budget budget_for(const SearchOptions& o) {
+  Budget b(o.tolerance);
+  if (o.atoms == AtomSearch::all)
+    b.far = b.block = b.within = 0;
+  return b;
+}
 
 Band find_band(const Field& f, const GridFrame& frame, const SearchOptions& options, SearchCounts& counts) {
   return Search(f, frame, options).run(counts);

@@ -3,14 +3,23 @@
 #pragma once
 #include "density/band.hpp"
 #include "density/field.hpp"
+#include "density/selection.hpp"
 #include <functional>
 
 namespace molmesh::density {
+
+/// How the atoms that matter are found.
+enum class AtomSearch {
+  bvh,    ///< boxes of the hierarchy's clusters, tested while the grid is halved
+  kdtree, ///< a kd-tree over the clusters, asked by every node of the grid
+  all     ///< no search: every atom counts everywhere
+};
 
 struct SearchOptions {
   double isovalue = 1, band_lower = 0.9, band_upper = 1.1; ///< in units of G
   double tolerance = 1e-4;                                 ///< ε of I1
   bool full = false;                                       ///< compute every point of the grid
+  AtomSearch atoms = AtomSearch::bvh;
   int threads = 1;
   std::function<void(int64_t done, int64_t total)> progress; ///< called from any thread; may be empty
 };
@@ -21,8 +30,9 @@ struct SearchCounts {
   int64_t active_points = 0;
 };
 
-/// The field must be made with Budget(tolerance).far. The result has frame, values, sides and the numbers of `info`
-/// that it knows; the texts are the caller's. Same result for any number of threads.
+/// The field must be made with budget_for(options).far. The result has frame, values, sides and the numbers of
+/// `info` that it knows; the texts are the caller's. Same result for any number of threads.
+Budget budget_for(const SearchOptions& options);
 Band find_band(const Field& f, const GridFrame& frame, const SearchOptions& options, SearchCounts& counts);
 
 /// True when a point on the grid's outermost layer has G > isovalue: the wall cuts the surface.

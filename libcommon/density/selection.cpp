@@ -33,6 +33,31 @@ float log2_add(float a, float b) {
 
 } // namespace
 
+Arithmetic arithmetic_for(const Field& f, double tolerance) {
+  const bool coarse = tolerance >= 2e-5 * std::max(1.0, f.steepest);
+  if (f.plain_above)
+    return coarse ? Arithmetic::in_single : Arithmetic::in_double;
+  // The smallest term of a group above the innermost level that can matter, as cutoffs see it.
+  double least = 0;
+  for (size_t c = 0; c < f.group.size(); ++c) {
+    const double p = f.level[0].exponent[static_cast<size_t>(f.group[c])];
+    least = std::min(least, p * (f.ln_peak[c] - f.decay * f.cutoff2[c]));
+  }
+  constexpr double margin = 10;
+  if (least < -700 + margin)
+    return Arithmetic::in_logarithms;
+  return least < -87 + margin || !coarse ? Arithmetic::in_double : Arithmetic::in_single;
+}
+
+Selection::Selection(const Field& f, const Budget& budget, double lower, double upper, Arithmetic a)
+    : arithmetic(a), f_(f), budget_(budget), lower_(lower), upper_(upper),
+      within_(std::min(0.1, budget.within / (1.1 * f.steepest))), least_(a) {
+  double gentlest = infinity;
+  for (const double p : f.level[0].exponent)
+    gentlest = std::min(gentlest, p);
+  scaled_ = !f.plain_above || gentlest * 100 < -std::log2(budget.block / 1e3);
+}
+
 void Selection::enter(Vec3d middle, std::span<const int32_t> clusters) {
   node_middle_ = middle;
   const size_t n = clusters.size(), padded = (n + 15) / 16 * 16;
@@ -101,7 +126,7 @@ bool Selection::narrow(Vec3d middle, Vec3d half) {
 void Selection::gather(const LocalBox& box) {
   const auto n = static_cast<int32_t>(near_.size());
   upper_bound_.resize(near_.size() + 16);
-  upper_bounds(local_, near_.data(), n, box, static_cast<float>(log2e * f_.decay), upper_bound_.data());
+  upper_bounds(local_, near_.data(), n, box, static_cast<float>(log2e * f_.decay), scaled_, upper_bound_.data());
   candidate_.clear();
   for (int32_t i = 0; i < n; ++i) {
     const auto c = static_cast<size_t>(local_.cluster[static_cast<size_t>(near_[static_cast<size_t>(i)])]);
@@ -175,83 +200,108 @@ void Selection::drop() {
   }
 }
 
-/// Units with ln S, centroid and the atoms' logarithms (in ln_weight, not yet relative) at the block's middle.
-void Selection::take_middles(Vec3d middle) {
-  kept_.clear();
-  for (const Candidate& c : candidate_)
-    if (c.kept)
-      kept_.insert(kept_.end(), near_.begin() + c.begin, near_.begin() + c.end);
-  const auto n = static_cast<int32_t>(kept_.size());
-  for (std::vector<float>* v : {&middle_sum_, &x_, &y_, &z_})
-    v->resize(kept_.size() + 16);
-  middle_sums(local_, kept_.data(), n, local(middle, {0, 0, 0}), static_cast<float>(log2e * f_.decay),
-              middle_sum_.data(), x_.data(), y_.data(), z_.data());
-  size_t k = 0;
+/// Units for arithmetic in single precision. False when it does not hold here.
+bool Selection::take_single(const LocalBox& block) {
+  const auto decay = static_cast<float>(log2e * f_.decay);
+  size_t to = 0;
+  for (const Candidate& c : candidate_) {
+    if (!c.kept)
+      continue;
+    const size_t room = to + 16 * static_cast<size_t>(c.end - c.begin) + 16;
+    for (std::vector<float>& a : argument)
+      if (a.size() < room)
+        a.resize(2 * room);
+    const AtomArguments arguments{argument[0].data() + to, argument[1].data() + to, argument[2].data() + to,
+                                  argument[3].data() + to};
+    // T ≥ 1, so atoms whose terms of T together stay below η are at most η of the sum (field.md §4).
+    const int32_t clusters = c.end - c.begin;
+    const double small = within_ / static_cast<double>(Field::cluster_size * clusters);
+    UnitMiddle m;
+    if (!take_unit(local_, near_.data() + c.begin, clusters, block, decay,
+                   small > 0 ? std::log2(static_cast<float>(small)) : -1e30f, arguments, m))
+      return false;
+    const double p = c.exponent;
+    unit.push_back({c.group, p, static_cast<int32_t>(to), static_cast<int32_t>(to) + m.kept, ln2 * m.log2_sum,
+                    node_middle_ + Vec3d{m.centroid[0], m.centroid[1], m.centroid[2]}});
+    to += static_cast<size_t>(m.kept);
+    float away = 0;
+    for (int a = 0; a < 3; ++a)
+      away += block.half[a] * std::abs(block.middle[a] - m.centroid[a]);
+    constexpr float range = 115; // log2: nothing may overflow
+    if (m.swing > range || 2 * decay * c.exponent * away > range)
+      return false;
+  }
+  atoms = static_cast<int64_t>(to);
+  return true;
+}
+
+/// Units with the atoms' logarithms and positions, not yet relative to the unit's middle.
+void Selection::take_double(Vec3d middle) {
+  unit.clear();
+  for (std::vector<double>* v : {&ln_weight, &offset_x, &offset_y, &offset_z})
+    v->clear();
   for (const Candidate& c : candidate_) {
     if (!c.kept)
       continue;
     Unit u{
         c.group, f_.level[0].exponent[static_cast<size_t>(c.group)], static_cast<int32_t>(ln_weight.size()), 0, 0,
         {}};
-    const auto clusters = static_cast<size_t>(c.end - c.begin);
-    float top = middle_sum_[k];
-    for (size_t i = k; i < k + clusters; ++i)
-      top = std::max(top, middle_sum_[i]);
-    double sum = 0;
-    Vec3d moment{};
-    for (size_t i = k; i < k + clusters; ++i) {
-      const double w = clusters == 1 ? 1.0 : std::exp2(middle_sum_[i] - top);
-      sum += w;
-      moment += w * Vec3d{x_[i], y_[i], z_[i]};
-    }
-    u.ln_center = ln2 * (clusters == 1 ? top : top + std::log2(sum));
-    u.centroid = node_middle_ + moment / sum;
     double largest = -infinity;
-    for (size_t i = k; i < k + clusters; ++i) {
-      const auto cluster = static_cast<size_t>(local_.cluster[static_cast<size_t>(kept_[i])]);
+    for (auto i = static_cast<size_t>(c.begin); i < static_cast<size_t>(c.end); ++i) {
+      const auto cluster = static_cast<size_t>(local_.cluster[static_cast<size_t>(near_[i])]);
       for (auto a = static_cast<size_t>(f_.begin[cluster]); a < static_cast<size_t>(f_.begin[cluster + 1]); ++a) {
         const Vec3d d{f_.x[a] - middle.x, f_.y[a] - middle.y, f_.z[a] - middle.z};
-        const double ln = f_.peak[a] - f_.decay * norm2(d);
-        largest = std::max(largest, ln);
-        ln_weight.push_back(ln);
+        ln_weight.push_back(f_.peak[a] - f_.decay * norm2(d));
+        largest = std::max(largest, ln_weight.back());
         offset_x.push_back(f_.x[a]);
         offset_y.push_back(f_.y[a]);
         offset_z.push_back(f_.z[a]);
       }
     }
-    k += clusters;
     u.end = static_cast<int32_t>(ln_weight.size());
-    // Far from a steep cluster single precision loses all terms: then the middle is found again.
-    if (largest > u.ln_center + 0.01 || largest + std::log(u.end - u.begin) < u.ln_center - 0.01) {
-      double total = 0;
-      Vec3d at{};
-      for (auto a = static_cast<size_t>(u.begin); a < static_cast<size_t>(u.end); ++a) {
-        const double w = std::exp(ln_weight[a] - largest);
-        total += w;
-        at += w * Vec3d{offset_x[a], offset_y[a], offset_z[a]};
-      }
-      u.ln_center = largest + std::log(total);
-      u.centroid = at / total;
+    double sum = 0;
+    Vec3d moment{};
+    for (auto a = static_cast<size_t>(u.begin); a < static_cast<size_t>(u.end); ++a) {
+      const double w = std::exp(ln_weight[a] - largest);
+      sum += w;
+      moment += w * Vec3d{offset_x[a], offset_y[a], offset_z[a]};
     }
+    u.ln_center = largest + std::log(sum);
+    u.centroid = moment / sum;
     unit.push_back(u);
   }
 }
 
 /// ln G + κQ|δ|² is convex, so it lies above its tangent at the middle (field.md §5).
-bool Selection::surely_inside(Vec3d middle, Vec3d half) const {
-  OpenGroups groups(f_);
-  std::vector<Fold> open(groups.levels());
+bool Selection::surely_inside(Vec3d middle, Vec3d half) {
   Fold root;
-  const auto close = [&](size_t l, int64_t g) {
-    (l + 1 < open.size() ? open[l + 1] : root).add(open[l].raised(f_.level[l].exponent[static_cast<size_t>(g)]));
-    open[l] = Fold{};
-  };
-  for (const Unit& u : unit) {
-    groups.enter(u.group, close);
-    const Fold term{u.ln_center, 2 * f_.decay * (u.centroid - middle)};
-    (open.size() > 1 ? open[1] : root).add(term.raised(u.exponent));
+  if (f_.plain_above) {
+    effect_.assign((unit.size() + 15) / 16 * 16, -126);
+    for (size_t i = 0; i < unit.size(); ++i)
+      effect_[i] = static_cast<float>(log2e * unit[i].exponent * unit[i].ln_center);
+    exp2_all(effect_.data(), static_cast<int32_t>(effect_.size()));
+    double sum = 0;
+    for (size_t i = 0; i < unit.size(); ++i) {
+      sum += effect_[i];
+      root.gradient += 2 * f_.decay * unit[i].exponent * effect_[i] * (unit[i].centroid - middle);
+    }
+    if (sum <= upper_)
+      return false;
+    root.gradient = root.gradient / sum;
+    root.middle = std::log(sum);
+  } else {
+    OpenGroups groups(f_);
+    std::vector<Fold> open(groups.levels());
+    const auto close = [&](size_t l, int64_t g) {
+      (l + 1 < open.size() ? open[l + 1] : root).add(open[l].raised(f_.level[l].exponent[static_cast<size_t>(g)]));
+      open[l] = Fold{};
+    };
+    for (const Unit& u : unit) {
+      groups.enter(u.group, close);
+      open[1].add(Fold{u.ln_center, 2 * f_.decay * (u.centroid - middle)}.raised(u.exponent));
+    }
+    groups.finish(close);
   }
-  groups.finish(close);
   const Vec3d g = root.gradient;
   const double least = root.middle - (std::abs(g.x) * half.x + std::abs(g.y) * half.y + std::abs(g.z) * half.z) -
                        f_.decay * f_.steepest * norm2(half);
@@ -259,14 +309,12 @@ bool Selection::surely_inside(Vec3d middle, Vec3d half) const {
   return std::exp(least) * (1 - 4 * total - single) > upper_ + 4 * total;
 }
 
-/// Drops the atoms that are next to nothing of their unit: as T ≥ 1, those whose terms of T together stay below η
-/// are at most η of the sum. Makes logarithms and positions relative to the unit's middle and centroid.
+/// Drops atoms as take_single does; makes logarithms and positions relative to the unit's middle and centroid.
 void Selection::filter(Vec3d middle, Vec3d half) {
-  const double within = std::min(0.1, budget_.within / (1.1 * f_.steepest));
   size_t to = 0;
-  range = 0;
+  double range = 0;
   for (Unit& u : unit) {
-    const double ln_small = std::log(within / (u.end - u.begin));
+    const double ln_small = std::log(within_ / (u.end - u.begin));
     const auto begin = static_cast<size_t>(u.begin), end = static_cast<size_t>(u.end);
     u.begin = static_cast<int32_t>(to);
     for (size_t a = begin; a < end; ++a) {
@@ -274,14 +322,14 @@ void Selection::filter(Vec3d middle, Vec3d half) {
       const double swing =
           2 * f_.decay * (half.x * std::abs(offset.x) + half.y * std::abs(offset.y) + half.z * std::abs(offset.z));
       const double ln = ln_weight[a] - u.ln_center;
+      if (ln + swing < ln_small)
+        continue;
+      range = std::max(range, swing);
       ln_weight[to] = ln;
       offset_x[to] = offset.x;
       offset_y[to] = offset.y;
       offset_z[to] = offset.z;
-      const bool keep = ln + swing >= ln_small;
-      to += keep;
-      if (keep)
-        range = std::max(range, swing);
+      ++to;
     }
     u.end = static_cast<int32_t>(to);
     const Vec3d away = middle - u.centroid;
@@ -291,28 +339,17 @@ void Selection::filter(Vec3d middle, Vec3d half) {
   }
   for (std::vector<double>* v : {&ln_weight, &offset_x, &offset_y, &offset_z})
     v->resize(to);
+  atoms = static_cast<int64_t>(to);
+  if (range > 690)
+    arithmetic = Arithmetic::in_logarithms;
 }
 
-void Selection::select(Vec3d middle, Vec3d half, bool classify) {
-  side = Side::mixed;
-  unit.clear();
-  for (std::vector<double>* v : {&ln_weight, &offset_x, &offset_y, &offset_z})
-    v->clear();
-  const LocalBox box = local(middle, half);
-  near_.resize(narrowed_.size() + 16);
-  near_.resize(static_cast<size_t>(
-      near_clusters(local_, narrowed_.data(), static_cast<int32_t>(narrowed_.size()), box, near_.data())));
-  gather(box);
-  find_effects();
-  if (classify && f_.plain_above) {
-    double upper = 0;
+bool Selection::surely_outside() {
+  double upper = 0;
+  if (f_.plain_above) {
     for (size_t i = 0; i < candidate_.size(); ++i)
       upper += effect_[i];
-    if ((1 + single) * upper + 2 * (budget_.far + budget_.block + budget_.within) < lower_) {
-      side = Side::outside;
-      return;
-    }
-  } else if (classify) {
+  } else {
     double root = -infinity;
     std::vector<double> open(f_.level.size(), -infinity);
     OpenGroups up(f_);
@@ -326,19 +363,38 @@ void Selection::select(Vec3d middle, Vec3d half, bool classify) {
       open[1] = log_add(open[1], ln2 * c.exponent * c.log2_upper);
     }
     up.finish(close);
-    if ((1 + f_.steepest * single) * std::exp(root) + 2 * (budget_.far + budget_.block + budget_.within) < lower_) {
-      side = Side::outside;
-      return;
-    }
+    upper = std::exp(root);
+  }
+  const double slack = single * std::max(1.0, f_.steepest);
+  return (1 + slack) * upper + 2 * (budget_.far + budget_.block + budget_.within) < lower_;
+}
+
+void Selection::select(Vec3d middle, Vec3d half, bool classify) {
+  side = Side::mixed;
+  arithmetic = least_;
+  unit.clear();
+  const LocalBox box = local(middle, half);
+  near_.resize(narrowed_.size() + 16);
+  near_.resize(static_cast<size_t>(
+      near_clusters(local_, narrowed_.data(), static_cast<int32_t>(narrowed_.size()), box, near_.data())));
+  gather(box);
+  find_effects();
+  if (classify && surely_outside()) {
+    side = Side::outside;
+    return;
   }
   drop();
-  take_middles(middle);
+  if (arithmetic == Arithmetic::in_single && !take_single(box))
+    arithmetic = Arithmetic::in_double;
+  if (arithmetic != Arithmetic::in_single)
+    take_double(middle);
   if (classify && surely_inside(middle, half)) {
     side = Side::inside;
     unit.clear();
     return;
   }
-  filter(middle, half);
+  if (arithmetic != Arithmetic::in_single)
+    filter(middle, half);
 }
 
 } // namespace molmesh::density

@@ -17,13 +17,21 @@ struct Budget {
 
 enum class Side : uint8_t { outside, inside, mixed };
 
+/// How the sums of a block are carried. Single precision holds while the tolerance is well above its rounding and
+/// no term that matters underflows; logarithms hold always.
+enum class Arithmetic { in_single, in_double, in_logarithms };
+
+/// The cheapest arithmetic that keeps the bound for this field and tolerance in every block that it does not
+/// overflow.
+Arithmetic arithmetic_for(const Field& f, double tolerance);
+
 /// A sum of atoms that is raised to one power: an innermost group, or one cluster of it when its exponent is 1.
 /// In the block S(x) = exp(ln_center - κ(2δ·(m - centroid) + δ²)) · T(x), δ = x - m, m the block's middle,
 /// T(x) = Σ exp(ln_weight + 2κ δ·offset), at least about 1.
 struct Unit {
   int64_t group;      ///< innermost group
   double exponent;    ///< P
-  int32_t begin, end; ///< kept atoms in Selection::ln_weight …
+  int32_t begin, end; ///< kept atoms in Selection::argument or Selection::atom
   double ln_center;
   Vec3d centroid; ///< Å
 };
@@ -31,8 +39,7 @@ struct Unit {
 /// Works through the blocks of a node. One thread; refilled for each node and block.
 class Selection {
 public:
-  Selection(const Field& f, const Budget& budget, double lower, double upper)
-      : f_(f), budget_(budget), lower_(lower), upper_(upper) {}
+  Selection(const Field& f, const Budget& budget, double lower, double upper, Arithmetic arithmetic);
 
   /// A node: the candidates for all its blocks, positions taken relative to `middle` (Å).
   void enter(Vec3d middle, std::span<const int32_t> clusters);
@@ -43,9 +50,13 @@ public:
   void select(Vec3d middle, Vec3d half, bool classify);
 
   Side side = Side::mixed;
+  Arithmetic arithmetic; ///< that this block needs: the one asked for, or a safer one
   std::vector<Unit> unit;
-  std::vector<double> ln_weight, offset_x, offset_y, offset_z; ///< per kept atom; offsets in Å
-  double range = 0; ///< how far logarithms of T, or of what it is multiplied with, can be from their middle
+  int64_t atoms = 0; ///< kept
+  /// Kept atoms when the arithmetic is in_single: arguments of block_kernel.hpp, base 2.
+  std::vector<float> argument[4]; ///< x, y, z, constant
+  /// Kept atoms otherwise.
+  std::vector<double> ln_weight, offset_x, offset_y, offset_z; ///< offsets in Å
 
 private:
   struct Candidate {
@@ -58,19 +69,23 @@ private:
   LocalBox local(Vec3d middle, Vec3d half) const;
   void gather(const LocalBox& box);
   void find_effects();
+  bool surely_outside();
   void drop();
-  void take_middles(Vec3d middle);
-  bool surely_inside(Vec3d middle, Vec3d half) const;
+  bool take_single(const LocalBox& block);
+  void take_double(Vec3d middle);
+  bool surely_inside(Vec3d middle, Vec3d half);
   void filter(Vec3d middle, Vec3d half);
 
   const Field& f_;
   const Budget budget_;
-  const double lower_, upper_;
+  const double lower_, upper_, within_;
+  const Arithmetic least_; ///< what was asked for
+  bool scaled_;            ///< upper bounds need more range than single precision has
   Vec3d node_middle_;
   LocalClusters local_;
-  std::vector<int32_t> all_, narrowed_, near_, kept_;
+  std::vector<int32_t> all_, narrowed_, near_;
   std::vector<Candidate> candidate_;
-  std::vector<float> upper_bound_, effect_, middle_sum_, x_, y_, z_;
+  std::vector<float> upper_bound_, effect_;
   std::vector<std::vector<double>> sum_; ///< per level, per run of candidates of one group: upper bound of ln S
 };
 

@@ -169,6 +169,21 @@ TEST_CASE("full and neighbor search, and any number of threads, give the same gr
   check_equal(compute(h, o), one);
 }
 
+TEST_CASE("a kd-tree finds what the boxes find; all atoms give the same field within the tolerance") {
+  for (const std::vector<double>& exponents : {std::vector<double>{0.4, 1}, {0.3, 0.5}, {}}) {
+    const Hierarchy h = test::random_chains(3, 12, 8, exponents, 3);
+    density::Options o;
+    o.spacing = 0.9;
+    const BlockGrid bvh = compute(h, o);
+    o.atoms = density::AtomSearch::kdtree;
+    check_equal(compute(h, o), bvh);
+    o.atoms = density::AtomSearch::all;
+    const BlockGrid all = compute(h, o);
+    CHECK(worst_error(h, all, 200) <= 0.1);
+    check_complete(h, all);
+  }
+}
+
 TEST_CASE("one atom is a sphere of its radius") {
   Hierarchy h;
   h.atom.push_back({{1, 2, 3}, 2.0});
