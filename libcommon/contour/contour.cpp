@@ -7,7 +7,6 @@
 #include "contour/refinement.hpp"
 #include "contour/surface_cells.hpp"
 #include "error.hpp"
-#include "geom/predicates.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 
@@ -64,49 +63,29 @@ TetMesh assemble(const Elements& elements, const Components& parts, const Option
   return mesh;
 }
 
-/// Moved grid points of elements without positive volume, and of the cells whose dual vertices these have; or all.
-std::vector<int32_t> spoiling_vertices(const Complex& complex, const Elements& elements, bool all, int threads) {
-  const auto tets = static_cast<int64_t>(elements.tet.size());
-  std::vector<uint8_t> bad(at(tets), 0);
-  const int64_t count = par::reduce(
-      tets, threads, int64_t{0},
-      [&](int64_t i) {
-        const Tet& t = elements.tet[at(i)];
-        const auto x = [&](size_t c) { return elements.position[at(t[c])]; };
-        bad[at(i)] = orient3d(x(0), x(1), x(2), x(3)) <= 0;
-        return int64_t{bad[at(i)]};
-      },
-      [](int64_t a, int64_t b) { return a + b; });
+/// Moved grid points that elements without positive volume hang on: themselves, or through the dual vertex of a
+/// cell with such a corner; or all that are moved.
+std::vector<int32_t> spoiling_vertices(const Complex& complex, const Elements& elements, bool all) {
   std::vector<int32_t> spoiling;
-  std::vector<uint8_t> at_bad(elements.position.size(), 0);
   const auto add = [&](int32_t v) {
     if (complex.moved(v))
       spoiling.push_back(v);
   };
-  for (int64_t i = 0; count > 0 && i < tets; ++i) {
-    if (!bad[at(i)])
-      continue;
-    for (int32_t v : elements.tet[at(i)]) {
-      add(v);
-      const int32_t leaf = complex.leaf_of(v);
-      for (int c = 0; leaf >= 0 && c < 8; ++c)
-        add(complex.grid_vertex[at(int64_t{8} * leaf + c)]);
-      at_bad[at(v)] = 1;
-    }
+  for (int32_t v : elements.spoiled) {
+    add(v);
+    const int32_t leaf = complex.leaf_of(v);
+    for (int c = 0; leaf >= 0 && c < 8; ++c)
+      add(complex.grid_vertex[at(int64_t{8} * leaf + c)]);
   }
-  // A face point also hangs on the rest of its face, which its neighbours share.
-  for (int64_t i = 0; count > 0 && i < tets; ++i) {
-    const Tet& t = elements.tet[at(i)];
-    for (int32_t v : t)
-      if (v >= static_cast<int32_t>(complex.position.size()) && at_bad[at(v)])
-        std::for_each(t.begin(), t.end(), add);
-  }
-  // A face or edge point may hang on grid points that no element of its shares: then all go back.
-  for (int32_t v = 0; count > 0 && (all || spoiling.empty()) && v < complex.grid_vertices; ++v)
+  if (elements.spoiled.empty())
+    return spoiling;
+  // A ring may hang on a face point, and that on grid points further on.
+  const bool none = spoiling.empty();
+  for (int32_t v = 0; (all || none) && v < complex.grid_vertices; ++v)
     add(v);
   std::sort(spoiling.begin(), spoiling.end());
   spoiling.erase(std::unique(spoiling.begin(), spoiling.end()), spoiling.end());
-  if (count > 0 && spoiling.empty())
+  if (spoiling.empty())
     fail(Status::failed, "contour: an element of unmoved boxes has no volume");
   return spoiling;
 }
@@ -151,7 +130,7 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   // Validity is proven for cells that are boxes. Where a moved grid point spoils it, it goes back.
   constexpr int most_rounds = 3; // then all go back: time must be bounded
   for (int round = 0;; ++round) {
-    const std::vector<int32_t> spoiling = spoiling_vertices(complex, elements, round == most_rounds, threads);
+    const std::vector<int32_t> spoiling = spoiling_vertices(complex, elements, round == most_rounds);
     if (spoiling.empty())
       break;
     complex.restore(spoiling, threads);

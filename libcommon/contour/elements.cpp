@@ -31,6 +31,8 @@ void join(std::vector<Batch>& batches, Elements& out, std::vector<Link>& links, 
     s.link += b.link.size();
     s.point += b.point.size();
   }
+  for (const Batch& b : batches)
+    out.spoiled.insert(out.spoiled.end(), b.spoiled.begin(), b.spoiled.end());
   const size_t own = out.position.size() - wall.size();
   out.tet.resize(s.tet);
   out.tri.resize(s.tri);

@@ -23,6 +23,9 @@ struct Elements {
       tri_sides;                 ///< [tris] vertices of the complex behind and in front; equal on a wall
   std::vector<int32_t> boundary; ///< [tris] Boundary
   std::vector<Vec3d> position;   ///< all vertices: those of the complex, then face, wall and edge points
+  /// Vertices of the complex that elements without positive volume, on either side, hang on: where grid points have
+  /// moved the cells are no boxes.
+  std::vector<int32_t> spoiled;
   int64_t face_points = 0, edge_points = 0;
 };
 

@@ -30,6 +30,7 @@ struct Batch {
   std::vector<int32_t> boundary;
   std::vector<Link> link;
   std::vector<Vec3d> point;
+  std::vector<int32_t> spoiled;    ///< vertices of the complex that elements without positive volume hang on
   std::vector<int32_t> point_wall; ///< Boundary of a wall point, 0 otherwise
 
   int32_t add_point(Vec3d p, int32_t wall) {

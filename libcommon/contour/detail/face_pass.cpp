@@ -1,5 +1,6 @@
 // face_pass.cpp — one tetrahedron per edge of each face between two cells.
 #include "contour/detail/face_pass.hpp"
+#include "geom/predicates.hpp"
 #include "geom/tet_measures.hpp"
 #include <algorithm>
 #include <array>
@@ -82,7 +83,7 @@ private:
     const bool both_crossed = mine == Side::crossed && its == Side::crossed;
     if (!both_crossed) {
       const Side side = mine == Side::crossed ? its : mine;
-      if (!wanted_[side == Side::inside])
+      if (!wanted_[side == Side::inside] && mine != Side::crossed && its != Side::crossed)
         return;
     }
     const int* corner = face_corner[f];
@@ -104,7 +105,7 @@ private:
           p.add(middle);
       }
       polygon(p, cell_dual(leaf, f, -1), other < 0 ? no_vertex : cell_dual(other, f ^ 1, -1), f,
-              needs_test(leaf, other));
+              needs_test(leaf, other), mine == Side::crossed || its == Side::crossed);
       return;
     }
     const int s = diagonal == Diagonal::even ? 0 : 1;
@@ -114,7 +115,7 @@ private:
       for (int i : k)
         p.add(vertex(i));
       polygon(p, cell_dual(leaf, f, k[1]), other < 0 ? no_vertex : cell_dual(other, f ^ 1, k[1] ^ 1 << f / 2), f,
-              true);
+              true, true);
     }
   }
 
@@ -133,19 +134,33 @@ private:
     return c_.is_split(leaf) ? c_.piece_dual(leaf, SplitCell(c_.topology(leaf)), f, off) : c_.dual(leaf);
   }
 
-  /// behind, front: dual vertices of the two cells; front no_vertex at wall f.
-  void polygon(const Polygon& p, int32_t behind, int32_t front, int f, bool test) {
+  /// behind, front: dual vertices of the two cells; front no_vertex at wall f. Elements at surface cells are
+  /// checked on both sides of the surface, wanted or not: all regions are parts of one mesh.
+  void polygon(const Polygon& p, int32_t behind, int32_t front, int f, bool test, bool check) {
     const bool wall = front == no_vertex;
     int32_t via = no_vertex;
+    Vec3d via_position, front_position;
     if (wall) {
-      Vec3d w = face_point(p);
-      w[f / 2] = c_.position[at(p.vertex[0])][f / 2]; // planar to the last bit
-      front = out_.add_point(w, box_x0 + f);
-    } else if (test && !pierced(p, behind, front))
-      via = out_.add_point(face_point(p), 0);
+      front_position = face_point(p);
+      front_position[f / 2] = c_.position[at(p.vertex[0])][f / 2]; // planar to the last bit
+      front = out_.add_point(front_position, box_x0 + f);
+    } else {
+      front_position = c_.position[at(front)];
+      if (test && !pierced(p, behind, front)) {
+        via_position = face_point(p);
+        via = out_.add_point(via_position, 0);
+      }
+    }
+    bool positive = true;
     for (int i = 0; i < p.n; ++i) {
       const int32_t a = p.vertex[at(i)], b = p.vertex[at((i + 1) % p.n)];
       const bool in_a = c_.inside(a), in_b = c_.inside(b);
+      if (check) {
+        const Vec3d xa = c_.position[at(a)], xb = c_.position[at(b)], xc = c_.position[at(behind)];
+        positive = positive && (via == no_vertex ? orient3d(xa, xb, xc, front_position) > 0
+                                                 : orient3d(xa, xb, xc, via_position) > 0 &&
+                                                       orient3d(xa, xb, via_position, front_position) > 0);
+      }
       if (in_a != in_b) {
         out_.link.push_back(in_a ? Link{a, b, behind, via, front} : Link{b, a, front, via, behind});
         continue;
@@ -161,6 +176,12 @@ private:
       if (wall)
         out_.add_triangle({a, b, front}, a, a, box_x0 + f);
     }
+    if (positive)
+      return;
+    out_.spoiled.insert(out_.spoiled.end(), p.vertex.begin(), p.vertex.begin() + p.n);
+    out_.spoiled.push_back(behind);
+    if (!wall)
+      out_.spoiled.push_back(front);
   }
 
   /// A point within the polygon: the middle of the surface's trace on it, or the polygon's centre.
@@ -211,7 +232,7 @@ private:
             t.add(vertex(a));
             t.add(vertex(b));
             t.add(centre);
-            polygon(t, c_.piece_dual(leaf, s, q), c_.piece_dual(leaf, s, p), -1, true);
+            polygon(t, c_.piece_dual(leaf, s, q), c_.piece_dual(leaf, s, p), -1, true, true);
           }
         }
       }
@@ -220,7 +241,7 @@ private:
       Polygon t; // the cut below the chopped corner
       for (int i = 0; i < 3; ++i)
         t.add(vertex(p.corner[i]));
-      polygon(t, c_.piece_dual(leaf, s, p), centre + 1 + s.pieces, -1, true);
+      polygon(t, c_.piece_dual(leaf, s, p), centre + 1 + s.pieces, -1, true, true);
     }
   }
 

@@ -2,6 +2,7 @@
 // point.
 #include "contour/detail/ring_pass.hpp"
 #include "error.hpp"
+#include "geom/predicates.hpp"
 #include "geom/tet_measures.hpp"
 #include <algorithm>
 #include <array>
@@ -105,6 +106,16 @@ void make_ring(const RingVertices& v, const Link* begin, const Link* end, const 
     return i < complex_vertices ? 0 : v.wall[at(i - complex_vertices)];
   };
   const int32_t crossing = out.add_point(m, 0);
+  bool positive = true;
+  for (int64_t i = 0; i < (ring.closed ? k : k - 1); ++i)
+    positive =
+        positive && orient3d(x(a), m, x(p(i)), x(p(i + 1))) > 0 && orient3d(m, x(b), x(p(i)), x(p(i + 1))) > 0;
+  if (!positive) {
+    out.spoiled.insert(out.spoiled.end(), {a, b});
+    for (int32_t vertex : ring.vertex)
+      if (vertex < static_cast<int32_t>(v.complex.position.size()))
+        out.spoiled.push_back(vertex);
+  }
   for (int64_t i = 0; i < (ring.closed ? k : k - 1); ++i) {
     if (wanted[1])
       out.tet.push_back({a, crossing, p(i), p(i + 1)});
