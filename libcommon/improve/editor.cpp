@@ -181,6 +181,11 @@ bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) cons
   case Kind::interior:
     return true;
   case Kind::surface:
+    if (target_ && guard_.lift > 0) {
+      double distance;
+      Vec3d normal;
+      return target_->probe(x, distance, normal) && std::abs(distance) <= guard_.lift * target_->spacing();
+    }
     return target_ && target_->project(x, reach);
   case Kind::sliding:
     for (int a = 0; a < 3; ++a)

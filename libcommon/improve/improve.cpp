@@ -52,20 +52,24 @@ std::vector<uint8_t> curved_triangles(const DynamicMesh& m, const TetMesh& mesh)
   return take;
 }
 
-// The goal rises by steps: what is far below it gets room before its neighbors ask for it.
+// The goal rises by steps: what is far below it gets room before its neighbors ask for it. The guard is released
+// late, when few elements are left; where the surface has features far smaller than the grid, points may leave it
+// at the very end.
+const Guard kept, released{60, 0.24, 1, 0}, lifted{80, 0.24, 1, 0.2};
 struct Stage {
   double share; // of the goal's sine
   int effort;
   double cell;
-  bool worst_first, released;
+  bool worst_first;
+  const Guard& guard;
 };
-constexpr Stage stages[] = {
-    {0.35, 0, 1, true, false}, {0.6, 0, 1, true, false}, {0.8, 1, 1, true, false},
-    {0.9, 1, 2, true, false},  {1, 1, 2, false, false},  {1, 1, 8, true, false},
-    {0.8, 1, 8, true, true},   {1, 1, 8, false, true},   {1, 1, 32, true, true},
+const Stage stages[] = {
+    {0.35, 0, 1, true, kept},    {0.6, 0, 1, true, kept},     {0.8, 1, 1, true, kept},
+    {0.9, 1, 2, true, kept},     {1, 1, 2, false, kept},      {1, 1, 8, true, kept},
+    {0.8, 1, 8, true, released}, {1, 1, 8, false, released},  {0.5, 1, 32, true, lifted},
+    {1, 1, 32, true, released},  {0.55, 1, 32, true, lifted}, {1, 1, 32, false, released},
 };
 constexpr size_t refresh_offset = 4;
-const Guard released{60, 0.24, 1};
 
 // Chords enclose less than the surface they hang on: how far their points must lie outside it (Å) to make up for
 // that, at most 0.016 spacings (I8 allows 0.02). The distance is integrated by the three-point rule, exact where it
@@ -149,7 +153,6 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   const float goal =
       static_cast<float>(std::max(angle_quality(options.min_dihedral), angle_quality(options.max_dihedral)));
 
-  const Guard kept;
   if (density) {
     begin("settle");
     result.counts += schedule.settle(schedule.worst(), kept);
@@ -164,8 +167,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     pass.effort = stage.effort;
     pass.cell = stage.cell;
     pass.worst_first = stage.worst_first;
-    if (stage.released)
-      pass.guard = released;
+    pass.guard = stage.guard;
     int64_t done = 0;
     for (int repeat = 0; repeat < 2; ++repeat) {
       const Counts c = schedule.run(pass);

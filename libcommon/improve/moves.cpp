@@ -6,11 +6,11 @@ namespace molmesh::improve {
 namespace {
 
 // Directions a vertex may take: all, the free axes, or the plane across the normal.
-int basis_of(const Vertex& k, const Target* target, Vec3d x, Vec3d basis[3]) {
+int basis_of(const Vertex& k, const Target* target, bool lifted, Vec3d x, Vec3d basis[3]) {
   int n = 0;
   if (k.kind == Kind::fixed)
     return 0;
-  if (k.kind != Kind::surface) {
+  if (k.kind != Kind::surface || (lifted && target)) {
     for (int a = 0; a < 3; ++a)
       if (!(k.frozen >> a & 1))
         basis[n] = {}, basis[n++][a] = 1;
@@ -63,7 +63,7 @@ bool Editor::sails_fit(Vec3d x, double limit) const {
 
 bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double length, double limit) {
   Vec3d basis[3];
-  const int dimensions = basis_of(k, target_, x, basis);
+  const int dimensions = basis_of(k, target_, guard_.lift > 0, x, basis);
   if (dimensions == 0)
     return false;
   const Vec3d from = x;
