@@ -99,11 +99,6 @@ int64_t keep_conformer(const Place& place, const std::string& altloc) {
   const char chosen = conformer(place, altloc);
   if (chosen == '\0')
     return 0;
-  // Of a place with several residues, those that the conformer does not name go as a whole.
-  bool named = false;
-  for (const gemmi::Residue* residue : place)
-    for (const gemmi::Atom& a : residue->atoms)
-      named = named || a.altloc == chosen;
   int64_t dropped = 0;
   for (gemmi::Residue* residue : place) {
     std::vector<gemmi::Atom>& atoms = residue->atoms;
@@ -112,7 +107,8 @@ int64_t keep_conformer(const Place& place, const std::string& altloc) {
     const bool all_alternative =
         std::all_of(atoms.begin(), atoms.end(), [](const gemmi::Atom& a) { return a.altloc != '\0'; });
     std::vector<gemmi::Atom> kept;
-    if (place.size() == 1 || has || !all_alternative || !named) {
+    // Of a place with several residues, those that the conformer lacks go as a whole.
+    if (place.size() == 1 || has || !all_alternative) {
       std::map<std::string, const gemmi::Atom*> best;
       for (const gemmi::Atom& a : atoms) {
         if (a.altloc == '\0')

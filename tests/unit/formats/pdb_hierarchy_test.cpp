@@ -168,6 +168,18 @@ TEST_CASE("domains hold chains, or lie within them") {
   CHECK(r.level[0].group[1].exponent == 0.7);
 }
 
+TEST_CASE("domains by entity: chains of the same SEQRES") {
+  const std::string text = "SEQRES   1 A    2  GLY GLY\nSEQRES   1 B    2  GLY GLY\nSEQRES   1 C    1  ALA\n" +
+                           structure() + pdb_atom(" CA", "ALA", "C", 1, 30, "C");
+  formats::PdbOptions o;
+  o.domains = formats::PdbOptions::Domains::entity;
+  o.levels = {"domain", "chain", "residue"};
+  const Hierarchy h = convert(text, o).hierarchy;
+  REQUIRE(h.level[0].group.size() == 2);
+  CHECK(h.level[0].group[0].end == 2); // A and B
+  CHECK(h.level[1].group[2].name == "C");
+}
+
 TEST_CASE("gaps, overlaps and torn residues or chains name an atom") {
   const std::vector<std::string> levels = {"domain", "chain", "residue"};
   CHECK(refusal(structure(), with_domains("one //A\n", levels)) ==
