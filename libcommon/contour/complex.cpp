@@ -1,5 +1,6 @@
 // complex.cpp — vertices of the complex: grid points, dual vertices, split cells.
 #include "contour/complex.hpp"
+#include "contour/detail/at.hpp"
 #include "contour/refinement.hpp"
 #include "geom/morton.hpp"
 #include "par/par.hpp"
@@ -7,14 +8,12 @@
 #include <cmath>
 
 namespace molmesh::contour {
+
+using detail::at;
 namespace {
 
 Vec3i corner_step(int c) {
   return {c & 1, c >> 1 & 1, c >> 2};
-}
-
-size_t at(int64_t i) {
-  return static_cast<size_t>(i);
 }
 
 } // namespace

@@ -1,15 +1,14 @@
 // components.cpp — union-find over the vertices of the complex.
 #include "contour/components.hpp"
+#include "contour/detail/at.hpp"
 #include "geom/tet_measures.hpp"
 #include <algorithm>
 #include <numeric>
 
 namespace molmesh::contour {
-namespace {
 
-size_t at(int64_t i) {
-  return static_cast<size_t>(i);
-}
+using detail::at;
+namespace {
 
 class Sets {
 public:

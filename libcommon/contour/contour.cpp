@@ -2,6 +2,7 @@
 #include "contour/contour.hpp"
 #include "contour/complex.hpp"
 #include "contour/components.hpp"
+#include "contour/detail/at.hpp"
 #include "contour/elements.hpp"
 #include "contour/octree.hpp"
 #include "contour/refinement.hpp"
@@ -11,11 +12,9 @@
 #include <algorithm>
 
 namespace molmesh::contour {
-namespace {
 
-size_t at(int64_t i) {
-  return static_cast<size_t>(i);
-}
+using detail::at;
+namespace {
 
 /// Elements of the wanted regions, ordered by their first vertex of the complex, that is along the octree's curve;
 /// points in the order in which these elements first use them.

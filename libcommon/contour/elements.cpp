@@ -1,20 +1,19 @@
 // elements.cpp — faces, then rings, joined in the order of the octree's curve.
 #include "contour/elements.hpp"
+#include "contour/detail/at.hpp"
 #include "contour/detail/face_pass.hpp"
 #include "contour/detail/ring_pass.hpp"
 #include "par/par.hpp"
 
 namespace molmesh::contour {
+
+using detail::at;
 namespace {
 
 using detail::Batch;
 using detail::Link;
 
 constexpr int64_t batch_size = 2048; // leaves or links; fixed, so that the result does not know the threads
-
-size_t at(int64_t i) {
-  return static_cast<size_t>(i);
-}
 
 /// Appends the batches in order and gives their new points the numbers from out.position.size() on.
 void join(std::vector<Batch>& batches, Elements& out, std::vector<Link>& links, std::vector<int32_t>& wall,

@@ -1,19 +1,18 @@
 // keep_distance.cpp — grid points are kept a minimum distance away from the surface.
 #include "contour/complex.hpp"
+#include "contour/detail/at.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
 
 namespace molmesh::contour {
+
+using detail::at;
 namespace {
 
 /// Grid points nearer than this (in spacings) are moved away from the surface
 /// along the gradient: slivers come from grid points next to it (Liang & Zhang, Engineering with Computers 2014).
 constexpr double least_distance = 0.3;
-
-size_t at(int64_t i) {
-  return static_cast<size_t>(i);
-}
 
 } // namespace
 

@@ -1,5 +1,6 @@
 // face_pass.cpp — one tetrahedron per edge of each face between two cells.
 #include "contour/detail/face_pass.hpp"
+#include "contour/detail/at.hpp"
 #include "geom/predicates.hpp"
 #include "geom/tet_measures.hpp"
 #include <algorithm>
@@ -8,10 +9,6 @@
 
 namespace molmesh::contour::detail {
 namespace {
-
-size_t at(int64_t i) {
-  return static_cast<size_t>(i);
-}
 
 /// A convex polygon of vertices of the complex, counter-clockwise seen from the cell in front.
 struct Polygon {

@@ -1,6 +1,7 @@
 // ring_pass.cpp — pyramids over the ring of a sign-change edge, split by the better diagonal or round a crossing
 // point.
 #include "contour/detail/ring_pass.hpp"
+#include "contour/detail/at.hpp"
 #include "error.hpp"
 #include "geom/predicates.hpp"
 #include "geom/tet_measures.hpp"
@@ -9,10 +10,6 @@
 
 namespace molmesh::contour::detail {
 namespace {
-
-size_t at(int64_t i) {
-  return static_cast<size_t>(i);
-}
 
 /// Rings seldom have more than six vertices.
 struct Ring {
