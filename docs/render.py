@@ -107,7 +107,7 @@ def main(mesh, image):
     aside = (points[tets].mean(axis=1) - centre) @ np.array([1.0, 0.0, 0.0])
     behind, open_quarter = depth < 0, (depth > 0) & (aside > 0)
     offset = np.abs(points[tets].mean(axis=1) - centre)
-    near = (offset[:, 0] < 0.85 * size) & (offset[:, 2] < 0.7 * size) & (depth > -0.1 * size)
+    near = (offset[:, 0] < size) & (offset[:, 2] < 0.8 * size) & (depth > -0.1 * size)
     scene.AddActor(actor(part(points, tets, ~open_quarter & (region == 1), angle), table=table))
     for label, colour, keep in ((2, (0.86, 0.88, 0.9), behind & near), (3, (0.55, 0.3, 0.65), ~open_quarter)):
         if (keep & (region == label)).any():
