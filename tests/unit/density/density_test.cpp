@@ -1,9 +1,11 @@
 // density_test.cpp — the sparse grid against the field summed by brute force: I1 to I4 of the design.
+#include "density/block_kernel.hpp"
 #include "density/density.hpp"
 #include "error.hpp"
 #include "oracle.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <hwy/targets.h>
 
 using namespace molmesh;
 
@@ -182,6 +184,29 @@ TEST_CASE("a kd-tree finds what the boxes find; all atoms give the same field wi
     CHECK(worst_error(h, all, 200) <= 0.1);
     check_complete(h, all);
   }
+}
+
+TEST_CASE("every instruction set of this machine keeps the bound") {
+  const Hierarchy h = test::random_chains(3, 12, 20, {0.3, 1}, 11);
+  density::Options o;
+  o.spacing = 0.6;
+  const int64_t here = hwy::SupportedTargets();
+  std::vector<std::string> names;
+  for (const int64_t set : {HWY_SCALAR, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
+    if (set != HWY_SCALAR && !(here & set))
+      continue;
+    hwy::SetSupportedTargetsForTest(set);
+    names.push_back(density::instruction_set());
+    INFO(names.back());
+    const BlockGrid g = compute(h, o);
+    CHECK(worst_error(h, g, 300) <= 1);
+    o.threads = 3;
+    check_equal(compute(h, o), g);
+    o.threads = 1;
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  std::sort(names.begin(), names.end());
+  CHECK(std::adjacent_find(names.begin(), names.end()) == names.end()); // the sets were really different ones
 }
 
 TEST_CASE("one atom is a sphere of its radius") {
