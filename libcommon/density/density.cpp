@@ -32,6 +32,14 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts) {
   const GridFrame frame =
       o.grid_points > 0 ? frame_with_points(box, margin, o.grid_points) : frame_with_spacing(box, margin, h);
   Band band = find_band(f, frame, s, counts.search);
+  if (band.block.empty()) {
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "no grid cell reaches the band from %g to %g: the isovalue is too high or the spacing of %g Å too large",
+        o.band_lower, o.band_upper, h);
+    fail(Status::failed, text);
+  }
   band.info.source = hierarchy.source;
   for (const Level& l : hierarchy.level)
     band.info.levels += (band.info.levels.empty() ? "" : " ") + l.name;

@@ -24,7 +24,7 @@ struct Counts {
 };
 
 /// Everything of the band but info.creator. Throws Error(failed) when the wall of a grid with the caller's margin
-/// cuts the surface, Error(usage) when the grid is too large to index.
+/// cuts the surface or nothing reaches the band, Error(usage) when the grid is too large to index.
 Band compute(const Hierarchy& h, const Options& options, Counts& counts);
 
 } // namespace molmesh::density

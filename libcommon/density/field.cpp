@@ -155,6 +155,7 @@ Box Field::bounds() const {
 Field make_field(const Hierarchy& h, double decay, double far_error) {
   Field f;
   f.decay = decay;
+  f.far_error = far_error;
   add_levels(f, h);
   add_clusters(f, h);
   f.steepest = steepest_path(f);

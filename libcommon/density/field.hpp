@@ -31,7 +31,8 @@ struct FieldLevel {
 };
 
 struct Field {
-  double decay = 1; ///< κ, Å⁻²
+  double decay = 1;     ///< κ, Å⁻²
+  double far_error = 0; ///< what all clusters beyond their cutoff2 together add to G anywhere, at most
   /// Atom a: position, and the logarithm of its term at its centre, κ·r². In clusters.
   std::vector<double> x, y, z, peak;
   /// Clusters: at most `cluster_size` atoms of one innermost group, near each other.

@@ -10,8 +10,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// ln of an upper bound of G where coordinate `axis` is `margin` or more beyond the box on one side.
-double ln_bound_behind(const Field& f, const Box& all, int axis, bool high, double margin) {
+/// ln of an upper bound of G where coordinate `axis` is `margin` or more beyond the box on one side; without
+/// clusters beyond their cutoff when `near_only`.
+double ln_bound_behind(const Field& f, const Box& all, int axis, bool high, double margin, bool near_only) {
   OpenGroups groups(f);
   std::vector<double> open(groups.levels() + 1, -infinity); // [0]: G; [last]: the innermost group
   double& innermost = open.back();
@@ -30,10 +31,12 @@ double ln_bound_behind(const Field& f, const Box& all, int axis, bool high, doub
     innermost = -infinity;
   };
   for (size_t c = 0; c < f.group.size(); ++c) {
+    const double depth = high ? all.hi[axis] - f.box[c].hi[axis] : f.box[c].lo[axis] - all.lo[axis];
+    if (near_only && (margin + depth) * (margin + depth) >= f.cutoff2[c])
+      continue;
     if (f.group[c] != current)
       close_innermost();
     current = f.group[c];
-    const double depth = high ? all.hi[axis] - f.box[c].hi[axis] : f.box[c].lo[axis] - all.lo[axis];
     innermost = log_add(innermost, f.ln_peak[c] - f.decay * (margin + depth) * (margin + depth));
   }
   close_innermost();
@@ -57,10 +60,12 @@ GridFrame frame(Vec3d lo, Vec3d extent, double h, int longest, int64_t n) {
 
 double sufficient_margin(const Field& f, double value) {
   const Box all = f.bounds();
+  const bool near_only = value > 10 * f.far_error;
+  const double limit = std::log(near_only ? value - f.far_error : value);
   double margin = 0;
   for (int axis = 0; axis < 3; ++axis)
     for (const bool high : {false, true}) {
-      const auto enough = [&](double m) { return ln_bound_behind(f, all, axis, high, m) < std::log(value); };
+      const auto enough = [&](double m) { return ln_bound_behind(f, all, axis, high, m, near_only) < limit; };
       if (enough(margin))
         continue;
       double lo = margin, hi = std::max(1.0, 2 * margin);

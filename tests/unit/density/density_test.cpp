@@ -255,3 +255,20 @@ TEST_CASE("the derived margin keeps the band off the wall, a small one is refuse
     }
   }
 }
+
+TEST_CASE("a field that never reaches the band is refused") {
+  Hierarchy h;
+  h.atom.push_back({{1, 2, 3}, 2.0});
+  density::Options o;
+  o.isovalue = 1e6;
+  o.band_lower = 0.9e6;
+  o.band_upper = 1.1e6;
+  density::Counts counts;
+  try {
+    density::compute(h, o, counts);
+    FAIL("accepted");
+  } catch (const Error& e) {
+    CHECK(e.status == Status::failed);
+    CHECK(std::string(e.what()).find("isovalue") != std::string::npos);
+  }
+}
