@@ -10,13 +10,14 @@ using namespace molmesh;
 namespace {
 
 struct Options : cli::Common {
-  bool json = false;
+  bool json = false, crossings = false;
   std::string compare;
   double min_dihedral = 0, max_dihedral = 180; // degrees
 };
 
 void describe(CLI::App& app, Options& o) {
   app.add_flag("--json", o.json, "one JSON object instead of text (formats/tetstat/TETSTATv1.md)");
+  app.add_flag("--crossings", o.crossings, "also look for surface triangles that cross (exact; interior meshes)");
   app.add_option("--compare", o.compare, "a mesh to compare with: --compare BEFORE AFTER; the status is AFTER's")
       ->type_name("FILE");
   app.add_option("--min-dihedral", o.min_dihedral, "quality asked for: status 5 when an angle is smaller")
@@ -40,6 +41,10 @@ formats::MeshReport report(const std::string& path, const Options& o, cli::Run& 
              " triangles dropped, " + std::to_string(mesh.tri.size()) + " rebuilt");
   run.phase("validity");
   Validity validity = check_validity(mesh, threads);
+  if (o.crossings) {
+    run.phase("crossings");
+    add_crossings(validity, mesh, threads);
+  }
   run.phase("quality");
   return formats::report_mesh(mesh, input.name(), notes, std::move(validity), {o.min_dihedral, o.max_dihedral},
                               threads);

@@ -2,6 +2,7 @@
 #include "mesh/validity.hpp"
 #include "geom/predicates.hpp"
 #include "mesh/adjacency.hpp"
+#include "mesh/crossing.hpp"
 #include "mesh/group.hpp"
 #include <bit>
 #include <cmath>
@@ -358,6 +359,25 @@ private:
 
 Validity check_validity(const TetMesh& m, int threads) {
   return Checker(m, threads).check();
+}
+
+void add_crossings(Validity& v, const TetMesh& m, int threads) {
+  if (v.region.empty())
+    return; // points out of range
+  std::vector<Tri> tri;
+  std::vector<int64_t> number;
+  for (size_t t = 0; t < m.tri.size(); ++t)
+    if (m.boundary[t] < Boundary::box_x0 || m.boundary[t] > Boundary::box_z1) {
+      tri.push_back(m.tri[t]);
+      number.push_back(static_cast<int64_t>(t));
+    }
+  const Crossings c = find_crossings(m.point, tri, threads);
+  if (c.pairs == 0)
+    return;
+  const auto name = [&](int32_t t) {
+    return described("triangle", number[static_cast<size_t>(t)], tri[static_cast<size_t>(t)]);
+  };
+  v.faults.push_back({"crossing_triangles", c.pairs, name(c.first[0]) + " and " + name(c.first[1])});
 }
 
 } // namespace molmesh

@@ -49,4 +49,9 @@ struct Validity {
 /// Same result at any number of threads. Coordinates are finite.
 Validity check_validity(const TetMesh& m, int threads);
 
+/// Adds the fault crossing_triangles: pairs of triangles, box sides apart, that meet elsewhere than in common
+/// corners and edges. I6 implies that there are none where tetrahedra fill the box; meshes of one side can break
+/// it.
+void add_crossings(Validity& v, const TetMesh& m, int threads);
+
 } // namespace molmesh

@@ -6,6 +6,7 @@
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
+#include <iterator>
 #include <map>
 
 #include "oracles.hpp" // last: CGAL has a type named HD
@@ -38,8 +39,10 @@ CgalSurface cgal_surface(const std::vector<Vec3d>& point, const std::vector<Tri>
   Mesh mesh;
   pmp::polygon_soup_to_polygon_mesh(points, polygons, mesh);
   s.closed = CGAL::is_closed(mesh);
-  s.self_intersecting = pmp::does_self_intersect(mesh);
-  s.bounds_volume = s.closed && !s.self_intersecting && pmp::does_bound_a_volume(mesh);
+  std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> crossings;
+  pmp::self_intersections(mesh, std::back_inserter(crossings));
+  s.crossings = static_cast<int64_t>(crossings.size());
+  s.bounds_volume = s.closed && s.crossings == 0 && pmp::does_bound_a_volume(mesh);
   auto component = mesh.add_property_map<Mesh::Face_index, std::size_t>("f:component", 0).first;
   s.components = static_cast<int64_t>(pmp::connected_components(mesh, component));
   s.euler = static_cast<int64_t>(mesh.number_of_vertices()) - static_cast<int64_t>(mesh.number_of_edges()) +
