@@ -1,11 +1,11 @@
 // mmcif.cpp — mmCIF and mmJSON through gemmi: only the categories that matter, missing columns filled in.
 #include "error.hpp"
 #include "formats/pdb/mmcif_assembly.hpp"
+#include "formats/pdb/mmjson.hpp"
 #include "formats/pdb/parse.hpp"
 #include <algorithm>
 #include <cmath>
 #include <gemmi/cif.hpp>
-#include <gemmi/json.hpp>
 #include <gemmi/mmcif.hpp>
 
 namespace molmesh::formats {
@@ -205,10 +205,11 @@ Parsed parse_mmcif(std::string_view text, const std::string& file, const std::st
 Parsed parse_mmjson(std::string& text, const std::string& file, const std::string& assembly) {
   cif::Document document;
   try {
-    document = cif::read_mmjson_insitu(text.data(), text.size(), file);
-  } catch (const std::exception& e) {
-    const std::string what = e.what();
-    fail_input(one_line(file, what.empty() ? "found JSON that is no mmJSON" : what));
+    document = read_mmjson(text, file);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) { // a value that is neither number, text nor null
+    fail_input(one_line(file, e.what()));
   }
   return from_document(document, {}, file, "mmJSON", assembly);
 }

@@ -235,7 +235,10 @@ TEST_CASE("mmJSON is the same structure") {
   CHECK(c.hierarchy.atom[0].center.x == 1.5);
   CHECK(c.hierarchy.atom[0].radius == 1.55);
   for (const char* bad :
-       {"{", "{}", "{\"a\": 1}", "{\"data_X\": 3}", "{\"data_X\": {\"atom_site\": {\"Cartn_x\": 3}}}"}) {
+       {"{", "{}", "{\"a\": 1}", "{\"data_X\": 3}", "{\"data_X\": {\"atom_site\": {\"Cartn_x\": 3}}}",
+        "{\"data_X\": {\"atom_site\": {\"Cartn_x\": []}}}",
+        "{\"data_X\": {\"atom_site\": {\"Cartn_x\": [1], \"Cartn_y\": []}}}",
+        "{\"data_X\": {\"atom_site\": {\"Cartn_x\": [[1]]}}}", "[]"}) {
     INFO(bad);
     CHECK(refusal(bad, {}, "x.json").substr(0, 6) == "x.json");
   }
