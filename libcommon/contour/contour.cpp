@@ -127,7 +127,7 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
              on_outside = with_outside || options.fill_cavities;
   Elements elements = make_elements(complex, on_inside, on_outside, threads);
   // Validity is proven for cells that are boxes. Where a moved grid point spoils it, it goes back.
-  constexpr int most_rounds = 3; // then all go back: time must be bounded
+  constexpr int most_rounds = 8; // then all go back: time must be bounded
   for (int round = 0;; ++round) {
     const std::vector<int32_t> spoiling = spoiling_vertices(complex, elements, round == most_rounds);
     if (spoiling.empty())

@@ -20,6 +20,9 @@ struct Polygon {
 /// Volumes below this share of the cube of the face's shortest edge get a face point instead.
 constexpr double least_volume = 0.03;
 
+/// The same between boxes of one size, whose grid points may have moved.
+constexpr double least_moved_volume = 1e-4;
+
 class FacePass {
 public:
   FacePass(const Complex& c, const bool wanted[2], Batch& out) : c_(c), wanted_{wanted[0], wanted[1]}, out_(out) {}
@@ -143,7 +146,7 @@ private:
       front = out_.add_point(front_position, box_x0 + f);
     } else {
       front_position = c_.position[at(front)];
-      if (test && !pierced(p, behind, front)) {
+      if (!pierced(p, behind, front, test ? least_volume : check ? least_moved_volume : -1)) {
         via_position = face_point(p);
         via = out_.add_point(via_position, 0);
       }
@@ -196,13 +199,16 @@ private:
     return crossings ? crossed / double(crossings) : all / double(p.n);
   }
 
-  bool pierced(const Polygon& p, int32_t behind, int32_t front) const {
+  /// least: share as below; negative: no test.
+  bool pierced(const Polygon& p, int32_t behind, int32_t front, double least_share) const {
+    if (least_share < 0)
+      return true;
     const Vec3d d = c_.position[at(behind)], e = c_.position[at(front)];
     double size2 = 1e300;
     for (int i = 0; i < p.n; ++i)
       size2 =
           std::min(size2, norm2(c_.position[at(p.vertex[at(i)])] - c_.position[at(p.vertex[at((i + 1) % p.n)])]));
-    const double least = 6 * least_volume * size2 * std::sqrt(size2);
+    const double least = 6 * least_share * size2 * std::sqrt(size2);
     for (int i = 0; i < p.n; ++i)
       if (six_volume(c_.position[at(p.vertex[at(i)])], c_.position[at(p.vertex[at((i + 1) % p.n)])], d, e) < least)
         return false;
