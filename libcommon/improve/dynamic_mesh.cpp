@@ -121,7 +121,7 @@ void set_labels(DynamicMesh& m, const Buckets& b, const TetMesh& mesh) {
     }
 }
 
-// A label is flat when all its triangles lie in one plane normal to an axis.
+// A label is flat when all its triangles lie in one plane normal to an axis, up to rounding.
 void find_flat_labels(DynamicMesh& m, const TetMesh& mesh) {
   std::vector<Vec3d> low(m.labels.size(), Vec3d{1e300, 1e300, 1e300}),
       high(m.labels.size(), Vec3d{-1e300, -1e300, -1e300});
@@ -138,7 +138,7 @@ void find_flat_labels(DynamicMesh& m, const TetMesh& mesh) {
   }
   for (size_t l = 1; l < m.labels.size(); ++l)
     for (int a = 0; a < 3; ++a)
-      if (low[l][a] == high[l][a])
+      if (high[l][a] - low[l][a] <= 1e-12 * std::max(std::abs(low[l][a]), std::abs(high[l][a])))
         m.labels[l].axis = a;
 }
 

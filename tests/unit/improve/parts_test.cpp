@@ -1,0 +1,153 @@
+// parts_test.cpp — quality, spokes, targets and single operations against slow and plain answers.
+#include "improve/dynamic_mesh.hpp"
+#include "improve/editor.hpp"
+#include "improve/isosurface.hpp"
+#include "improve/reference_surface.hpp"
+#include "improve/spokes.hpp"
+#include "lattice_mesh.hpp"
+#include <catch2/catch.hpp>
+#include <random>
+
+using namespace molmesh;
+using namespace molmesh::test;
+
+namespace {
+
+std::mt19937 generator(7);
+Vec3d random_point(double size = 1) {
+  std::uniform_real_distribution<double> u(-size, size);
+  return {u(generator), u(generator), u(generator)};
+}
+
+// Smallest sine of the dihedral angles by acos, obtuse ones weighted, squared.
+double slow_quality(const std::array<Vec3d, 4>& p) {
+  double worst = 2;
+  for (size_t i = 0; i < 4; ++i)
+    for (size_t j = i + 1; j < 4; ++j) {
+      const size_t k = i != 0 ? 0 : j != 1 ? 1 : 2, l = 6 - i - j - k;
+      const Vec3d e = (p[j] - p[i]) / norm(p[j] - p[i]), a = p[k] - p[i], b = p[l] - p[i];
+      const Vec3d x = a - dot(a, e) * e, y = b - dot(b, e) * e;
+      const double angle = std::acos(dot(x, y) / (norm(x) * norm(y)));
+      worst = std::min(worst, std::sin(angle) * (angle > 1.5707963267948966 ? improve::obtuse_weight : 1));
+    }
+  return worst * worst;
+}
+
+} // namespace
+
+TEST_CASE("quality is the smallest weighted sine of the dihedral angles") {
+  for (int n = 0; n < 1000; ++n) {
+    std::array<Vec3d, 4> p{random_point(), random_point(), random_point(), random_point()};
+    if (volume6(p[0], p[1], p[2], p[3]) < 0) {
+      CHECK(improve::tet_quality(p[0], p[1], p[2], p[3]) == -1);
+      std::swap(p[2], p[3]);
+    }
+    CHECK(improve::tet_quality(p[0], p[1], p[2], p[3]) == Approx(slow_quality(p)).epsilon(1e-4));
+  }
+  CHECK(improve::angle_quality(25) == Approx(improve::angle_quality(140)).epsilon(0.01));
+}
+
+TEST_CASE("spokes find the worst element wherever their vertex is") {
+  for (int n = 0; n < 100; ++n) {
+    improve::Spokes spokes;
+    std::vector<std::array<Vec3d, 4>> tets;
+    std::vector<size_t> moving;
+    const Vec3d origin{50, -30, 20};
+    spokes.clear(origin);
+    const int count = 1 + n % 30;
+    for (int t = 0; t < count; ++t) {
+      std::array<Vec3d, 4> p{origin, origin + random_point(), origin + random_point(), origin + random_point()};
+      if (volume6(p[0], p[1], p[2], p[3]) < 0)
+        std::swap(p[2], p[3]);
+      const size_t at = size_t(t) % 4; // an even permutation that puts the vertex there
+      static constexpr size_t order[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
+      tets.push_back({p[order[at][0]], p[order[at][1]], p[order[at][2]], p[order[at][3]]});
+      moving.push_back(at);
+      spokes.add(tets.back(), static_cast<int>(at));
+    }
+    CHECK(spokes.size() == size_t(count));
+    for (int k = 0; k < 10; ++k) {
+      const Vec3d x = origin + random_point(0.02);
+      float worst = 2;
+      for (size_t t = 0; t < tets.size(); ++t) {
+        auto p = tets[t];
+        p[moving[t]] = x;
+        worst = std::min(worst, improve::tet_quality(p[0], p[1], p[2], p[3]));
+      }
+      CHECK(spokes.worst(x, -1.f) == Approx(worst).epsilon(2e-3).margin(1e-6));
+    }
+  }
+}
+
+TEST_CASE("points are projected onto the isosurface of a sphere") {
+  // log G is quadratic: its trilinear interpolant is off by at most h²/8 times the second derivatives, 3 · 0.6
+  // h²/8.
+  const Vec3d centre{4.03, 4.11, 3.97};
+  const double radius = 1.7, h = 0.25;
+  const BlockGrid grid = lattice_grid(
+      [&](Vec3d p) { return std::exp(-0.3 * (norm2(p - centre) - radius * radius)); }, {0, 0, 0}, h, 32);
+  const improve::Isosurface surface(grid, 2);
+  const double bound = 3 * 0.6 * h * h / 8 / (2 * 0.3 * radius) * 1.2;
+  for (int n = 0; n < 200; ++n) {
+    const Vec3d direction = random_point(), unit = direction / norm(direction);
+    Vec3d p = centre + (radius + 0.05) * unit;
+    REQUIRE(surface.project(p, 0.5));
+    CHECK(std::abs(norm(p - centre) - radius) < bound);
+    double distance = 1;
+    Vec3d normal;
+    REQUIRE(surface.probe(p, distance, normal));
+    CHECK(std::abs(distance) <= 1e-3 * h);
+    CHECK(dot(normal, unit) > 0.95);
+  }
+  Vec3d away = centre;
+  CHECK_FALSE(surface.project(away, 0.5)); // not in the band
+}
+
+TEST_CASE("the reference surface gives the closest point of all its triangles") {
+  const Field ball = [](Vec3d p) { return std::exp(-0.3 * (norm2(p - Vec3d{2.6, 2.5, 2.4}) - 1.44)); };
+  const TetMesh mesh = lattice_mesh(ball, {0, 0, 0}, 0.5, 10, 1);
+  const improve::ReferenceSurface surface(mesh, std::vector<uint8_t>(mesh.tri.size(), 1));
+  for (int n = 0; n < 100; ++n) {
+    const Vec3d direction = random_point();
+    const Vec3d from = Vec3d{2.6, 2.5, 2.4} + 1.25 / norm(direction) * direction;
+    double best = 1e300;
+    for (const Tri& t : mesh.tri) // barycentric samples of every triangle
+      for (int i = 0; i <= 40; ++i)
+        for (int j = 0; i + j <= 40; ++j) {
+          const Vec3d q = (double(i) * mesh.point[size_t(t[0])] + double(j) * mesh.point[size_t(t[1])] +
+                           double(40 - i - j) * mesh.point[size_t(t[2])]) /
+                          40.;
+          best = std::min(best, norm(q - from));
+        }
+    Vec3d p = from;
+    REQUIRE(surface.project(p, 0.5));
+    CHECK(norm(p - from) <= best + 1e-12);
+    CHECK(norm(p - from) >= best - 0.02);
+  }
+}
+
+TEST_CASE("a mesh that is built and extracted is the same mesh") {
+  const Field ball = [](Vec3d p) { return std::exp(-0.3 * (norm2(p - Vec3d{2.6, 2.5, 2.4}) - 1.44)); };
+  const int keep = GENERATE(0, 1, 2);
+  const TetMesh mesh = lattice_mesh(ball, {0, 0, 0}, 0.5, 10, keep);
+  const improve::DynamicMesh m = improve::build(mesh, 180, 2);
+  const TetMesh back = improve::extract(m);
+  CHECK(back.point == mesh.point);
+  CHECK(back.tet == mesh.tet);
+  CHECK(back.region == mesh.region);
+  const auto sorted = [](const TetMesh& x) { // triangles with their labels, each from its lowest point on
+    std::set<std::pair<Tri, int32_t>> all;
+    for (size_t t = 0; t < x.tri.size(); ++t) {
+      Tri f = x.tri[t];
+      std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
+      all.insert({f, x.boundary[t]});
+    }
+    return all;
+  };
+  CHECK(sorted(back) == sorted(mesh)); // orientation included
+  int64_t kinds[4] = {};
+  for (const improve::Vertex& v : m.vertex)
+    ++kinds[size_t(v.kind)];
+  CHECK(kinds[size_t(improve::Kind::surface)] > 0);
+  CHECK(kinds[size_t(improve::Kind::fixed)] == (keep == 1 ? 0 : 8)); // the corners of the box
+}
