@@ -29,16 +29,30 @@ std::vector<int32_t> face_neighbors(const TetMesh& m, int threads) {
   return across;
 }
 
+std::vector<int64_t> boundary_faces(const TetMesh& m, const std::vector<int32_t>& across, int threads) {
+  constexpr int64_t chunk = 1 << 16;
+  const auto faces = static_cast<int64_t>(across.size()), chunks = (faces + chunk - 1) / chunk;
+  std::vector<std::vector<int64_t>> part(static_cast<size_t>(chunks));
+  par::for_n(chunks, threads, 1, [&](int64_t c) {
+    for (int64_t f = c * chunk; f < std::min(faces, (c + 1) * chunk); ++f)
+      if (across[static_cast<size_t>(f)] != crowded_face &&
+          region_across(m, across, f) != m.region[static_cast<size_t>(f / 4)])
+        part[static_cast<size_t>(c)].push_back(f);
+  });
+  std::vector<int64_t> boundary;
+  for (const auto& p : part)
+    boundary.insert(boundary.end(), p.begin(), p.end());
+  return boundary;
+}
+
 void rebuild_triangles(TetMesh& m, int threads) {
-  const std::vector<int32_t> across = face_neighbors(m, threads);
   m.tri.clear();
-  for (size_t face = 0; face < across.size(); ++face) {
-    const int32_t region = m.region[face / 4];
-    const int32_t other = across[face] < 0 ? 0 : m.region[static_cast<size_t>(across[face]) / 4];
-    // Faces between two tetrahedra come twice: the lower label owns the triangle.
-    if (across[face] == crowded_face || (other != 0 && region >= other))
-      continue;
-    Tri t = face_points(m, static_cast<int64_t>(face));
+  const std::vector<int32_t> across = face_neighbors(m, threads);
+  for (int64_t face : boundary_faces(m, across, threads)) {
+    const int32_t region = m.region[static_cast<size_t>(face / 4)], other = region_across(m, across, face);
+    if (other != 0 && region >= other)
+      continue; // the lower label owns the triangle
+    Tri t = face_points(m, face);
     if (!triangle_looks_out(region, other, Boundary::surface))
       std::swap(t[1], t[2]);
     m.tri.push_back(t);

@@ -20,6 +20,22 @@ enum : int32_t { no_face = -1, crowded_face = -2 };
 /// it. At most 2^29 tetrahedra; points in range.
 std::vector<int32_t> face_neighbors(const TetMesh& m, int threads);
 
+/// Region on the other side of the face; 0 where no tetrahedron is, or several are. across: face_neighbors.
+inline int32_t region_across(const TetMesh& m, const std::vector<int32_t>& across, int64_t face) {
+  const int32_t f = across[static_cast<size_t>(face)];
+  return f < 0 ? 0 : m.region[static_cast<size_t>(f) / 4];
+}
+
+/// Faces towards another region or nothing, ascending; those between two regions from both of their sides, crowded
+/// ones left out.
+std::vector<int64_t> boundary_faces(const TetMesh& m, const std::vector<int32_t>& across, int threads);
+
+/// Two triangles on the same points: do they go round the same way?
+inline bool same_turn(const Tri& a, const Tri& b) {
+  const size_t shift = a[0] == b[0] ? 0 : a[0] == b[1] ? 1 : 2;
+  return a[1] == b[(shift + 1) % 3];
+}
+
 /// Does the triangle on this face look out of its tetrahedron? `other`: region of the neighbor, 0 for none.
 /// Molecular-surface triangles point out of region 1, also where region 1 is not part of the mesh; all others with
 /// a tetrahedron on one side point out of it; all others between two regions out of the lower label.

@@ -3,8 +3,10 @@
 #include "geom/predicates.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/crossing.hpp"
-#include "mesh/group.hpp"
-#include <bit>
+#include "mesh/duplicates.hpp"
+#include "mesh/triangle_match.hpp"
+#include "par/par.hpp"
+#include <algorithm>
 #include <cmath>
 
 namespace molmesh {
@@ -44,7 +46,7 @@ public:
     check_points();
     across_ = face_neighbors(m_, threads_);
     check_faces();
-    collect_boundaries();
+    side_ = boundary_faces(m_, across_, threads_);
     check_triangles();
     check_regions();
     check_box();
@@ -94,27 +96,7 @@ private:
   }
 
   void check_points() {
-    // Equal coordinates share a bucket; 0 and -0 are equal.
-    const auto bits = [](double x) { return std::bit_cast<uint64_t>(x + 0.0); };
-    const auto mix = [](uint64_t h) {
-      h ^= h >> 32;
-      h *= 0x9e3779b97f4a7c15;
-      return h ^ h >> 29;
-    };
-    std::vector<int32_t> twin(m_.point.size(), -1);
-    for_each_group(
-        points(), points(), threads_,
-        [&](int64_t i) {
-          const Vec3d p = m_.point[static_cast<size_t>(i)];
-          const uint64_t h = mix(mix(mix(bits(p.x)) + bits(p.y)) + bits(p.z));
-          return GroupKey{static_cast<int32_t>((h >> 32) * static_cast<uint64_t>(points()) >> 32), h};
-        },
-        [&](const uint32_t* p, int n) {
-          for (int i = 1; i < n; ++i)
-            for (int k = 0; k < i && twin[p[i]] < 0; ++k)
-              if (m_.point[p[i]] == m_.point[p[k]])
-                twin[p[i]] = static_cast<int32_t>(p[k]);
-        });
+    const std::vector<int32_t> twin = point_twins(m_.point, threads_);
     fault("duplicate_point",
           tally(points(), threads_, [&](int64_t i) { return twin[static_cast<size_t>(i)] >= 0; }), [&](int64_t i) {
             return "points " + std::to_string(twin[static_cast<size_t>(i)]) + " and " + std::to_string(i);
@@ -128,33 +110,10 @@ private:
   }
 
   void check_faces() {
-    // Two faces cover all four points: tetrahedra that share two are the same. Those with crowded faces are few.
-    const auto neighbor = [&](int64_t face) { return across_[static_cast<size_t>(face)]; };
-    std::vector<std::pair<Tet, int64_t>> crowded;
-    for (int64_t i = 0; i < tets(); ++i) {
-      int n = 0;
-      for (int f = 0; f < 4; ++f)
-        n += neighbor(4 * i + f) == crowded_face;
-      if (n < 2)
-        continue;
-      crowded.emplace_back(m_.tet[static_cast<size_t>(i)], i);
-      std::sort(crowded.back().first.begin(), crowded.back().first.end());
-    }
-    std::sort(crowded.begin(), crowded.end());
-    std::vector<int64_t> copies;
-    for (size_t i = 1; i < crowded.size(); ++i)
-      if (crowded[i].first == crowded[i - 1].first)
-        copies.push_back(crowded[i].second);
-    std::sort(copies.begin(), copies.end());
-    const auto copy = [&](int64_t i) {
-      for (int f = 1; f < 4; ++f)
-        for (int g = 0; g < f; ++g)
-          if (const int32_t a = neighbor(4 * i + f), b = neighbor(4 * i + g);
-              a >= 0 && b >= 0 && a / 4 == b / 4 && a / 4 < i)
-            return true;
-      return std::binary_search(copies.begin(), copies.end(), i);
-    };
-    fault("duplicate_tet", tally(tets(), threads_, copy), [&](int64_t i) { return tet(i); });
+    const std::vector<int64_t> copies = tet_copies(m_, across_);
+    if (!copies.empty())
+      fault("duplicate_tet", static_cast<int64_t>(copies.size()), tet(copies.front()));
+    const auto neighbor = [&](int64_t f) { return across_[static_cast<size_t>(f)]; };
     fault("crowded_face", tally(4 * tets(), threads_, [&](int64_t f) { return neighbor(f) == crowded_face; }),
           [&](int64_t f) { return face(f); });
     const auto folded = [&](int64_t f) {
@@ -163,83 +122,26 @@ private:
     fault("folded_face", tally(4 * tets(), threads_, folded), [&](int64_t f) { return face(f); });
   }
 
-  /// Two triangles on the same points: do they go round the same way?
-  static bool same_turn(const Tri& a, const Tri& b) {
-    const size_t shift = a[0] == b[0] ? 0 : a[0] == b[1] ? 1 : 2;
-    return a[1] == b[(shift + 1) % 3];
-  }
-
-  int32_t other_region(int64_t face) const {
-    const int32_t f = across_[static_cast<size_t>(face)];
-    return f < 0 ? 0 : m_.region[static_cast<size_t>(f) / 4];
-  }
-
-  /// Faces towards another region or nothing, each from both of its sides.
-  void collect_boundaries() {
-    constexpr int64_t chunk = 1 << 16;
-    const int64_t faces = 4 * tets(), chunks = (faces + chunk - 1) / chunk;
-    std::vector<std::vector<int64_t>> part(static_cast<size_t>(chunks));
-    par::for_n(chunks, threads_, 1, [&](int64_t c) {
-      for (int64_t f = c * chunk; f < std::min(faces, (c + 1) * chunk); ++f)
-        if (across_[static_cast<size_t>(f)] != crowded_face &&
-            other_region(f) != m_.region[static_cast<size_t>(f / 4)])
-          part[static_cast<size_t>(c)].push_back(f);
-    });
-    for (const auto& p : part)
-      side_.insert(side_.end(), p.begin(), p.end());
-  }
-
   void check_triangles() {
-    std::vector<int64_t> owner; // one side of each
-    for (int64_t f : side_)
-      if (const int32_t other = other_region(f); other == 0 || m_.region[static_cast<size_t>(f / 4)] < other)
-        owner.push_back(f);
-    const auto n = static_cast<int64_t>(owner.size());
-    const auto corners = [&](int64_t i) {
-      return i < n ? face_points(m_, owner[static_cast<size_t>(i)]) : m_.tri[static_cast<size_t>(i - n)];
+    TriangleMatch match = match_triangles(m_, across_, side_, threads_);
+    const int64_t n = static_cast<int64_t>(match.owner.size());
+    const auto count = [&](const char* rule, TriangleMatch::Kind broken) {
+      fault(rule,
+            tally(n + tris(), threads_, [&](int64_t i) { return match.kind[static_cast<size_t>(i)] == broken; }),
+            [&](int64_t i) { return i < n ? face(match.owner[static_cast<size_t>(i)]) : tri(i - n); });
     };
-    enum : uint8_t { good, missing, stray, twice, turned };
-    std::vector<uint8_t> kind(static_cast<size_t>(n + tris()), good);
-    std::vector<uint8_t> on_box(static_cast<size_t>(tris()), 0); // with one tetrahedron
-    for_each_group(
-        n + tris(), points(), threads_,
-        [&](int64_t i) {
-          Tri t = corners(i);
-          std::sort(t.begin(), t.end());
-          return GroupKey{t[0], uint64_t(uint32_t(t[1])) << 32 | uint32_t(t[2])};
-        },
-        [&](const uint32_t* item, int size) {
-          if (item[0] >= n) {
-            for (int i = 0; i < size; ++i)
-              kind[item[i]] = i == 0 ? stray : twice;
-            return;
-          }
-          if (size == 1)
-            kind[item[0]] = missing;
-          const int64_t f = owner[item[0]];
-          const int32_t region = m_.region[static_cast<size_t>(f / 4)], other = other_region(f);
-          for (int i = 1; i < size; ++i) {
-            const auto t = static_cast<size_t>(item[i] - n);
-            const bool looks_out = same_turn(m_.tri[t], face_points(m_, f));
-            kind[item[i]] = i > 1                                                            ? twice
-                            : looks_out != triangle_looks_out(region, other, m_.boundary[t]) ? turned
-                                                                                             : good;
-            on_box[t] = other == 0;
-          }
-        });
-    const auto count = [&](const char* rule, uint8_t broken) {
-      fault(rule, tally(n + tris(), threads_, [&](int64_t i) { return kind[static_cast<size_t>(i)] == broken; }),
-            [&](int64_t i) { return i < n ? face(owner[static_cast<size_t>(i)]) : tri(i - n); });
-    };
-    count("missing_triangle", missing);
-    count("stray_triangle", stray);
-    count("duplicate_triangle", twice);
-    count("triangle_orientation", turned);
-    one_sided_ = std::move(on_box);
+    count("missing_triangle", TriangleMatch::missing);
+    count("stray_triangle", TriangleMatch::stray);
+    count("duplicate_triangle", TriangleMatch::twice);
+    count("triangle_orientation", TriangleMatch::turned);
+    one_sided_ = std::move(match.one_sided);
   }
 
   void check_regions() {
-    std::vector<int32_t> names = m_.region;
+    std::vector<int32_t> names;
+    for (int32_t r : m_.region)
+      if (names.empty() || r != names.back())
+        names.push_back(r);
     std::sort(names.begin(), names.end());
     names.erase(std::unique(names.begin(), names.end()), names.end());
     const auto index = [&](int32_t region) {
