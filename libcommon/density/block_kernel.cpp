@@ -152,8 +152,9 @@ bool take_unit_simd(const LocalClusters& c, const int32_t* list, int32_t n, cons
   const V total = hn::SumOfLanes(f, w);
   if (hn::GetLane(total) < 1e-30f)
     return false;
-  const V cx = hn::Div(hn::SumOfLanes(f, wx), total), cy = hn::Div(hn::SumOfLanes(f, wy), total),
-          cz = hn::Div(hn::SumOfLanes(f, wz), total), sum = hn::Add(log2(total), hn::Set(f, base));
+  const V per_total = hn::Div(hn::Set(f, 1.0f), total);
+  const V cx = hn::Mul(hn::SumOfLanes(f, wx), per_total), cy = hn::Mul(hn::SumOfLanes(f, wy), per_total),
+          cz = hn::Mul(hn::SumOfLanes(f, wz), per_total), sum = hn::Add(log2(total), hn::Set(f, base));
   const V sx = hn::Set(f, 2 * decay * b.half[0] / 3.5f), sy = hn::Set(f, 2 * decay * b.half[1] / 3.5f),
           sz = hn::Set(f, 2 * decay * b.half[2] / 3.5f);
   V widest = hn::Zero(f);
@@ -234,6 +235,38 @@ HWY_INLINE void accumulate(const float* x, const float* yz, int32_t n, Power pow
     }
 }
 
+/// yz[64 r + 8 j + k] = y_j·z_k of row r, whose factors of y and z lie at x + 24 r + 8.
+void multiply_axes(const float* x, int32_t rows, float* yz) {
+  if constexpr (lanes == 16) {
+    HWY_ALIGN int32_t index[5][16]; // of y for two j at a time; of z
+    for (int32_t l = 0; l < 16; ++l) {
+      for (int32_t v = 0; v < 4; ++v)
+        index[v][l] = 2 * v + l / 8;
+      index[4][l] = 8 + l % 8;
+    }
+    const auto y0 = hn::SetTableIndices(f, index[0]), y1 = hn::SetTableIndices(f, index[1]),
+               y2 = hn::SetTableIndices(f, index[2]), y3 = hn::SetTableIndices(f, index[3]),
+               zz = hn::SetTableIndices(f, index[4]);
+    for (int32_t r = 0; r < rows; ++r, yz += 64) {
+      const V both = hn::LoadU(f, x + 24 * r + 8), z = hn::TableLookupLanes(both, zz);
+      hn::StoreU(hn::Mul(hn::TableLookupLanes(both, y0), z), f, yz);
+      hn::StoreU(hn::Mul(hn::TableLookupLanes(both, y1), z), f, yz + 16);
+      hn::StoreU(hn::Mul(hn::TableLookupLanes(both, y2), z), f, yz + 32);
+      hn::StoreU(hn::Mul(hn::TableLookupLanes(both, y3), z), f, yz + 48);
+    }
+  } else {
+    using F8 = hn::CappedTag<float, 8>;
+    constexpr F8 f8{};
+    constexpr int32_t lanes8 = static_cast<int32_t>(HWY_MIN(8, HWY_LANES(float)));
+    for (int32_t r = 0; r < rows; ++r)
+      for (int32_t l = 0; l < 8; l += lanes8) {
+        const auto z = hn::LoadU(f8, x + 24 * r + 16 + l);
+        for (int32_t j = 0; j < 8; ++j)
+          hn::StoreU(hn::Mul(hn::Set(f8, x[24 * r + 8 + j]), z), f8, yz + 64 * r + 8 * j + l);
+      }
+  }
+}
+
 void add_unit_simd(const UnitArguments& u, float* scratch, float* sum) {
   const int32_t n = u.atoms;
   float* const x = scratch;                                  // 24·(n + 1), then to a multiple of 16
@@ -255,12 +288,7 @@ void add_unit_simd(const UnitArguments& u, float* scratch, float* sum) {
   }
   std::fill(x + 24 * (n + 1), yz, 0.0f);
   exp2_all_simd(x, static_cast<int32_t>(yz - x));
-  for (int32_t a = 0; a <= n; ++a)
-    for (int32_t l = 0; l < 8; l += lanes8) {
-      const auto z = hn::LoadU(f8, x + 24 * a + 16 + l);
-      for (int32_t j = 0; j < 8; ++j)
-        hn::StoreU(hn::Mul(hn::Set(f8, x[24 * a + 8 + j]), z), f8, yz + 64 * a + 8 * j + l);
-    }
+  multiply_axes(x, n + 1, yz);
   if (u.exponent == 1.0f)
     accumulate(x, yz, n, One{}, sum);
   else if (u.exponent == 0.5f)
