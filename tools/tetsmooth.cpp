@@ -62,6 +62,8 @@ Status run_tool(const Options& o, cli::Run& run) {
   options.threads = threads;
   options.min_dihedral = std::max(options.min_dihedral, o.min_dihedral);
   options.max_dihedral = std::min(options.max_dihedral, o.max_dihedral);
+  if (mesh.creator.rfind("density2tet", 0) == 0)
+    options.sharp = 180; // an isosurface is smooth: folds of its first mesh are no features
   improve::Result result;
   try {
     result = improve::improve(mesh, grid ? &*grid : nullptr, options, [&](const std::string& p) { run.phase(p); });

@@ -136,7 +136,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   };
   Result result;
   begin("adjacency");
-  DynamicMesh m = build(mesh, density ? 180 : 50, options.threads);
+  DynamicMesh m = build(mesh, density ? 180 : options.sharp, options.threads);
   result.before = result.after = measure(mesh, options.threads);
   if (options.iterations == 0 || mesh.tet.empty())
     return result;

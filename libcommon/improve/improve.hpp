@@ -11,6 +11,7 @@ namespace molmesh::improve {
 struct Options {
   double min_dihedral = 26, max_dihedral = 138.5; ///< degrees aimed at; the work stops where they are reached
   int iterations = 12;                            ///< rounds at most; 0 leaves the mesh as it is
+  double sharp = 50; ///< degrees; without a density, edges of the surface that bend by more are kept
   int threads = 1;
 };
 
@@ -27,7 +28,7 @@ struct Result {
 };
 
 /// Improves the mesh in place. With a density, points of the curved boundary labels are put on G = isovalue;
-/// without, they move on the surface that came in, whose edges that bend by more than 50° are kept. Regions, labels
+/// without, they move on the surface that came in, whose sharp edges are kept. Regions, labels
 /// and the topology of every surface stay; the worst element never becomes worse (I9). Same result for any number
 /// of threads. phase(name), when given, is told what begins. Throws Error(bad_input) for a mesh that is not valid.
 Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
