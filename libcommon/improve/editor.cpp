@@ -181,11 +181,9 @@ bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) cons
   case Kind::interior:
     return true;
   case Kind::surface:
-    if (target_ && guard_.lift > 0) {
-      double distance;
-      Vec3d normal;
-      return target_->probe(x, distance, normal) && std::abs(distance) <= guard_.lift * target_->spacing();
-    }
+    // The distance to first order means nothing where the gradient vanishes, and that is where points must leave.
+    if (target_ && guard_.lift > 0)
+      return norm(x - from) <= guard_.lift * target_->spacing();
     return target_ && target_->project(x, reach);
   case Kind::sliding:
     for (int a = 0; a < 3; ++a)

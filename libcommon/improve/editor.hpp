@@ -23,7 +23,7 @@ struct Guard {
   double angle = 32;      ///< degrees between its normal and the target's at its centroid
   double distance = 0.12; ///< of its centroid, in spacings
   double reach = 0.5;     ///< of a projection, in edge lengths: further, and pinches drop two points on one place
-  double lift = 0;        ///< how far surface points may leave the target, in spacings
+  double lift = 0;        ///< how far one operation may take a surface point off the target, in spacings
   bool operator==(const Guard&) const = default;
 };
 

@@ -55,7 +55,7 @@ std::vector<uint8_t> curved_triangles(const DynamicMesh& m, const TetMesh& mesh)
 // The goal rises by steps: what is far below it gets room before its neighbors ask for it. The guard is released
 // late, when few elements are left; where the surface has features far smaller than the grid, points may leave it
 // at the very end.
-const Guard kept, released{60, 0.24, 1, 0}, lifted{80, 0.24, 1, 0.2};
+const Guard kept, released{60, 0.24, 1, 0}, lifted{180, 1e3, 1, 0.15};
 struct Stage {
   double share; // of the goal's sine
   int effort;
