@@ -14,7 +14,7 @@ namespace {
 
 struct Options : cli::Common {
   std::string density;
-  int iterations = 12, parts = 8;
+  int iterations = 15, parts = 8;
   double min_dihedral = 0, max_dihedral = 180; // degrees asked for
 };
 

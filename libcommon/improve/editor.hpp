@@ -87,9 +87,12 @@ private:
   bool edge_is_labelled(int32_t a, int32_t b);
   bool surface_link_holds(int32_t a, int32_t b, const Ring& r);
   float worst(const std::vector<int32_t>& elements) const;
-  /// What an element below the goal lacks: goal / q - 1 when the worst matter most, (1 - q / goal)² when all do.
+  /// What an element below the goal lacks: goal / q - 1 when the worst matter most, (1 - q / goal)² when all do;
+  /// nothing where only the worst element counts.
   float lack(float q) const {
-    return q >= goal ? 0 : worst_first ? goal / std::max(q, 1e-4f) - 1 : (1 - q / goal) * (1 - q / goal);
+    return q >= goal || guard_.lift > 0 ? 0
+           : worst_first                ? goal / std::max(q, 1e-4f) - 1
+                                        : (1 - q / goal) * (1 - q / goal);
   }
   float lack(const std::vector<int32_t>& elements) const;
   float lack(const std::vector<Candidate>& elements) const;

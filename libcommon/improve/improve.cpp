@@ -68,6 +68,7 @@ const Stage stages[] = {
     {0.9, 1, 2, true, kept},     {1, 1, 2, false, kept},      {1, 1, 8, true, kept},
     {0.8, 1, 8, true, released}, {1, 1, 8, false, released},  {0.5, 1, 32, true, lifted},
     {1, 1, 32, true, released},  {0.55, 1, 32, true, lifted}, {1, 1, 32, false, released},
+    {0.55, 1, 32, true, lifted},
 };
 constexpr size_t refresh_offset = 4;
 

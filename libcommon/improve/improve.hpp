@@ -10,7 +10,7 @@ namespace molmesh::improve {
 
 struct Options {
   double min_dihedral = 26, max_dihedral = 138.5; ///< degrees aimed at; the work stops where they are reached
-  int iterations = 12;                            ///< rounds at most; 0 leaves the mesh as it is
+  int iterations = 15;                            ///< rounds at most; 0 leaves the mesh as it is
   double sharp = 50; ///< degrees; without a density, edges of the surface that bend by more are kept
   int threads = 1;
 };
