@@ -31,12 +31,13 @@ HD inline float tet_quality(Vec3d p0, Vec3d p1, Vec3d p2, Vec3d p3) {
   const auto term = [w](Vec3d ni, Vec3d nj, double rij, double edge2) {
     return edge2 * rij * (dot(ni, nj) > 0 ? w : 1.0);
   };
+  const auto lesser = [](double x, double y) { return y < x ? y : x; }; // std::min is a host function to nvcc
   double s = term(n0, n1, r0 * r1, norm2(c - b));
-  s = std::min(s, term(n0, n2, r0 * r2, norm2(c - a)));
-  s = std::min(s, term(n0, n3, r0 * r3, norm2(b - a)));
-  s = std::min(s, term(n1, n2, r1 * r2, norm2(c)));
-  s = std::min(s, term(n1, n3, r1 * r3, norm2(b)));
-  s = std::min(s, term(n2, n3, r2 * r3, norm2(a)));
+  s = lesser(s, term(n0, n2, r0 * r2, norm2(c - a)));
+  s = lesser(s, term(n0, n3, r0 * r3, norm2(b - a)));
+  s = lesser(s, term(n1, n2, r1 * r2, norm2(c)));
+  s = lesser(s, term(n1, n3, r1 * r3, norm2(b)));
+  s = lesser(s, term(n2, n3, r2 * r3, norm2(a)));
   return static_cast<float>(s * det * det);
 }
 
