@@ -77,6 +77,7 @@ private:
   void place_duals(int threads);
   void place_split(int32_t leaf);
   std::vector<uint8_t> moved_;
+  std::vector<float> estimate_;     ///< [grid vertices] distance before the move
   std::vector<int32_t> split_leaf_; ///< [vertices after the leaves' duals]
 };
 

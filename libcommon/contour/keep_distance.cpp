@@ -19,21 +19,20 @@ constexpr double least_distance = 0.3;
 void Complex::keep_distance(int threads) {
   distance.assign(at(grid_vertices), 0);
   moved_.assign(at(grid_vertices), 0);
-  // Only grid points with eight fine cells round them, a surface cell among them: the centre of a larger cell looks
-  // past its smaller neighbours' grid points by no margin.
+  estimate_.assign(at(grid_vertices), 0);
+  // Of the surface cells' grid points only those with eight fine cells round them move: the centre of a larger cell
+  // looks past its smaller neighbours' grid points by no margin.
   std::vector<uint8_t> fine(at(grid_vertices), 0), near(at(grid_vertices), 0);
   for (int32_t leaf = 0; leaf < tree.size(); ++leaf) {
-    if (tree.level[at(leaf)] > 0)
-      continue;
     for (int c = 0; c < 8; ++c) {
       const size_t v = at(grid_vertex[at(int64_t{8} * leaf + c)]);
-      ++fine[v];
+      fine[v] = static_cast<uint8_t>(fine[v] + (tree.level[at(leaf)] == 0));
       near[v] = near[v] || side[at(leaf)] == Side::crossed;
     }
   }
   const double h = lattice.grid().frame.spacing;
   par::for_n(grid_vertices, threads, [&](int64_t v) {
-    if (fine[at(v)] != 8 || !near[at(v)])
+    if (!near[at(v)])
       return;
     const Vec3i p = point[at(v)];
     const double here = value[at(v)];
@@ -47,6 +46,8 @@ void Complex::keep_distance(int threads) {
       for (int step : {-1, 1}) {
         Vec3i q = p;
         q[a] += step;
+        if (q[a] < 0 || q[a] > lattice.cells[a])
+          continue;
         const double there = lattice.value(q);
         if (!(there > 0) || !lattice.active(q))
           continue;
@@ -59,21 +60,21 @@ void Complex::keep_distance(int threads) {
     if (!(slope > 0))
       return;
     const double d = std::log(here / lattice.isovalue) / slope, least = least_distance * h;
-    if (std::fabs(d) >= least) {
-      distance[at(v)] = static_cast<float>(d);
+    distance[at(v)] = static_cast<float>(d);
+    if (std::fabs(d) >= least || fine[at(v)] != 8)
       return;
-    }
     const bool in = inside(static_cast<int32_t>(v));
     position[at(v)] += ((in ? least : -least) - d) / slope * gradient;
     distance[at(v)] = static_cast<float>(in ? least : -least);
     moved_[at(v)] = 1;
+    estimate_[at(v)] = static_cast<float>(d);
   });
 }
 
 void Complex::restore(const std::vector<int32_t>& ids, int threads) {
   for (int32_t v : ids) {
     position[at(v)] = lattice.position(point[at(v)]);
-    distance[at(v)] = 0;
+    distance[at(v)] = estimate_[at(v)];
     moved_[at(v)] = 0;
   }
   position.resize(at(grid_vertices + tree.size()));
