@@ -54,11 +54,14 @@ void Spokes::evaluate(const Group& group, Vec3f x, Lane& out) {
     const V ru = 1 / (ux * ux + uy * uy + uz * uz), rv = 1 / (vx * vx + vy * vy + vz * vz);
     const V rt = 1 / (tx * tx + ty * ty + tz * tz);
     V s = in(group.bc) * r * ru * weight(nx * ux + ny * uy + nz * uz);
+    const V aa = ax * ax + ay * ay + az * az, bb = bx * bx + by * by + bz * bz, cc = cx * cx + cy * cy + cz * cz;
+    const V sum = aa + bb + cc + in(group.ab) + in(group.bc) + in(group.ca);
+    s = less(s, static_cast<float>(shape_weight) / (sum * sum * sum));
     s = less(s, in(group.ca) * r * rv * weight(nx * vx + ny * vy + nz * vz));
     s = less(s, in(group.ab) * r * rt * weight(nx * tx + ny * ty + nz * tz));
-    s = less(s, (cx * cx + cy * cy + cz * cz) * ru * rv * weight(ux * vx + uy * vy + uz * vz));
-    s = less(s, (bx * bx + by * by + bz * bz) * ru * rt * weight(ux * tx + uy * ty + uz * tz));
-    s = less(s, (ax * ax + ay * ay + az * az) * rv * rt * weight(vx * tx + vy * ty + vz * tz));
+    s = less(s, cc * ru * rv * weight(ux * vx + uy * vy + uz * vz));
+    s = less(s, bb * ru * rt * weight(ux * tx + uy * ty + uz * tz));
+    s = less(s, aa * rv * rt * weight(vx * tx + vy * ty + vz * tz));
     s = det > 0 ? s * det * det : V{} - 1;
     std::memcpy(&out[i], &s, sizeof s);
   }

@@ -1,4 +1,5 @@
 // parts_test.cpp — quality, spokes, targets and single operations against slow and plain answers.
+#include "geom/tet_measures.hpp"
 #include "improve/dynamic_mesh.hpp"
 #include "improve/editor.hpp"
 #include "improve/isosurface.hpp"
@@ -19,9 +20,10 @@ Vec3d random_point(double size = 1) {
   return {u(generator), u(generator), u(generator)};
 }
 
-// Smallest sine of the dihedral angles by acos, obtuse ones weighted, squared.
+// Smallest sine of the dihedral angles by acos, obtuse ones weighted, or Joe and Liu's Q weighted; squared.
 double slow_quality(const std::array<Vec3d, 4>& p) {
-  double worst = 2;
+  const double q = joe_liu_q(six_volume(p[0], p[1], p[2], p[3]), edge_sum2(p[0], p[1], p[2], p[3]));
+  double worst = q / 0.30 * std::sin(25 * 3.14159265358979323846 / 180);
   for (size_t i = 0; i < 4; ++i)
     for (size_t j = i + 1; j < 4; ++j) {
       const size_t k = i != 0 ? 0 : j != 1 ? 1 : 2, l = 6 - i - j - k;
@@ -35,7 +37,7 @@ double slow_quality(const std::array<Vec3d, 4>& p) {
 
 } // namespace
 
-TEST_CASE("quality is the smallest weighted sine of the dihedral angles") {
+TEST_CASE("quality is the smallest weighted sine of the dihedral angles, or Joe and Liu's Q") {
   for (int n = 0; n < 1000; ++n) {
     std::array<Vec3d, 4> p{random_point(), random_point(), random_point(), random_point()};
     if (volume6(p[0], p[1], p[2], p[3]) < 0) {
