@@ -171,6 +171,8 @@ bool Editor::split(int32_t e, int i, int j) {
   const int32_t a = m_.element[size_t(e)].v[size_t(i)], b = m_.element[size_t(e)].v[size_t(j)];
   if (room_.vertex.empty() || !ring(e, a, b, ring_) || !has_room(ring_.element.size(), 2 * ring_.element.size()))
     return false;
+  if (target_ && norm(m_.point[size_t(a)] - m_.point[size_t(b)]) < 0.3 * target_->spacing())
+    return false;
   Vertex kind;
   if (!ring_.border.empty()) {
     if (ring_.border.size() != 2 || ring_.label[0] != ring_.label[1])
