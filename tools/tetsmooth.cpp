@@ -4,6 +4,7 @@
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "improve/improve.hpp"
+#include "mesh/carry.hpp"
 #include "mesh/partition.hpp"
 #include <optional>
 #include <sstream>
@@ -53,7 +54,8 @@ Status run_tool(const Options& o, cli::Run& run) {
     grid = formats::read_vdb(file.stream(), file.name());
   }
   cli::InputFile input(o.input);
-  TetMesh mesh = formats::read_vtu(input.stream(), input.name());
+  TetMesh mesh = formats::read_vtu(input.stream(), input.name(), nullptr, formats::CellArrays::keep);
+  const CarriedArrays arrays(mesh);
   run.counts["elements_before"] = mesh.tet.size();
   run.counts["points_before"] = mesh.point.size();
 
@@ -87,6 +89,10 @@ Status run_tool(const Options& o, cli::Run& run) {
 
   run.phase("partition");
   mesh.part = partition(mesh, o.parts, threads);
+  run.phase("carry");
+  arrays.put_into(mesh, threads);
+  if (!arrays.empty())
+    run.note("carried from the nearest element before: " + arrays.names());
   run.phase("write");
   mesh.creator = cli::creator("tetsmooth");
   cli::OutputFile output(o.output);

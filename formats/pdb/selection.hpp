@@ -21,6 +21,14 @@ public:
   bool chain(const std::string& name, const std::string& copy) const;
   bool residue(const gemmi::Residue& r) const { return selection_.matches(r); }
   bool atom(const gemmi::Atom& a) const { return selection_.matches(a); }
+  bool names_chains() const { return !selection_.chain_ids.all; }
+  bool names_residues() const { return !selection_.residue_names.all || numbers_residues(); }
+  bool numbers_residues() const { return !selection_.from_seqid.empty() || !selection_.to_seqid.empty(); }
+  /// Does it ask for what a .hier does not hold: other models than the first, alternative locations, occupancies …?
+  bool beyond_hierarchy() const {
+    return selection_.mdl > 1 || !selection_.altlocs.all || !selection_.entity_types.all ||
+           !selection_.atom_inequalities.empty();
+  }
   /// Å; negative when the selection is no "around".
   double around() const { return around_; }
 

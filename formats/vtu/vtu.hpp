@@ -13,10 +13,15 @@ struct VtuNotes {
   bool boundary_missing = false; ///< label 1 for all
 };
 
+/// What becomes of cell arrays beyond region, boundary and part, and of texts beyond source and creator.
+enum class CellArrays { drop, keep };
+
 /// Any tetrahedral .vtu: ours, or a foreign one (ascii, inline base64 or appended; raw or zlib; Float32/64;
 /// Int32/64; without our arrays: region 1 for all, triangles rebuilt). Throws Error(bad_input), its line names the
-/// broken rule of VTUv1.md; hexahedra and other cells are refused.
-TetMesh read_vtu(std::istream& in, const std::string& file, VtuNotes* notes = nullptr);
+/// broken rule of VTUv1.md; hexahedra and other cells are refused. Kept are arrays of one component that every
+/// piece has, integers that fit 32 bits or reals, and UInt8 arrays of the field data as texts.
+TetMesh read_vtu(std::istream& in, const std::string& file, VtuNotes* notes = nullptr,
+                 CellArrays arrays = CellArrays::drop);
 /// Same mesh, same bytes. The stream's state tells whether all of it was written.
 void write_vtu(std::ostream& out, const TetMesh& mesh);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <istream>
 #include <limits>
+#include <set>
 
 namespace molmesh::formats {
 namespace {
@@ -71,15 +72,20 @@ const char* cell_name(int64_t type) {
 
 class Reader {
 public:
-  Reader(const Document& d, VtuNotes& notes) : d_(d), decoder_(d), notes_(notes) {}
+  Reader(const Document& d, VtuNotes& notes, CellArrays arrays)
+      : d_(d), decoder_(d), notes_(notes), arrays_(arrays) {}
 
   TetMesh read() {
     for (const Piece& p : d_.piece) {
       notes_.region_missing |= !find(p.cell_data, "region");
       notes_.boundary_missing |= !find(p.cell_data, "boundary");
     }
+    if (arrays_ == CellArrays::keep)
+      declare_arrays();
     for (const Piece& p : d_.piece)
       read_piece(p);
+    for (size_t a = 0; a < m_.cell_array.size(); ++a)
+      append(m_.cell_array[a], triangles_[a]);
     if (m_.tet.empty())
       d_.refuse(d_.piece.front().line, "R7", "no tetrahedron");
     if (m_.part.size() != m_.tet.size())
@@ -128,6 +134,7 @@ private:
     m_.region.reserve(tets);
     if (part.tag)
       m_.part.reserve(tets);
+    std::vector<uint8_t> kept(arrays_ == CellArrays::keep ? cells : 0, 0); // 1: tetrahedron, 2: triangle
     int64_t begin = 0;
     for (size_t c = 0; c < cells; ++c) {
       const int64_t end = offsets.integer(c), type = types.integer(c);
@@ -155,6 +162,8 @@ private:
           d_.refuse(p.line, "R10", "over 2^29 tetrahedra");
         m_.tet.push_back({point(0), point(1), point(2), point(3)});
         m_.region.push_back(region.positive(c, 1));
+        if (!kept.empty())
+          kept[c] = 1;
         if (part.tag)
           m_.part.push_back(part.at(c));
       } else if (type == 5) {
@@ -164,6 +173,8 @@ private:
         } else {
           m_.tri.push_back({point(0), point(1), point(2)});
           m_.boundary.push_back(boundary.positive(c, 1));
+          if (!kept.empty())
+            kept[c] = 2;
         }
       } else if (type >= 1 && type <= 4) {
         ++notes_.dropped_cells;
@@ -176,6 +187,57 @@ private:
       }
       begin = end;
     }
+    read_arrays(p, kept);
+  }
+
+  /// The further arrays that every piece has: reals where one piece has reals.
+  void declare_arrays() {
+    static const std::set<std::string> own{"region", "boundary", "part", ""};
+    for (const ArrayTag& first : d_.piece.front().cell_data) {
+      bool everywhere = own.count(first.name) == 0, real = false;
+      for (const Piece& p : d_.piece) {
+        const ArrayTag* a = find(p.cell_data, first.name.c_str());
+        everywhere = everywhere && a && a->components == 1;
+        real |= a && a->type >= ValueType::float32;
+      }
+      for (const CellArray& a : m_.cell_array)
+        everywhere = everywhere && a.name != first.name;
+      if (!everywhere)
+        continue;
+      m_.cell_array.push_back({first.name, {}, {}});
+      real_.push_back(real);
+    }
+    triangles_.resize(m_.cell_array.size());
+  }
+
+  void read_arrays(const Piece& p, const std::vector<uint8_t>& kept) {
+    for (size_t a = 0; a < m_.cell_array.size(); ++a) {
+      const ArrayTag& tag = *find(p.cell_data, m_.cell_array[a].name.c_str());
+      const Column values = column(tag, static_cast<uint64_t>(p.cells), false);
+      for (size_t c = 0; c < kept.size(); ++c) {
+        if (kept[c] == 0)
+          continue;
+        CellArray& to = kept[c] == 1 ? m_.cell_array[a] : triangles_[a];
+        if (real_[a])
+          to.real.push_back(values.is_integer() ? static_cast<double>(values.integer(c)) : values.real(c));
+        else
+          to.integer.push_back(label(tag, c, values.integer(c)));
+      }
+    }
+  }
+
+  int32_t label(const ArrayTag& tag, size_t c, int64_t v) const {
+    if (v < std::numeric_limits<int32_t>::min() || v > std::numeric_limits<int32_t>::max())
+      d_.refuse(tag.line, "R9",
+                "cell " + std::to_string(c) + " has " + tag.name + ' ' + std::to_string(v) +
+                    ", expected a 32-bit label");
+    return static_cast<int32_t>(v);
+  }
+
+  /// Triangles behind the tetrahedra.
+  static void append(CellArray& to, const CellArray& triangles) {
+    to.integer.insert(to.integer.end(), triangles.integer.begin(), triangles.integer.end());
+    to.real.insert(to.real.end(), triangles.real.begin(), triangles.real.end());
   }
 
   void read_field() {
@@ -196,6 +258,11 @@ private:
     }
     m_.source = text("source");
     m_.creator = text("creator");
+    if (arrays_ == CellArrays::keep)
+      for (const ArrayTag& a : d_.field)
+        if (a.type == ValueType::uint8 && a.components == 1 && !a.name.empty() && a.name != "source" &&
+            a.name != "creator" && a.name != "isovalue" && find(d_.field, a.name.c_str()) == &a)
+          m_.named_text.push_back({a.name, text(a.name.c_str())});
   }
 
   /// A label of every cell, if the piece has one.
@@ -205,24 +272,16 @@ private:
       if (tag)
         values = r.column(*tag, static_cast<uint64_t>(p.cells), true);
     }
-    int32_t at(size_t c) const {
-      const int64_t v = values.integer(c);
-      if (v < std::numeric_limits<int32_t>::min() || v > std::numeric_limits<int32_t>::max())
-        refuse(c, v, "a 32-bit label");
-      return static_cast<int32_t>(v);
-    }
+    int32_t at(size_t c) const { return reader.label(*tag, c, values.integer(c)); }
     int32_t positive(size_t c, int32_t standard) const {
       if (!tag)
         return standard;
       const int32_t v = at(c);
       if (v < 1)
-        refuse(c, v, "a positive label");
+        reader.d_.refuse(tag->line, "R9",
+                         "cell " + std::to_string(c) + " has " + tag->name + ' ' + std::to_string(v) +
+                             ", expected a positive label");
       return v;
-    }
-    void refuse(size_t c, int64_t v, const char* expected) const {
-      reader.d_.refuse(tag->line, "R9",
-                       "cell " + std::to_string(c) + " has " + tag->name + ' ' + std::to_string(v) + ", expected " +
-                           expected);
     }
     const Reader& reader;
     const ArrayTag* tag;
@@ -250,20 +309,29 @@ private:
   const Document& d_;
   Decoder decoder_;
   VtuNotes& notes_;
+  CellArrays arrays_;
+  std::vector<bool> real_;           ///< [cell arrays]
+  std::vector<CellArray> triangles_; ///< values of the triangles until all pieces are read
   TetMesh m_;
 };
 
 } // namespace
 
-TetMesh read_vtu(std::istream& in, const std::string& file, VtuNotes* notes) {
+TetMesh read_vtu(std::istream& in, const std::string& file, VtuNotes* notes, CellArrays arrays) {
   const std::string text = read_all(in, file);
   const Document document = parse_document(file, text);
   VtuNotes own;
   VtuNotes& n = notes ? *notes : own;
   n = {};
-  TetMesh mesh = Reader(document, n).read();
-  if (n.boundary_missing)
+  TetMesh mesh = Reader(document, n, arrays).read();
+  if (n.boundary_missing) {
     rebuild_triangles(mesh);
+    for (CellArray& a : mesh.cell_array) { // nothing is known of the new triangles
+      const size_t cells = mesh.tet.size() + mesh.tri.size();
+      a.real.resize(a.real.empty() ? 0 : cells, 0);
+      a.integer.resize(a.integer.empty() ? 0 : cells, 0);
+    }
+  }
   return mesh;
 }
 

@@ -38,7 +38,15 @@ void write_values(std::ostream& out, size_t n, F f) {
   }
 }
 
-Array bytes_array(const char* name, const std::string& s) {
+/// As an attribute's value. Entities in names of foreign files were not resolved, so `&` is left alone.
+std::string escaped(const std::string& name) {
+  std::string s;
+  for (const char c : name)
+    s += c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return s;
+}
+
+Array bytes_array(const std::string& name, const std::string& s) {
   return {"UInt8", name, " NumberOfTuples=\"" + std::to_string(s.size()) + '"', s.size(),
           [&s](std::ostream& out) { write_bytes(out, s.data(), s.size()); }};
 }
@@ -91,14 +99,25 @@ void declare(std::ostream& out, const std::vector<Array>& arrays, uint64_t& end)
 void write_vtu(std::ostream& out, const TetMesh& m) {
   assert(m.region.size() == m.tet.size() && m.boundary.size() == m.tri.size());
   assert(m.part.empty() || m.part.size() == m.tet.size());
-  const std::vector<Array> field = {{"Float64", "isovalue", " NumberOfTuples=\"1\"", sizeof m.isovalue,
-                                     [&](std::ostream& o) { write_bytes(o, &m.isovalue, sizeof m.isovalue); }},
-                                    bytes_array("source", m.source),
-                                    bytes_array("creator", m.creator)};
+  std::vector<Array> field = {{"Float64", "isovalue", " NumberOfTuples=\"1\"", sizeof m.isovalue,
+                               [&](std::ostream& o) { write_bytes(o, &m.isovalue, sizeof m.isovalue); }},
+                              bytes_array("source", m.source),
+                              bytes_array("creator", m.creator)};
+  for (const NamedText& t : m.named_text)
+    field.push_back(bytes_array(escaped(t.name), t.text));
   std::vector<Array> label = {label_array("region", m, &m.region, nullptr),
                               label_array("boundary", m, nullptr, &m.boundary)};
   if (!m.part.empty())
     label.push_back(label_array("part", m, &m.part, nullptr));
+  for (const CellArray& a : m.cell_array) {
+    assert(a.integer.size() + a.real.size() == m.tet.size() + m.tri.size());
+    if (a.real.empty())
+      label.push_back({"Int32", escaped(a.name), "", a.integer.size() * sizeof(int32_t),
+                       [&a](std::ostream& o) { write_vector(o, a.integer); }});
+    else
+      label.push_back({"Float64", escaped(a.name), "", a.real.size() * sizeof(double),
+                       [&a](std::ostream& o) { write_vector(o, a.real); }});
+  }
   const std::vector<Array> point = {{"Float64", "Points", " NumberOfComponents=\"3\"",
                                      m.point.size() * sizeof(Vec3d),
                                      [&](std::ostream& o) { write_vector(o, m.point); }}};
@@ -108,7 +127,7 @@ void write_vtu(std::ostream& out, const TetMesh& m) {
   // meshio 5 finds the owner of a block by its offset while it rewrites the offsets of earlier blocks: only with
   // the blocks in the reverse order of their declarations can no rewritten offset be taken for an original one.
   uint64_t end = 0;
-  for (const auto* list : {&field, &std::as_const(label), &point, &cell})
+  for (const auto* list : {&std::as_const(field), &std::as_const(label), &point, &cell})
     for (const Array& a : *list)
       end += sizeof a.bytes + a.bytes;
   out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
@@ -122,7 +141,7 @@ void write_vtu(std::ostream& out, const TetMesh& m) {
   out << "</Points>\n<Cells>\n";
   declare(out, cell, end);
   out << "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
-  for (const auto* list : {&cell, &point, &std::as_const(label), &field})
+  for (const auto* list : {&cell, &point, &std::as_const(label), &std::as_const(field)})
     for (auto a = list->rbegin(); a != list->rend(); ++a) {
       write_bytes(out, &a->bytes, sizeof a->bytes);
       a->write(out);

@@ -79,6 +79,7 @@ void add_clusters(Field& f, const Hierarchy& h) {
     f.z.push_back(atom.center.z);
     f.peak.push_back(f.decay * atom.radius * atom.radius);
   }
+  f.source = std::move(order);
   for (size_t c = 0; c < f.group.size(); ++c) {
     Box b{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
     double ln = -infinity;

@@ -35,6 +35,7 @@ struct Field {
   double far_error = 0; ///< what all clusters beyond their cutoff2 together add to G anywhere, at most
   /// Atom a: position, and the logarithm of its term at its centre, κ·r². In clusters.
   std::vector<double> x, y, z, peak;
+  std::vector<int64_t> source; ///< [atoms] index in Hierarchy::atom
   /// Clusters: at most `cluster_size` atoms of one innermost group, near each other.
   static constexpr int64_t cluster_size = 16;
   std::vector<int64_t> begin;  ///< [clusters + 1] first atom

@@ -14,6 +14,18 @@ using Tri = std::array<int32_t, 3>; ///< counter-clockwise seen from outside
 enum Region : int32_t { molecule = 1, outside = 2, cavity = 3 };
 enum Boundary : int32_t { surface = 1, box_x0 = 2, box_x1, box_y0, box_y1, box_z0, box_z1 };
 
+/// Further values of every cell, tetrahedra first: integers or reals, the other vector is empty.
+struct CellArray {
+  std::string name;
+  std::vector<int32_t> integer;
+  std::vector<double> real;
+};
+
+/// UTF-8, of the whole mesh: the names that the integers of a CellArray count.
+struct NamedText {
+  std::string name, text;
+};
+
 /// Triangles are exactly the faces between regions and the faces with one tetrahedron. Molecular-surface triangles
 /// point out of region 1, box triangles out of the box. No duplicate or unused point (I6).
 struct TetMesh {
@@ -25,6 +37,8 @@ struct TetMesh {
   std::vector<int32_t> boundary; ///< [tris] Boundary; any positive label of a foreign mesh
   double isovalue = 1;
   std::string source, creator;
+  std::vector<CellArray> cell_array; ///< labels of tetlabel, or of a foreign mesh
+  std::vector<NamedText> named_text;
 };
 
 } // namespace molmesh

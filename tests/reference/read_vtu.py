@@ -30,7 +30,11 @@ def with_vtk(path, e):
     for name in ("region", "boundary", "part"):
         array = grid.GetCellData().GetArray(name)
         check(name, vtk_to_numpy(array) if array else [], e[name])
+    for name, values in e["arrays"].items():
+        check(name, vtk_to_numpy(grid.GetCellData().GetArray(name)), values)
     field = grid.GetFieldData()
+    for name, text in e["texts"].items():
+        check(name, [bytes(vtk_to_numpy(field.GetArray(name))).decode()], [text])
     check("isovalue", [field.GetArray("isovalue").GetValue(0)], [e["isovalue"]])
     for name in ("source", "creator"):
         check(name, [bytes(vtk_to_numpy(field.GetArray(name))).decode()], [e[name]])
@@ -44,6 +48,10 @@ def with_meshio(path, e):
     for name in ("region", "boundary", "part"):
         blocks = mesh.cell_data.get(name, [])
         check(name, [v for block in blocks for v in block], e[name])
+    for name, values in e["arrays"].items():
+        check(name, [v for block in mesh.cell_data[name] for v in block], values)
+    for name, text in e["texts"].items():
+        check(name, [bytes(mesh.field_data[name]).decode()], [text])
     check("isovalue", mesh.field_data["isovalue"], [e["isovalue"]])
     for name in ("source", "creator"):
         check(name, [bytes(mesh.field_data[name]).decode()], [e[name]])

@@ -38,9 +38,14 @@ nlohmann::json expected(const TetMesh& m) {
     if (!m.part.empty())
       part.push_back(0);
   }
-  return {{"points", points},       {"connectivity", connectivity}, {"types", types},
-          {"region", region},       {"boundary", boundary},         {"part", part},
-          {"isovalue", m.isovalue}, {"source", m.source},           {"creator", m.creator}};
+  nlohmann::json arrays = nlohmann::json::object(), texts = nlohmann::json::object();
+  for (const CellArray& a : m.cell_array)
+    a.real.empty() ? arrays[a.name] = a.integer : arrays[a.name] = a.real;
+  for (const NamedText& t : m.named_text)
+    texts[t.name] = t.text;
+  return {{"arrays", arrays},       {"texts", texts},     {"points", points},     {"connectivity", connectivity},
+          {"types", types},         {"region", region},   {"boundary", boundary}, {"part", part},
+          {"isovalue", m.isovalue}, {"source", m.source}, {"creator", m.creator}};
 }
 
 } // namespace
@@ -58,6 +63,14 @@ TEST_CASE("VTK and meshio read our files, whatever their sizes") {
     if (n % 2)
       for (size_t i = 0; i < m.tet.size(); ++i)
         m.part.push_back(int32_t(random() % 5));
+    for (int a = 0; a < n % 5; ++a) {
+      CellArray array{"array " + std::to_string(a), {}, {}};
+      for (size_t c = 0; c < m.tet.size() + m.tri.size(); ++c)
+        a % 2 ? array.real.push_back(double(random() % 1000) / 7)
+              : array.integer.push_back(int32_t(random() % 100) - 50);
+      m.cell_array.push_back(array);
+      m.named_text.push_back({"text_" + std::to_string(a), std::string(random() % 50 + 1, 'y') + "\n"});
+    }
     m.isovalue = double(random() % 100) / 7;
     m.source = std::string(random() % 40 + 1, 'x') + " \xc3\xa9<&>_";
     m.creator = "density2tet 0.1.0";

@@ -66,6 +66,11 @@ TetMesh two_tets() {
   return m;
 }
 
+TetMesh read_arrays(const std::string& text) {
+  std::istringstream in(text);
+  return formats::read_vtu(in, "x.vtu", nullptr, formats::CellArrays::keep);
+}
+
 void check_same(const TetMesh& a, const TetMesh& b) {
   CHECK(a.point == b.point);
   CHECK(a.tet == b.tet);
@@ -220,4 +225,68 @@ TEST_CASE("a random mesh of some size survives the round trip") {
     m.boundary.push_back(int32_t(random() % 7 + 1));
   }
   check_same(read_text(written(m)), m);
+}
+
+TEST_CASE(".vtu: further arrays and texts read back exactly, or are dropped") {
+  TetMesh m = two_tets();
+  const size_t cells = m.tet.size() + m.tri.size();
+  CellArray integer{"residue", {}, {}}, real{"a \"share\"", {}, {}};
+  for (size_t c = 0; c < cells; ++c) {
+    integer.integer.push_back(static_cast<int32_t>(c) * 1000003 - 1);
+    real.real.push_back(1.0 / static_cast<double>(c + 3));
+  }
+  m.cell_array = {integer, real};
+  m.named_text = {{"residue_names", "GLY:1\nALA:2\n"}, {"empty", ""}};
+  const std::string text = written(m);
+  const TetMesh back = read_arrays(text);
+  check_same(back, m);
+  REQUIRE(back.cell_array.size() == 2);
+  CHECK(back.cell_array[0].name == "residue");
+  CHECK(back.cell_array[0].integer == integer.integer);
+  CHECK(back.cell_array[0].real.empty());
+  CHECK(back.cell_array[1].real == real.real);
+  REQUIRE(back.named_text.size() == 2);
+  CHECK(back.named_text[0].text == m.named_text[0].text);
+  CHECK(back.named_text[1].text.empty());
+  CHECK(written(back) == written(read_arrays(written(back))));
+  const TetMesh dropped = read_text(text);
+  check_same(dropped, m);
+  CHECK(dropped.cell_array.empty());
+  CHECK(dropped.named_text.empty());
+}
+
+TEST_CASE(".vtu: arrays of foreign files, in the order of our cells") {
+  for (const fs::path& p : samples("passed")) { // every encoding; vtk-extra-cells has other cells between
+    INFO(p);
+    const TetMesh m = read_arrays(content(p)), plain = read_text(content(p));
+    check_same(m, plain);
+    for (const CellArray& a : m.cell_array)
+      CHECK(a.integer.size() + a.real.size() == m.tet.size() + m.tri.size());
+  }
+  // Triangles before tetrahedra, two pieces, one array not in both, one beyond 32 bits.
+  const auto piece = [](int first, const char* type, const std::string& more) {
+    return "<Piece NumberOfPoints=\"4\" NumberOfCells=\"2\"><Points><DataArray type=\"Float64\" "
+           "NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 "
+           "1</DataArray></Points><Cells><DataArray "
+           "type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 2 1 0 1 2 3</DataArray><DataArray "
+           "type=\"Int32\" "
+           "Name=\"offsets\" format=\"ascii\">3 7</DataArray><DataArray type=\"UInt8\" Name=\"types\" "
+           "format=\"ascii\">5 10</DataArray></Cells><CellData><DataArray type=\"Int32\" Name=\"boundary\" "
+           "format=\"ascii\">1 0</DataArray><DataArray type=\"" +
+           std::string(type) + "\" Name=\"mine\" format=\"ascii\">" + std::to_string(first) + " " +
+           std::to_string(first + 1) + "</DataArray>" + more + "</CellData></Piece>";
+  };
+  const auto file = [](const std::string& pieces) {
+    return "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid>" +
+           pieces + "</UnstructuredGrid></VTKFile>\n";
+  };
+  const std::string once = "<DataArray type=\"Int64\" Name=\"once\" format=\"ascii\">1 99999999999</DataArray>";
+  TetMesh m = read_arrays(file(piece(10, "Int64", once) + piece(20, "UInt8", "")));
+  REQUIRE(m.cell_array.size() == 1);
+  CHECK(m.cell_array[0].integer == std::vector<int32_t>{11, 21, 10, 20});
+  m = read_arrays(file(piece(10, "Int64", "") + piece(20, "Float32", "")));
+  CHECK(m.cell_array[0].real == std::vector<double>{11, 21, 10, 20});
+  std::istringstream in(file(piece(10, "Int64", once)));
+  CHECK_THROWS_WITH(formats::read_vtu(in, "x.vtu", nullptr, formats::CellArrays::keep),
+                    Catch::Contains("R9") && Catch::Contains("once 99999999999"));
 }

@@ -1,0 +1,107 @@
+// hier_selection.cpp — gemmi's chains, residues and atoms made up from the names in a .hier.
+#include "formats/pdb/hier_selection.hpp"
+#include "formats/pdb/near.hpp"
+#include "formats/pdb/parse.hpp"
+#include "formats/pdb/selection.hpp"
+#include "molecule/words.hpp"
+#include <charconv>
+#include <set>
+
+namespace molmesh::formats {
+namespace {
+
+/// "GLY:52A" as gemmi has it; false when the name is none of that kind.
+bool read_residue(const std::string& name, gemmi::Residue& r) {
+  const size_t colon = name.rfind(':');
+  r.name = name.substr(0, colon);
+  if (colon == std::string::npos)
+    return false;
+  const char *begin = name.data() + colon + 1, *end = name.data() + name.size();
+  int number = 0;
+  const auto [rest, error] = std::from_chars(begin, end, number);
+  if (error != std::errc() || end - rest > 1)
+    return false;
+  r.seqid = gemmi::SeqId(number, rest == end ? ' ' : *rest);
+  return true;
+}
+
+/// The name of which chains with these names are copies: "A" for "A_1" and "A_2".
+std::string copied(const std::string& name, const std::set<std::string>& chains) {
+  const size_t bar = name.rfind('_');
+  if (bar == std::string::npos || bar + 1 == name.size() ||
+      name.find_first_not_of("0123456789", bar + 1) != std::string::npos)
+    return name;
+  const std::string base = name.substr(0, bar);
+  return chains.count(base) == 0 && chains.count(base + "_1") && chains.count(base + "_2") ? base : name;
+}
+
+size_t find_level(const Hierarchy& h, const char* name) {
+  size_t l = 0;
+  while (l < h.level.size() && h.level[l].name != name)
+    ++l;
+  return l;
+}
+
+/// Sets `chosen` of all atoms of the groups of level l that take(group) does not take to 0.
+template <class Take>
+void filter(const Hierarchy& h, size_t l, std::vector<uint8_t>& chosen, Take take) {
+  for (const Group& g : h.level[l].group) {
+    if (take(g))
+      continue;
+    int64_t begin = g.begin, end = g.end; // of the level below, down to the atoms
+    for (size_t below = l + 1; below < h.level.size(); ++below) {
+      end = h.level[below].group[static_cast<size_t>(end - 1)].end;
+      begin = h.level[below].group[static_cast<size_t>(begin)].begin;
+    }
+    std::fill(chosen.begin() + begin, chosen.begin() + end, uint8_t{0});
+  }
+}
+
+} // namespace
+
+std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& text, const std::string& where) {
+  const Selection s(text, where, true);
+  const auto refuse = [&](const std::string& expected) {
+    fail_input(where + ": found selection " + in_quotes(text) + ", expected " + expected);
+  };
+  if (s.beyond_hierarchy())
+    refuse("chains, residues and atoms alone: a .hier holds nothing else");
+  std::vector<uint8_t> chosen(h.atom.size(), 1);
+  const size_t chain = find_level(h, "chain"), residue = find_level(h, "residue");
+  if (s.names_chains()) {
+    if (chain == h.level.size())
+      refuse("no chain: the .hier has no level 'chain'");
+    std::set<std::string> chains;
+    for (const Group& g : h.level[chain].group)
+      chains.insert(g.name);
+    filter(h, chain, chosen, [&](const Group& g) { return s.chain(copied(g.name, chains), g.name); });
+  }
+  if (s.names_residues()) {
+    if (residue == h.level.size())
+      refuse("no residue: the .hier has no level 'residue'");
+    gemmi::Residue r;
+    filter(h, residue, chosen,
+           [&](const Group& g) { return (read_residue(g.name, r) || !s.numbers_residues()) && s.residue(r); });
+  }
+  gemmi::Atom atom;
+  for (size_t a = 0; a < h.atom.size(); ++a) {
+    if (!chosen[a])
+      continue;
+    atom.name = h.names[h.atom[a].name];
+    atom.element = gemmi::Element(h.names[h.atom[a].element]);
+    chosen[a] = s.atom(atom);
+  }
+  if (std::find(chosen.begin(), chosen.end(), 1) == chosen.end())
+    refuse("one that some atom fits");
+  if (s.around() > 0) {
+    Near near(s.around());
+    for (size_t a = 0; a < h.atom.size(); ++a)
+      if (chosen[a])
+        near.add(h.atom[a].center);
+    for (size_t a = 0; a < h.atom.size(); ++a)
+      chosen[a] = near.has(h.atom[a].center);
+  }
+  return chosen;
+}
+
+} // namespace molmesh::formats

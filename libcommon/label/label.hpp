@@ -1,0 +1,37 @@
+// label.hpp — which domain, chain, residue and atom makes the density at a place, and what share of it is theirs.
+#pragma once
+#include "molecule/hierarchy.hpp"
+#include <string>
+#include <vector>
+
+namespace molmesh::label {
+
+/// The field is a tree of sums: G(x) = Σ_d F_d(x) over the outermost groups, F = S^P, S(x) = Σ F over a group's
+/// children, g(x) = exp(κ(r² - |x - c|²)) for an atom (equations 1, 4 and 6 of Liao et al. 2013). The share of a
+/// group or atom is its part of G, handed down the tree in proportion to the terms of each sum:
+///
+///     share(d) = F_d / G,   share(child) = share(parent) · F_child / S_parent.
+///
+/// So the shares of all groups of one level add up to 1, those of a group's children to its own. The label of a
+/// place is the outermost group with the largest share, in it the child with the largest share, and so on down to
+/// an atom: the residue lies in the chain, the atom in the residue. Of equal ones the first of the file.
+struct Labels {
+  std::vector<std::string> level;          ///< outermost first, the last is "atom"
+  std::vector<std::vector<int32_t>> index; ///< [level][place] index into Hierarchy::level[l].group, or ::atom; -1
+                                           ///< where G = 0 in logarithms too (10^154 Å away)
+  std::vector<std::vector<double>> share;  ///< [level][place] 0 < share <= 1
+  std::vector<double> ln_field;            ///< [place] ln G
+};
+
+struct Options {
+  double decay = 1;    ///< κ, Å⁻²
+  double isovalue = 1; ///< about what G is where the places are: sets how far atoms are looked for
+  int threads = 1;
+};
+
+/// place: Å. In logarithms throughout, so nothing underflows far from every atom. Shares are
+/// within 1e-6 divided by the smallest product of exponents on a path to the root. Same result at any number of
+/// threads. Throws Error(bad_input) for over 2^31 - 1 atoms.
+Labels find_labels(const Hierarchy& h, const std::vector<Vec3d>& place, const Options& options);
+
+} // namespace molmesh::label

@@ -1,0 +1,100 @@
+// hier_selection_test.cpp — what gemmi's selections select in a .hier.
+#include "error.hpp"
+#include "formats/hier/hier.hpp"
+#include "formats/pdb/hier_selection.hpp"
+#include "formats/pdb/pdb.hpp"
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+
+using namespace molmesh;
+
+namespace {
+
+const char text[] =
+    "hier 1\nlevels chain residue\n"
+    "chain A_1 1\nresidue GLY:1 1\natom N N 0 0 0 1\natom CA C 1 0 0 1\nresidue ALA:2A 1\natom CA C 5 0 0 1\n"
+    "chain A_2 1\nresidue GLY:1 1\natom CA C 9 0 0 1\nchain B 1\nresidue ZN:-3 1\natom ZN ZN 20 0 0 1\n"
+    "residue odd 1\natom CA C 30 0 0 1\n";
+
+Hierarchy hierarchy(const std::string& t = text) {
+  std::istringstream in(t);
+  return formats::read_hier(in, "x.hier");
+}
+
+/// Indices of the atoms that are selected: "0 2".
+std::string selected(const std::string& selection, const Hierarchy& h = hierarchy()) {
+  std::string s;
+  const std::vector<uint8_t> atom = formats::select_atoms(h, selection, "here");
+  for (size_t a = 0; a < atom.size(); ++a)
+    s += atom[a] ? (s.empty() ? "" : " ") + std::to_string(a) : "";
+  return s;
+}
+
+std::string refusal(const std::string& selection, const Hierarchy& h = hierarchy()) {
+  try {
+    selected(selection, h);
+  } catch (const Error& e) {
+    CHECK(e.status == Status::bad_input);
+    return e.what();
+  }
+  return "";
+}
+
+} // namespace
+
+TEST_CASE("Selections on a .hier: chains and their copies, residues, insertion codes, atoms, elements, lenses") {
+  CHECK(selected("*") == "0 1 2 3 4 5");
+  CHECK(selected("//A") == "0 1 2 3");
+  CHECK(selected("//A_2") == "3");
+  CHECK(selected("//B") == "4 5");
+  CHECK(selected("//A/1") == "0 1 3");
+  CHECK(selected("//A/1-2") == "0 1 3");
+  CHECK(selected("//A/1-2.A") == "0 1 2 3");
+  CHECK(selected("//A_1/2.A") == "2");
+  CHECK(selected("//*/(GLY)") == "0 1 3");
+  CHECK(selected("//*/-3") == "0 1 2 3 4"); // all up to 3
+  CHECK(selected("//*/(odd)") == "5");
+  CHECK(selected("/1/A_1/1/CA") == "1");
+  CHECK(selected("//*//[ZN]") == "4");
+  CHECK(selected("around //A_1/1/N 5.0") == "0 1 2");
+  CHECK(selected("around //A_1/1/N 4.9") == "0 1");
+}
+
+TEST_CASE("Selections that a .hier cannot answer are refused with one line") {
+  CHECK(refusal("//C").find("expected one that some atom fits") != std::string::npos);
+  CHECK(refusal("//A/99").find("here: found selection") == 0);
+  CHECK(refusal("//A//CA:A").find("a .hier holds nothing else") != std::string::npos);
+  CHECK(refusal("/2/A").find("a .hier holds nothing else") != std::string::npos);
+  CHECK(refusal("//A;q>0.5").find("a .hier holds nothing else") != std::string::npos);
+  CHECK(refusal("//A///x/y").find("gemmi's syntax") != std::string::npos);
+  CHECK(refusal("around //A -1").find("DISTANCE > 0") != std::string::npos);
+  const Hierarchy plain = hierarchy("hier 1\nlevels\natom CA C 0 0 0 1\n");
+  CHECK(refusal("//A", plain).find("no level 'chain'") != std::string::npos);
+  CHECK(refusal("//*/5", plain).find("no level 'residue'") != std::string::npos);
+  CHECK(selected("*", plain) == "0");
+}
+
+TEST_CASE("A selection finds the same atoms in the .hier as pdb2hier finds in the structure") {
+  const std::string path = MOLMESH_SOURCE_DIR "/tests/data/1tii.pdb";
+  const auto read = [&](const formats::PdbOptions& options) {
+    std::ifstream in(path);
+    std::stringstream out;
+    formats::PdbHierarchy(in, path, options).write(out);
+    return formats::read_hier(out, path);
+  };
+  const Hierarchy all = read({});
+  for (const char* selection :
+       {"//D/45-80", "//A,C", "//*/(GLY)", "//*//CA", "//E/16(SER)", "//!A/1-20/N,C[N]", "//D/45-"}) {
+    INFO(selection);
+    formats::PdbOptions options;
+    options.select = selection;
+    const Hierarchy part = read(options);
+    const std::vector<uint8_t> chosen = formats::select_atoms(all, selection, "here");
+    REQUIRE(std::accumulate(chosen.begin(), chosen.end(), size_t{0}) == part.atom.size());
+    for (size_t a = 0, b = 0; a < chosen.size(); ++a)
+      if (chosen[a])
+        CHECK(all.atom[a].center == part.atom[b++].center);
+  }
+}

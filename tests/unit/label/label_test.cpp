@@ -1,0 +1,109 @@
+// label_test.cpp — labels and shares against the tree of sums computed term by term.
+#include "label/label.hpp"
+#include "unit/density/oracle.hpp"
+#include <catch2/catch.hpp>
+
+using namespace molmesh;
+
+namespace {
+
+/// ln of the term of child i of level l: F of a group, or an atom's term.
+double ln_term(const Hierarchy& h, size_t l, int64_t i, double decay, Vec3d p) {
+  const auto s = static_cast<size_t>(i);
+  if (l == h.level.size())
+    return -decay * (norm2(p - h.atom[s].center) - h.atom[s].radius * h.atom[s].radius);
+  const Group& g = h.level[l].group[s];
+  return g.exponent * test::log_children(h, l + 1, g.begin, g.end, decay, p);
+}
+
+/// The label by its definition, checked with what was found. Near ties either is right.
+void check_place(const Hierarchy& h, const label::Labels& found, size_t place, double decay, Vec3d p,
+                 double within) {
+  int64_t begin = 0, end = static_cast<int64_t>(h.level.empty() ? h.atom.size() : h.level[0].group.size());
+  double ln_share = 0;
+  for (size_t l = 0; l <= h.level.size(); ++l) {
+    const double ln_sum = test::log_children(h, l, begin, end, decay, p);
+    int64_t best = begin;
+    for (int64_t i = begin; i < end; ++i)
+      if (ln_term(h, l, i, decay, p) > ln_term(h, l, best, decay, p))
+        best = i;
+    const int64_t index = found.index[l][place];
+    REQUIRE(index >= begin);
+    REQUIRE(index < end);
+    if (index != best)
+      CHECK(ln_term(h, l, index, decay, p) == Approx(ln_term(h, l, best, decay, p)).margin(1e-9));
+    ln_share += ln_term(h, l, index, decay, p) - ln_sum;
+    CHECK(found.share[l][place] == Approx(std::exp(ln_share)).margin(within));
+    if (l == h.level.size())
+      return;
+    begin = h.level[l].group[static_cast<size_t>(index)].begin;
+    end = h.level[l].group[static_cast<size_t>(index)].end;
+  }
+}
+
+std::vector<Vec3d> places_near(const Hierarchy& h, int n, double spread, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> step(0, spread);
+  std::vector<Vec3d> place;
+  for (int i = 0; i < n; ++i)
+    place.push_back(h.atom[random() % h.atom.size()].center + Vec3d{step(random), step(random), step(random)});
+  return place;
+}
+
+} // namespace
+
+TEST_CASE("Labels and shares are those of the sums, at any depth and with any exponents") {
+  const std::vector<std::vector<double>> exponents = {{},          {0.3},         {0.3, 1},   {0.5, 0.2},
+                                                      {0.05, 0.5}, {0.3, 1, 0.5}, {0.7, 1.5}, {2, 1, 1}};
+  unsigned seed = 1;
+  for (const std::vector<double>& e : exponents) {
+    INFO("levels " << e.size());
+    const Hierarchy h = test::random_chains(4, 12, 6, e, seed++);
+    double power = 1;
+    for (const double p : e)
+      power *= std::min(p, 1.0);
+    for (const double decay : {1.0, 0.4}) {
+      std::vector<Vec3d> place = places_near(h, 150, 1.5, seed), far = places_near(h, 50, 30, seed + 1);
+      place.insert(place.end(), far.begin(), far.end());
+      const label::Labels found = label::find_labels(h, place, {decay, 1, 2});
+      REQUIRE(found.level.size() == e.size() + 1);
+      CHECK(found.level.back() == "atom");
+      for (size_t i = 0; i < place.size(); ++i) {
+        check_place(h, found, i, decay, place[i], 1e-6 / power);
+        const size_t n = h.level.empty() ? h.atom.size() : h.level[0].group.size();
+        const double exact = test::log_children(h, 0, 0, static_cast<int64_t>(n), decay, place[i]);
+        CHECK(found.ln_field[i] == Approx(exact).margin(1e-6));
+      }
+    }
+  }
+}
+
+TEST_CASE("Labels do not depend on the number of threads, nor on the isovalue beyond their error") {
+  const Hierarchy h = test::random_chains(3, 40, 7, {0.3, 1}, 7);
+  const std::vector<Vec3d> place = places_near(h, 5000, 2, 8);
+  const label::Labels one = label::find_labels(h, place, {1, 1, 1}), five = label::find_labels(h, place, {1, 1, 5}),
+                      other = label::find_labels(h, place, {1, 100, 1});
+  for (size_t l = 0; l < one.level.size(); ++l) {
+    CHECK(one.index[l] == five.index[l]);
+    CHECK(one.share[l] == five.share[l]);
+    for (size_t i = 0; i < place.size(); ++i)
+      CHECK(other.share[l][i] == Approx(one.share[l][i]).margin(4e-6));
+  }
+}
+
+TEST_CASE("Nothing underflows far from every atom; of equal structures the first is taken") {
+  Hierarchy h;
+  h.level = {{"chain", {{"A", 1, 0, 1}, {"B", 1, 1, 2}}}, {"residue", {{"X:1", 0.3, 0, 2}, {"X:2", 0.3, 2, 4}}}};
+  h.atom = {{{1, 0, 0}, 1.5}, {{-1, 0, 0}, 1.5}, {{0, 1, 0}, 1.5}, {{0, -1, 0}, 1.5}};
+  const label::Labels l = label::find_labels(h, {{0, 0, 0}, {0, 0, 1000}, {300, 0, 0}, {1e200, 0, 0}}, {1, 1, 1});
+  for (size_t level = 0; level < 3; ++level) {
+    CHECK(l.index[level][0] == 0);
+    CHECK(l.index[level][1] == 0);
+    CHECK(l.share[level][1] == Approx(level == 2 ? 0.25 : 0.5));
+    CHECK(l.index[level][2] == 0);
+    CHECK(l.share[level][2] == Approx(1));
+    CHECK(l.index[level][3] == -1); // squares of such distances are no doubles
+    CHECK(l.share[level][3] == 0);
+  }
+  CHECK(l.ln_field[1] == Approx(-0.3 * 1e6).epsilon(1e-5));
+}

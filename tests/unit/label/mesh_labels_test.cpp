@@ -1,0 +1,147 @@
+// mesh_labels_test.cpp — labels in a mesh: which cells have them, named boundaries, and what tetsmooth carries on.
+#include "error.hpp"
+#include "label/mesh_labels.hpp"
+#include "mesh/adjacency.hpp"
+#include "mesh/carry.hpp"
+#include "unit/mesh/meshes.hpp"
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <numeric>
+#include <random>
+
+using namespace molmesh;
+
+namespace {
+
+/// A box of 4³ cubes, its left half the molecule; two atoms of two residues there, one above the other.
+TetMesh half_box() {
+  return testing::cubes(4, [](Vec3i p) { return p.x < 2 ? 1 : 2; });
+}
+
+Hierarchy two_residues() {
+  Hierarchy h;
+  h.level = {{"chain", {{"A", 1, 0, 2}}}, {"residue", {{"GLY:1", 0.3, 0, 1}, {"SER:2", 0.3, 1, 2}}}};
+  h.atom = {{{1, 2, 1}, 1}, {{1, 2, 3}, 1}};
+  return h;
+}
+
+const CellArray& array(const TetMesh& m, const std::string& name) {
+  const auto a =
+      std::find_if(m.cell_array.begin(), m.cell_array.end(), [&](const CellArray& c) { return c.name == name; });
+  REQUIRE(a != m.cell_array.end());
+  return *a;
+}
+
+double height(const TetMesh& m, size_t cell) {
+  double z = 0;
+  if (cell < m.tet.size())
+    for (const int32_t p : m.tet[cell])
+      z += m.point[static_cast<size_t>(p)].z / 4;
+  else
+    for (const int32_t p : m.tri[cell - m.tet.size()])
+      z += m.point[static_cast<size_t>(p)].z / 3;
+  return z;
+}
+
+void label_mesh(TetMesh& m, const std::vector<label::NamedBoundary>& boundary, label::Patches& patches) {
+  const Hierarchy h = two_residues();
+  const label::Places places = label::places_of(m, 2);
+  label::Labels labels = label::find_labels(h, places.centroid, {1, 1, 2});
+  patches = label::add_patches(m, places, labels, boundary);
+  label::add_labels(m, places, std::move(labels));
+}
+
+} // namespace
+
+TEST_CASE("Molecule and surface are labelled by what is nearest, nothing else is") {
+  TetMesh m = half_box();
+  label::Patches patches;
+  label_mesh(m, {{"upper", {0, 1}}, {"none", {0, 0}}}, patches);
+  const CellArray &residue = array(m, "residue"), &atom = array(m, "atom"), &share = array(m, "residue_share"),
+                  &patch = array(m, "patch"), &chain = array(m, "chain");
+  int64_t upper = 0;
+  for (size_t c = 0; c < m.tet.size() + m.tri.size(); ++c) {
+    const bool tet = c < m.tet.size();
+    const int32_t tag = tet ? m.region[c] : m.boundary[c - m.tet.size()];
+    if (tag != 1) {
+      CHECK(residue.integer[c] == -1);
+      CHECK(share.real[c] == 0);
+    } else {
+      CHECK(chain.integer[c] == 0);
+      CHECK(atom.integer[c] == residue.integer[c]);
+      CHECK(share.real[c] >= 0.5 - 1e-6);
+      if (std::abs(height(m, c) - 2) > 1e-9)
+        CHECK(residue.integer[c] == (height(m, c) > 2));
+    }
+    const bool named = !tet && tag == 1 && atom.integer[c] == 1;
+    upper += named;
+    CHECK(patch.integer[c] == (tet ? 0 : named ? 8 : tag));
+  }
+  CHECK(patches.first == 8);
+  CHECK(patches.count == std::vector<int64_t>{upper, 0});
+  CHECK(upper == 16);
+
+  CHECK_THROWS_AS(label_mesh(m, {}, patches), Error); // a former run's arrays must go first
+}
+
+TEST_CASE("A mesh is labelled anew without a trace of the labels before") {
+  TetMesh once = half_box(), twice = half_box();
+  label::Patches patches;
+  label_mesh(once, {{"all", {1, 1}}, {"upper", {0, 1}}}, patches);
+  CHECK(patches.count == std::vector<int64_t>{16, 16}); // later ones win
+  label_mesh(twice, {{"x", {1, 0}}}, patches);
+  twice.cell_array.push_back({"foreign", std::vector<int32_t>(twice.tet.size() + twice.tri.size(), 5), {}});
+  label::remove_labels(twice);
+  REQUIRE(twice.cell_array.size() == 1);
+  label_mesh(twice, {{"all", {1, 1}}, {"upper", {0, 1}}}, patches);
+  for (const CellArray& a : once.cell_array) {
+    CHECK(array(twice, a.name).integer == a.integer);
+    CHECK(array(twice, a.name).real == a.real);
+  }
+}
+
+TEST_CASE("A level named like an array of the mesh is refused") {
+  for (const char* name : {"region", "boundary", "part", "patch", "mine"}) {
+    TetMesh m = half_box();
+    m.cell_array.push_back({"mine", std::vector<int32_t>(m.tet.size() + m.tri.size()), {}});
+    Hierarchy h = two_residues();
+    h.level[0].name = name;
+    const label::Places places = label::places_of(m, 1);
+    CHECK_THROWS_AS(label::add_labels(m, places, label::find_labels(h, places.centroid, {})), Error);
+  }
+}
+
+TEST_CASE("Values of cells survive a change of the elements: nearest of the same region or label") {
+  TetMesh m = half_box();
+  label::Patches patches;
+  label_mesh(m, {{"upper", {0, 1}}}, patches);
+  const TetMesh before = m;
+  const CarriedArrays carried(m);
+  CHECK(m.cell_array.empty());
+  CHECK(carried.names() == "patch, chain, chain_share, residue, residue_share, atom, atom_share");
+  std::mt19937 random(3); // the same cells in another order
+  std::vector<size_t> tet(m.tet.size()), tri(m.tri.size());
+  std::iota(tet.begin(), tet.end(), size_t{0});
+  std::iota(tri.begin(), tri.end(), size_t{0});
+  std::shuffle(tet.begin(), tet.end(), random);
+  std::shuffle(tri.begin(), tri.end(), random);
+  for (size_t t = 0; t < tet.size(); ++t) {
+    m.tet[t] = before.tet[tet[t]];
+    m.region[t] = before.region[tet[t]];
+  }
+  for (size_t t = 0; t < tri.size(); ++t) {
+    m.tri[t] = before.tri[tri[t]];
+    m.boundary[t] = before.boundary[tri[t]];
+  }
+  carried.put_into(m, 3);
+  for (const CellArray& a : before.cell_array) {
+    const CellArray& now = array(m, a.name);
+    for (size_t c = 0; c < tet.size() + tri.size(); ++c) {
+      const size_t from = c < tet.size() ? tet[c] : tet.size() + tri[c - tet.size()];
+      if (a.real.empty())
+        CHECK(now.integer[c] == a.integer[from]);
+      else
+        CHECK(now.real[c] == a.real[from]);
+    }
+  }
+}

@@ -1,0 +1,109 @@
+// tetlabel.cpp — a mesh (.vtu) and its structure (.hier) to the mesh with the structure's labels.
+#include "cli/file.hpp"
+#include "cli/run.hpp"
+#include "formats/hier/hier.hpp"
+#include "formats/pdb/hier_selection.hpp"
+#include "formats/vtu/names.hpp"
+#include "formats/vtu/vtu.hpp"
+#include "label/mesh_labels.hpp"
+#include <cmath>
+#include <sstream>
+
+using namespace molmesh;
+
+namespace {
+
+struct Options : cli::Common {
+  std::string hierarchy;
+  double decay = 1;
+  std::vector<std::string> boundary;
+};
+
+void describe(CLI::App& app, Options& o) {
+  app.add_option("hierarchy", o.hierarchy, "the structure (.hier) that the mesh was made from")
+      ->type_name("STRUCTURE")
+      ->required();
+  app.add_option("--decay", o.decay, "decay rate of an atom's term, as hier2density had it")
+      ->type_name("Å⁻²")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--boundary", o.boundary,
+                 "NAME=SELECTION: triangles of the molecular surface that belong to these atoms (gemmi's selection "
+                 "syntax, or around SELECTION Å) are a boundary of their own in the array `patch`; later ones win")
+      ->type_name("BOUNDARY")
+      ->allow_extra_args(false);
+}
+
+std::vector<label::NamedBoundary> select(const Options& o, const Hierarchy& h) {
+  std::vector<label::NamedBoundary> boundary;
+  for (const std::string& text : o.boundary) {
+    const size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
+      fail(Status::usage, "--boundary: found '" + text + "', expected NAME=SELECTION");
+    const std::string name = text.substr(0, equals);
+    if (name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") !=
+        std::string::npos)
+      fail(Status::usage, "--boundary: found the name '" + name + "', expected letters, digits, _ and -");
+    for (const label::NamedBoundary& b : boundary)
+      if (b.name == name)
+        fail(Status::usage, "--boundary: found the name '" + name + "' twice");
+    boundary.push_back({name, formats::select_atoms(h, text.substr(equals + 1), "--boundary " + name)});
+  }
+  return boundary;
+}
+
+Status run_tool(const Options& o, cli::Run& run) {
+  if (o.input == "-" && o.hierarchy == "-")
+    fail(Status::usage, "both inputs are standard input, expected at most one");
+  run.phase("read");
+  cli::InputFile structure(o.hierarchy), input(o.input);
+  const Hierarchy h = formats::read_hier(structure.stream(), structure.name());
+  const std::vector<label::NamedBoundary> boundary = select(o, h);
+  TetMesh mesh = formats::read_vtu(input.stream(), input.name(), nullptr, formats::CellArrays::keep);
+
+  run.phase("label");
+  const label::Places places = label::places_of(mesh, o.resolved_threads());
+  label::Labels labels = label::find_labels(h, places.centroid, {o.decay, mesh.isovalue, o.resolved_threads()});
+  run.counts["tetrahedra"] = places.tets;
+  run.counts["triangles"] = static_cast<int64_t>(places.cell.size()) - places.tets;
+  if (const double off = label::median_offset(places, labels, mesh.isovalue); std::fabs(off) > std::log(3.)) {
+    std::ostringstream factor;
+    factor.precision(3);
+    factor << std::exp(off);
+    run.note("half of the surface lies where the density is over " + factor.str() +
+             " times the isovalue, expected about 1: is this the mesh's .hier, and its --decay?");
+  }
+  label::remove_labels(mesh);
+  label::Patches patches;
+  if (!boundary.empty())
+    patches = label::add_patches(mesh, places, labels, boundary);
+  std::map<int32_t, std::string> names;
+  for (size_t b = 0; b < boundary.size(); ++b) {
+    if (patches.count[b] == 0)
+      fail_input("--boundary " + boundary[b].name + ": no triangle of " + input.name() +
+                 "'s surface belongs to it, expected at least one");
+    run.counts["boundary " + boundary[b].name] = patches.count[b];
+    names[patches.first + static_cast<int32_t>(b)] = boundary[b].name;
+  }
+  label::add_labels(mesh, places, std::move(labels));
+  formats::add_level_names(mesh, h);
+  if (!boundary.empty())
+    formats::add_patch_names(mesh, names);
+
+  run.phase("write");
+  const std::string own = ", " + cli::creator("tetlabel"); // tetsmooth looks at who made the mesh
+  if (mesh.creator.size() < own.size() ||
+      mesh.creator.compare(mesh.creator.size() - own.size(), own.size(), own) != 0)
+    mesh.creator += own;
+  cli::OutputFile output(o.output);
+  formats::write_vtu(output.stream(), mesh);
+  output.commit();
+  return Status::good;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  return cli::run_main<Options>(
+      "tetlabel", "Names the structure at every triangle and tetrahedron of a molecule's mesh (.vtu, .hier).", argc,
+      argv, describe, run_tool);
+}
