@@ -90,12 +90,18 @@ bool Editor::borders_allow(int32_t e, int32_t a, int32_t b) {
   return surface_link_holds(a, b, ring_);
 }
 
+bool Editor::is_tiny(int32_t e, int i, int j) const {
+  const auto p = [&](int k) { return m_.point[size_t(m_.element[size_t(e)].v[size_t(k)])]; };
+  return target_ && norm(p(i) - p(j)) < 0.1 * target_->spacing();
+}
+
 bool Editor::contract(int32_t e, int i, int j) {
   const int32_t a = m_.element[size_t(e)].v[size_t(i)], b = m_.element[size_t(e)].v[size_t(j)];
   const Vertex& ka = m_.vertex[size_t(a)];
   if (!may_contract(ka, m_.vertex[size_t(b)]) || !star(a, star_))
     return false;
-  const float before = worst(star_), above = before + 1e-5f + 0.01f * before;
+  const bool tiny = yield < 1 && is_tiny(e, i, j);
+  const float before = worst(star_), above = (tiny ? yield : 1.f) * (before + 1e-9f + 0.01f * before);
   now_.clear();
   for (const int32_t t : star_) {
     const Element& el = m_.element[size_t(t)];
@@ -110,7 +116,7 @@ bool Editor::contract(int32_t e, int i, int j) {
       return false;
     now_.push_back(c);
   }
-  if (lack(now_) > lack(star_))
+  if (lack(now_) > (tiny ? 0.9f : 1.f) * lack(star_))
     return false;
   if (ka.kind != Kind::interior) {
     double length, limit;
@@ -132,7 +138,7 @@ bool Editor::merge(int32_t e, int i, int j) {
   const Vertex &ka = m_.vertex[size_t(a)], &kb = m_.vertex[size_t(b)];
   if (!may_contract(ka, kb) || kb.kind == Kind::fixed || !star(a, star_) || !star(b, star2_))
     return false;
-  const float before = std::min(worst(star_), worst(star2_)), above = before + 1e-5f + 0.01f * before;
+  const float before = std::min(worst(star_), worst(star2_)), above = before + 1e-9f + 0.01f * before;
   const Vec3d pa = m_.point[size_t(a)], pb = m_.point[size_t(b)];
   double length, limit, limit_b;
   gather(star_, a, length, limit);

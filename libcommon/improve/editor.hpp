@@ -59,12 +59,13 @@ public:
 
   // Each tries its operation and tells whether it was done: the worst quality among the elements concerned has
   // risen.
-  bool smooth(int32_t v);                    ///< moves v until its elements reach the goal
-  bool remove_edge(int32_t e, int i, int j); ///< edge v[i] v[j] of element e; flips a surface edge
-  bool swap_face(int32_t e, int i);          ///< face i: two elements become three
-  bool contract(int32_t e, int i, int j);    ///< v[i] goes to v[j]
-  bool merge(int32_t e, int i, int j);       ///< v[i] and v[j] meet where their elements are best
-  bool split(int32_t e, int i, int j);       ///< a new vertex near the middle of the edge
+  bool smooth(int32_t v);                      ///< moves v until its elements reach the goal
+  bool remove_edge(int32_t e, int i, int j);   ///< edge v[i] v[j] of element e; flips a surface edge
+  bool swap_face(int32_t e, int i);            ///< face i: two elements become three
+  bool contract(int32_t e, int i, int j);      ///< v[i] goes to v[j]
+  bool merge(int32_t e, int i, int j);         ///< v[i] and v[j] meet where their elements are best
+  bool split(int32_t e, int i, int j);         ///< a new vertex near the middle of the edge
+  bool is_tiny(int32_t e, int i, int j) const; ///< under a tenth of a spacing
   /// Moves a surface vertex onto the target, all the way or part of it; no element falls under `floor`.
   bool settle(int32_t v, float floor);
 
@@ -73,6 +74,7 @@ public:
   Counts counts;
   float goal = 1; ///< quality that elements are missed by in the deficit
   bool worst_first = true;
+  float yield = 1;  ///< contractions may lower the worst element to this share where the deficit falls by a tenth
   int32_t time = 1; ///< what operations write to DynamicMesh::touched
 
 private:

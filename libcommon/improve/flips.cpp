@@ -10,7 +10,7 @@ constexpr int longest = 8; // vertices of a chain: an edge with a longer ring ra
 
 // A rise worth an operation.
 float aim(float before) {
-  return before + 1e-5f + 0.01f * before;
+  return before + 1e-9f + 0.01f * before;
 }
 
 // Best triangulation of the polygon of a chain of vertices, by its worst element (Klincsek's recursion).

@@ -154,13 +154,14 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   const float goal =
       static_cast<float>(std::max(angle_quality(options.min_dihedral), angle_quality(options.max_dihedral)));
 
-  if (density) {
-    begin("settle");
-    result.counts += schedule.settle(schedule.worst(), kept);
+  const auto settle = [&] {
+    result.counts += schedule.settle(1, kept);
     isosurface->set_offset(chord_offset(m, *isosurface, options.threads));
-    result.counts += schedule.settle(schedule.worst(), kept);
-  }
+    result.counts += schedule.settle(1, kept);
+  };
+
   begin("improve");
+  const float at_first = schedule.worst();
   for (int round = 0; round < options.iterations && schedule.worst() < goal; ++round) {
     const Stage& stage = stages[std::min<size_t>(size_t(round), std::size(stages) - 1)];
     Pass pass;
@@ -169,6 +170,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     pass.cell = stage.cell;
     pass.worst_first = stage.worst_first;
     pass.guard = stage.guard;
+    pass.yield = round == 0 ? 0.25f : 1.f; // clusters far smaller than the grid have to go as a whole
     int64_t done = 0;
     for (int repeat = 0; repeat < 2; ++repeat) {
       const Counts c = schedule.run(pass);
@@ -176,6 +178,8 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
       done += c.total();
     }
     ++result.rounds;
+    if (density && round == 0) // not before: what is squeezed between surface and grid is gone now
+      settle();
     if (density) {
       if (size_t(round) + 1 == refresh_offset)
         isosurface->set_offset(isosurface->offset() + chord_offset(m, *isosurface, options.threads));
@@ -184,10 +188,14 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     if (done == 0 && size_t(round) + 1 >= std::size(stages))
       break;
   }
+  if (density && result.rounds == 0)
+    settle();
   if (density)
     result.off_surface = off_surface(m, *isosurface, options.threads);
-  if (result.counts.total() == 0)
-    return result; // the file that came in, in its own order
+  if (result.counts.total() == 0 || schedule.worst() < at_first) { // the file that came in, in its own order
+    result.counts = {};
+    return result;
+  }
   begin("result");
   TetMesh out = extract(m);
   out.isovalue = mesh.isovalue;

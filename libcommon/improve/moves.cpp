@@ -158,7 +158,7 @@ bool Editor::settle(int32_t v, float floor) {
   Vec3d to = from;
   if (!target_->project(to, guard_.reach * length))
     return false;
-  const float above = std::min(floor, worst(star_)) * 0.999999f;
+  const float now = worst(star_), above = floor >= 1 ? 0.5f * now : std::min(floor, now) * 0.999999f;
   for (double step = 1; step > 0.1; step *= 0.5) {
     m_.point[size_t(v)] = step == 1 ? to : from + step * (to - from);
     if (take(star_, v, from, above, 1e30f))
@@ -185,7 +185,7 @@ bool Editor::split(int32_t e, int i, int j) {
     if (label.curved() && !target_)
       return false;
   }
-  const float before = worst(ring_.element), aim = before + 1e-4f + 0.02f * before;
+  const float before = worst(ring_.element), aim = before + 1e-8f + 0.02f * before;
   double limit = 1;
   now_.clear();
   spokes_.clear(0.5 * (m_.point[size_t(a)] + m_.point[size_t(b)]));

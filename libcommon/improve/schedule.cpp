@@ -12,6 +12,10 @@ constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {0, 2}, {0, 3}, {1, 2
 // One operation on a bad element, the cheap and local ones first. True when something was done.
 bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass& pass) {
   const auto element = [&]() -> const Element& { return m.element[size_t(t)]; };
+  if (pass.yield < 1)
+    for (const auto& [i, j] : edges)
+      if (editor.is_tiny(t, i, j) && (editor.contract(t, i, j) || editor.contract(t, j, i)))
+        return true;
   for (const auto& [i, j] : edges)
     if (editor.remove_edge(t, i, j))
       return true;
@@ -176,6 +180,7 @@ Counts Schedule::run(const Pass& pass) {
   return for_parts(items, part, pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
     editor.goal = pass.goal;
     editor.worst_first = pass.worst_first;
+    editor.yield = pass.yield;
     for (int32_t sweep = 1; sweep <= sweeps && !list.empty(); ++sweep) {
       editor.time = start + sweep;
       std::sort(list.begin(), list.end(), [&](int32_t a, int32_t b) {

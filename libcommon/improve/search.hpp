@@ -33,7 +33,7 @@ bool pattern_search(Spokes& spokes, Vec3d& x, float& best, float goal, double le
     Vec3d y = x + step * d;
     if (!constrain(y))
       return false;
-    const float above = best + 1e-5f + 5e-3f * best;
+    const float above = best + 1e-9f + 5e-3f * best;
     const float q = spokes.worst(y, above);
     if (q <= above || !accept(y))
       return false;
