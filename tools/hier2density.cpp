@@ -2,6 +2,9 @@
 #include "cli/file.hpp"
 #include "cli/progress.hpp"
 #include "cli/run.hpp"
+#include "cuda/density/density.hpp"
+#include "cuda/par/device.hpp"
+#include "cuda/report.hpp"
 #include "density/density.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/vdb/vdb.hpp"
@@ -11,6 +14,7 @@ using namespace molmesh;
 namespace {
 
 struct Options : cli::Common {
+  Options() { require_device = cuda::require_device; }
   double spacing = 0.5;
   int64_t grid = 0;
   std::string margin = "auto";
@@ -65,6 +69,8 @@ density::Options density_options(const Options& o) {
   d.atoms = o.atoms == "all"      ? density::AtomSearch::all
             : o.atoms == "kdtree" ? density::AtomSearch::kdtree
                                   : density::AtomSearch::bvh;
+  if (o.on_device() && d.atoms == density::AtomSearch::kdtree)
+    fail(Status::usage, "--atoms: found kdtree, expected bvh or all with --mode cuda");
   d.threads = o.resolved_threads();
   return d;
 }
@@ -98,7 +104,13 @@ Status run(const Options& o, cli::Run& r) {
   {
     cli::Progress progress("density", "nodes", o.quiet);
     d.progress = [&progress](int64_t done, int64_t total) { progress(done, total); };
-    band = density::compute(h, d, counts);
+    if (o.on_device()) {
+      cuda::DeviceReport device;
+      band = cuda::compute_density(h, d, counts, device);
+      r.counts["device"] = cuda::json(device);
+    } else {
+      band = density::compute(h, d, counts);
+    }
   }
   band.info.creator = cli::creator(r.tool);
   report(r, band, counts);

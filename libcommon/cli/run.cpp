@@ -17,8 +17,11 @@
 namespace molmesh::cli {
 
 int Common::resolved_threads() const {
-  if (mode == "cuda")
-    fail(Status::mode_unavailable, "--mode cuda: not available in this build, use seq or omp");
+  if (on_device()) {
+    if (!require_device)
+      fail(Status::mode_unavailable, "--mode cuda: this program has none, use seq or omp");
+    require_device();
+  }
   if (mode == "seq")
     return 1;
   return threads > 0 ? threads : par::default_threads();

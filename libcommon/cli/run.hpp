@@ -21,7 +21,10 @@ struct Common {
   std::string report;       ///< empty: none
   bool quiet = false, verbose = false;
 
-  /// Threads to use: 1 for seq. Throws Error(mode_unavailable) for cuda, which no tool has yet.
+  /// Set by tools that have a cuda mode: throws Error(mode_unavailable) where there is no device for it.
+  void (*require_device)() = nullptr;
+  bool on_device() const { return mode == "cuda"; }
+  /// Threads to use on the host: 1 for seq. Throws Error(mode_unavailable) for cuda where that cannot be.
   int resolved_threads() const;
 };
 

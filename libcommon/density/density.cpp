@@ -7,7 +7,7 @@
 
 namespace molmesh::density {
 
-Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts) {
+Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const BandFinder& find) {
   SearchOptions s;
   s.isovalue = o.isovalue;
   s.band_lower = o.band_lower;
@@ -31,7 +31,7 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts) {
   counts.margin = margin;
   const GridFrame frame =
       o.grid_points > 0 ? frame_with_points(box, margin, o.grid_points) : frame_with_spacing(box, margin, h);
-  Band band = find_band(f, frame, s, counts.search);
+  Band band = find(f, frame, s, counts.search);
   if (band.block.empty()) {
     char text[160];
     std::snprintf(

@@ -23,8 +23,11 @@ struct Counts {
   double margin = 0; ///< Å, as used
 };
 
+/// Finds the band of a field: find_band, or what does the same on a device.
+using BandFinder = std::function<Band(const Field&, const GridFrame&, const SearchOptions&, SearchCounts&)>;
+
 /// Everything of the band but info.creator. Throws Error(failed) when the wall of a grid with the caller's margin
 /// cuts the surface or nothing reaches the band, Error(usage) when the grid is too large to index.
-Band compute(const Hierarchy& h, const Options& options, Counts& counts);
+Band compute(const Hierarchy& h, const Options& options, Counts& counts, const BandFinder& find = find_band);
 
 } // namespace molmesh::density

@@ -2,7 +2,7 @@
 #include "density/block_kernel.hpp"
 #include "density/density.hpp"
 #include "error.hpp"
-#include "oracle.hpp"
+#include "unit/density/completeness.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <hwy/targets.h>
@@ -14,74 +14,6 @@ namespace {
 BlockGrid compute(const Hierarchy& h, const density::Options& o) {
   density::Counts counts;
   return density::to_block_grid(density::compute(h, o, counts), 1);
-}
-
-/// Worst |G_file - G| over ε·max(1, G) on a sample of the active points.
-double worst_error(const Hierarchy& h, const BlockGrid& g, int samples) {
-  std::mt19937 random(5);
-  double worst = 0;
-  for (int n = 0; n < samples;) {
-    const size_t b = random() % g.corner.size();
-    const int s = static_cast<int>(random() % 512);
-    if (!(g.active[8 * b + static_cast<size_t>(s >> 6)] >> (s & 63) & 1))
-      continue;
-    const Vec3i p = g.corner[b] + Vec3i{s >> 6, s >> 3 & 7, s & 7};
-    const double exact = test::exact_density(h, g.info.decay, g.frame.position(p));
-    worst = std::max(worst, std::abs(g.value[512 * b + static_cast<size_t>(s)] - exact) /
-                                (g.info.tolerance * std::max(1.0, exact)));
-    ++n;
-  }
-  return worst;
-}
-
-/// Every point of the grid by brute force: active exactly on the corners of band cells, the right side elsewhere.
-/// Points within the tolerance of a limit may fall on either side of it.
-void check_complete(const Hierarchy& h, const BlockGrid& g) {
-  const Vec3i n = g.frame.points;
-  const auto at = [&](int x, int y, int z) {
-    return (size_t(x) * size_t(n.y) + size_t(y)) * size_t(n.z) + size_t(z);
-  };
-  std::vector<double> G(size_t(n.x) * size_t(n.y) * size_t(n.z));
-  for (int x = 0; x < n.x; ++x)
-    for (int y = 0; y < n.y; ++y)
-      for (int z = 0; z < n.z; ++z)
-        G[at(x, y, z)] = test::exact_density(h, g.info.decay, g.frame.position(g.frame.lower + Vec3i{x, y, z}));
-  const double slack = g.info.tolerance * std::max(1.0, g.info.band_upper);
-  std::vector<char> surely(G.size()), maybe(G.size());
-  for (int x = 0; x + 1 < n.x; ++x)
-    for (int y = 0; y + 1 < n.y; ++y)
-      for (int z = 0; z + 1 < n.z; ++z) {
-        double lo = 1e300, hi = 0;
-        for (int c = 0; c < 8; ++c) {
-          const double v = G[at(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2))];
-          lo = std::min(lo, v);
-          hi = std::max(hi, v);
-        }
-        for (int c = 0; c < 8; ++c) {
-          const size_t p = at(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2));
-          surely[p] |= lo <= g.info.band_upper - slack && hi >= g.info.band_lower + slack;
-          maybe[p] |= lo <= g.info.band_upper + slack && hi >= g.info.band_lower - slack;
-        }
-      }
-  const BlockIndex index(g);
-  int64_t missed = 0, extra = 0, wrong_side = 0, wrong_value = 0;
-  for (int x = 0; x < n.x; ++x)
-    for (int y = 0; y < n.y; ++y)
-      for (int z = 0; z < n.z; ++z) {
-        const Vec3i p = g.frame.lower + Vec3i{x, y, z};
-        const double exact = G[at(x, y, z)], v = value_at(g, index, p);
-        if (is_active(g, index, p)) {
-          extra += !maybe[at(x, y, z)];
-          wrong_value += std::abs(v - exact) > g.info.tolerance * std::max(1.0, exact);
-        } else {
-          missed += surely[at(x, y, z)];
-          wrong_side += v != (exact > g.info.isovalue ? g.info.inside_value : 0.0);
-        }
-      }
-  CHECK(missed == 0);
-  CHECK(extra == 0);
-  CHECK(wrong_side == 0);
-  CHECK(wrong_value == 0);
 }
 
 void check_equal(const BlockGrid& a, const BlockGrid& b) {
@@ -110,7 +42,7 @@ TEST_CASE("values are within the tolerance for exponents from 0.02 to 4 and any 
         text += std::to_string(p) + " ";
       INFO("exponents, innermost first: " << text << "tolerance " << tolerance);
       REQUIRE(!g.corner.empty());
-      CHECK(worst_error(h, g, 100) <= 1);
+      CHECK(test::worst_error(h, g, 100) <= 1);
     }
 }
 
@@ -119,7 +51,7 @@ TEST_CASE("no band cell is missed and no point is on the wrong side") {
     density::Options o;
     o.spacing = 1.1;
     const Hierarchy h = test::random_chains(2, 15, 6, exponents, 23);
-    check_complete(h, compute(h, o));
+    test::check_complete(h, compute(h, o));
   }
 }
 
@@ -133,14 +65,14 @@ TEST_CASE("molecules far apart, a hollow ball and a cavity of one cell are all f
   far.atom.push_back({{40, 0.2, 0.1}, 1.7});
   density::Options coarse = o;
   coarse.spacing = 1.3;
-  check_complete(far, compute(far, coarse));
+  test::check_complete(far, compute(far, coarse));
 
   Hierarchy hollow;
   for (int i = 0; i < 400; ++i) { // Fibonacci sphere
     const double z = 1 - (2 * i + 1) / 400.0, t = 2.399963229728653 * i, r = std::sqrt(1 - z * z);
     hollow.atom.push_back({{12 * r * std::cos(t), 12 * r * std::sin(t), 12 * z}, 1.7});
   }
-  check_complete(hollow, compute(hollow, o));
+  test::check_complete(hollow, compute(hollow, o));
 
   Hierarchy cage; // atoms on a lattice, one missing
   for (int x = -2; x <= 2; ++x)
@@ -153,7 +85,7 @@ TEST_CASE("molecules far apart, a hollow ball and a cavity of one cell are all f
   o.band_lower = 3;
   o.band_upper = 3.4;
   const BlockGrid g = compute(cage, o);
-  check_complete(cage, g);
+  test::check_complete(cage, g);
 }
 
 TEST_CASE("full and neighbor search, and any number of threads, give the same grid") {
@@ -181,8 +113,8 @@ TEST_CASE("a kd-tree finds what the boxes find; all atoms give the same field wi
     check_equal(compute(h, o), bvh);
     o.atoms = density::AtomSearch::all;
     const BlockGrid all = compute(h, o);
-    CHECK(worst_error(h, all, 200) <= 0.1);
-    check_complete(h, all);
+    CHECK(test::worst_error(h, all, 200) <= 0.1);
+    test::check_complete(h, all);
   }
 }
 
@@ -199,7 +131,7 @@ TEST_CASE("every instruction set of this machine keeps the bound") {
     names.push_back(density::instruction_set());
     INFO(names.back());
     const BlockGrid g = compute(h, o);
-    CHECK(worst_error(h, g, 300) <= 1);
+    CHECK(test::worst_error(h, g, 300) <= 1);
     o.threads = 3;
     check_equal(compute(h, o), g);
     o.threads = 1;

@@ -1,0 +1,18 @@
+// density.cu — the search on the GPU.
+#include "cuda/density/density.hpp"
+#include "cuda/density/search.hpp"
+#include "cuda/par/device.cuh"
+
+namespace molmesh::cuda {
+
+density::Band compute_density(const Hierarchy& h, const density::Options& options, density::Counts& counts,
+                              DeviceReport& report) {
+  DeviceBackend backend;
+  const auto find = [&](const density::Field& f, const GridFrame& frame, const density::SearchOptions& o,
+                        density::SearchCounts& c) { return Search<DeviceBackend>(backend, f, frame, o).run(c); };
+  density::Band band = density::compute(h, options, counts, find);
+  report = {device_name(), backend.most_used(), backend.times()};
+  return band;
+}
+
+} // namespace molmesh::cuda

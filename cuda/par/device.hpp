@@ -1,0 +1,12 @@
+// device.hpp — is there a GPU. The only part of this room that the tools' start sees.
+#pragma once
+#include <string>
+
+namespace molmesh::cuda {
+
+/// Throws Error(mode_unavailable) when this build has no GPU mode or this machine no device that it can run on.
+void require_device();
+/// "NVIDIA H200, 132 multiprocessors, 139 GiB"; what require_device() throws where there is none.
+std::string device_name();
+
+} // namespace molmesh::cuda

@@ -1,0 +1,155 @@
+// host.hpp — the device's algorithms on the host's threads: the same text, so that tests cover it without a GPU.
+#pragma once
+#include "cuda/par/backend.hpp"
+#include "par/par.hpp"
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <numeric>
+
+namespace molmesh::cuda {
+
+class HostBackend {
+public:
+  /// budget: bytes that all arrays together may take, to try what a small device does.
+  explicit HostBackend(int threads = 1, int64_t budget = std::numeric_limits<int64_t>::max())
+      : threads_(threads), budget_(budget) {}
+  HostBackend(const HostBackend&) = delete;
+  HostBackend& operator=(const HostBackend&) = delete;
+
+  template <class T>
+  class Array {
+  public:
+    Array() = default;
+    Array(HostBackend& owner, int64_t n) : owner_(&owner), n_(n) {
+      owner.take(bytes());
+      data_.reset(new T[static_cast<size_t>(n)]);
+    }
+    Array(Array&& o) noexcept { swap(o); }
+    Array& operator=(Array&& o) noexcept {
+      Array(std::move(o)).swap(*this);
+      return *this;
+    }
+    ~Array() {
+      if (owner_)
+        owner_->used_ -= bytes();
+    }
+    T* data() const { return data_.get(); }
+    int64_t size() const { return n_; }
+
+  private:
+    int64_t bytes() const { return n_ * static_cast<int64_t>(sizeof(T)); }
+    void swap(Array& o) noexcept {
+      std::swap(owner_, o.owner_);
+      std::swap(n_, o.n_);
+      std::swap(data_, o.data_);
+    }
+    HostBackend* owner_ = nullptr;
+    int64_t n_ = 0;
+    std::unique_ptr<T[]> data_;
+  };
+
+  template <class T>
+  class Pending {
+  public:
+    explicit Pending(Array<T> a) : array_(std::move(a)) {}
+    const T* get() { return array_.data(); }
+    int64_t size() const { return array_.size(); }
+
+  private:
+    Array<T> array_;
+  };
+
+  template <class T>
+  Array<T> array(int64_t n) {
+    return Array<T>(*this, n);
+  }
+  template <class T>
+  Array<T> filled(int64_t n, T value) {
+    Array<T> a(*this, n);
+    std::fill_n(a.data(), n, value);
+    return a;
+  }
+  template <class T>
+  Array<T> upload(const T* from, int64_t n) {
+    Array<T> a(*this, n);
+    std::copy_n(from, n, a.data());
+    return a;
+  }
+  template <class T>
+  void download(const Array<T>& from, int64_t n, T* to) {
+    std::copy_n(from.data(), n, to);
+  }
+  template <class T>
+  Pending<T> fetch(Array<T> from) {
+    return Pending<T>(std::move(from));
+  }
+
+  template <class Item>
+  void for_n(const char* name, int64_t n, const Item& item, const Work& work = {}) {
+    timed(name, work, [&] { par::for_n(n, threads_, 64, [&](int64_t i) { item(i); }); });
+  }
+  template <class Item>
+  void for_teams(const char* name, int64_t n, const Item& item, const Work& work = {}) {
+    timed(name, work, [&] {
+      par::for_n(n, threads_, 8, [&](int64_t i) {
+        typename Item::Shared shared;
+        item(i, Solo{}, shared);
+      });
+    });
+  }
+  template <class T>
+  T scan(const char* name, T* count, int64_t n) {
+    T sum{};
+    timed(name, {2.0 * double(n) * sizeof(T)}, [&] {
+      for (int64_t i = 0; i < n; ++i) {
+        const T c = count[i];
+        count[i] = sum;
+        sum += c;
+      }
+      count[n] = sum;
+    });
+    return sum;
+  }
+  template <class K, class V>
+  void sort_pairs(const char* name, K* keys, V* values, int64_t n) {
+    timed(name, {2.0 * double(n) * (sizeof(K) + sizeof(V))}, [&] {
+      std::vector<int64_t> order(static_cast<size_t>(n));
+      std::iota(order.begin(), order.end(), int64_t{0});
+      par::sort(order, threads_,
+                [&](int64_t a, int64_t b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
+      const std::vector<K> k(keys, keys + n);
+      const std::vector<V> v(values, values + n);
+      par::for_n(n, threads_, [&](int64_t i) {
+        keys[i] = k[static_cast<size_t>(order[static_cast<size_t>(i)])];
+        values[i] = v[static_cast<size_t>(order[static_cast<size_t>(i)])];
+      });
+    });
+  }
+
+  int64_t room() const { return budget_ - used_; }
+  int64_t most_used() const { return most_; }
+  std::vector<KernelTime> times() { return times_; }
+
+private:
+  void take(int64_t bytes) {
+    if (bytes > room())
+      throw OutOfRoom(bytes, room());
+    used_ += bytes;
+    most_ = std::max(most_, used_);
+  }
+  template <class F>
+  void timed(const char* name, const Work& work, F&& f) {
+    const auto begin = std::chrono::steady_clock::now();
+    f();
+    add_time(times_, name, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), work);
+  }
+
+  int threads_;
+  int64_t budget_, used_ = 0, most_ = 0;
+  std::vector<KernelTime> times_;
+};
+
+} // namespace molmesh::cuda

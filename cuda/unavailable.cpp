@@ -1,0 +1,22 @@
+// unavailable.cpp — what --mode cuda answers in a build without CUDA.
+#include "cuda/density/density.hpp"
+#include "cuda/par/device.hpp"
+#include "error.hpp"
+
+namespace molmesh::cuda {
+
+void require_device() {
+  fail(Status::mode_unavailable, "--mode cuda: not available in this build, use seq or omp");
+}
+
+std::string device_name() {
+  require_device();
+  return {};
+}
+
+density::Band compute_density(const Hierarchy&, const density::Options&, density::Counts&, DeviceReport&) {
+  require_device();
+  return {};
+}
+
+} // namespace molmesh::cuda
