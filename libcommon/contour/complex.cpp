@@ -1,7 +1,6 @@
 // complex.cpp — vertices of the complex: grid points, dual vertices, split cells.
 #include "contour/complex.hpp"
 #include "contour/detail/at.hpp"
-#include "contour/refinement.hpp"
 #include "geom/morton.hpp"
 #include "par/par.hpp"
 #include <algorithm>
@@ -11,6 +10,8 @@ namespace molmesh::contour {
 
 using detail::at;
 namespace {
+
+constexpr double least_share = 0.02; // of an edge between its end and a crossing
 
 Vec3i corner_step(int c) {
   return {c & 1, c >> 1 & 1, c >> 2};
@@ -48,8 +49,9 @@ SplitCell::SplitCell(const CellTopology& t) : topology(t) {
   }
 }
 
-Complex::Complex(const Lattice& l, const Octree& t, const std::vector<SurfaceCell>& c, int threads)
-    : lattice(l), tree(t), cells(c) {
+Complex::Complex(const Lattice& l, const Octree& t, const std::vector<SurfaceCell>& c,
+                 const std::vector<SurfaceSample>& surface, int threads)
+    : lattice(l), tree(t), cells(c), samples(surface) {
   const int32_t leaves = tree.size();
   first_cell.assign(at(leaves), -1);
   side.resize(at(leaves));
@@ -84,47 +86,51 @@ CellTopology Complex::topology(int32_t leaf) const {
   return cell_topology(v);
 }
 
+int32_t Complex::end_cell(int32_t leaf) const {
+  const uint64_t end = tree.key[at(leaf)] + (uint64_t{1} << 3 * tree.level[at(leaf)]);
+  auto c = first_cell[at(leaf)];
+  while (at(c) < cells.size() && cells[at(c)].key < end)
+    ++c;
+  return c;
+}
+
 void Complex::number_grid_vertices(int threads) {
-  // A grid point belongs to the last of the eight octants around it whose leaf has the point as a corner.
-  const auto owner = [&](int32_t leaf, int c, int& owner_corner) {
+  // A grid point belongs to the last of the eight octants around it whose leaf has the point as a corner: leaf and
+  // corner as one number, 8·leaf + corner.
+  const auto owner = [&](int32_t leaf, int c) {
     const Vec3i p = tree.corner(leaf) + tree.extent(leaf) * corner_step(c);
     for (int octant = 7; octant >= 0; --octant) {
       const int32_t other = octant == (7 ^ c) ? leaf : tree.find(p - corner_step(7 ^ octant));
       if (other < 0)
         continue;
       const Vec3i q = p - tree.corner(other);
-      const int32_t s = tree.extent(other);
-      if (q.x % s == 0 && q.y % s == 0 && q.z % s == 0) {
-        owner_corner = (q.x ? 1 : 0) | (q.y ? 2 : 0) | (q.z ? 4 : 0);
-        return other;
-      }
+      const int32_t s = tree.extent(other) - 1;
+      if (((q.x | q.y | q.z) & s) == 0)
+        return 8 * other + ((q.x ? 1 : 0) | (q.y ? 2 : 0) | (q.z ? 4 : 0));
     }
-    return leaf;
+    return 8 * leaf + c;
   };
   const int64_t leaves = tree.size();
-  grid_vertex.assign(at(8 * leaves), -1);
-  std::vector<int32_t> count(at(leaves));
-  std::vector<uint8_t> owned(at(leaves));
+  std::vector<int32_t> owned(at(8 * leaves)), first(at(leaves));
   par::for_n(leaves, threads, [&](int64_t i) {
     for (int c = 0; c < 8; ++c) {
-      int corner = c;
-      if (owner(static_cast<int32_t>(i), c, corner) != i)
-        continue;
-      owned[at(i)] = static_cast<uint8_t>(owned[at(i)] | 1 << c);
-      ++count[at(i)];
+      owned[at(8 * i + c)] = owner(static_cast<int32_t>(i), c);
+      first[at(i)] += owned[at(8 * i + c)] == 8 * i + c;
     }
   });
-  grid_vertices = par::exclusive_scan(count);
+  grid_vertices = par::exclusive_scan(first);
   dual0 = grid_vertices;
+  grid_vertex.resize(at(8 * leaves));
   point.resize(at(grid_vertices));
   position.resize(at(grid_vertices + leaves));
   value.assign(at(grid_vertices + leaves), lattice.isovalue);
   par::for_n(leaves, threads, [&](int64_t i) {
-    int32_t id = count[at(i)];
+    int32_t id = first[at(i)];
+    const auto leaf = static_cast<int32_t>(i);
     for (int c = 0; c < 8; ++c) {
-      if (!(owned[at(i)] >> c & 1))
+      if (owned[at(8 * i + c)] != 8 * i + c)
         continue;
-      const Vec3i p = tree.corner(static_cast<int32_t>(i)) + tree.extent(static_cast<int32_t>(i)) * corner_step(c);
+      const Vec3i p = tree.corner(leaf) + tree.extent(leaf) * corner_step(c);
       grid_vertex[at(8 * i + c)] = id;
       point[at(id)] = p;
       position[at(id)] = lattice.position(p);
@@ -132,17 +138,50 @@ void Complex::number_grid_vertices(int threads) {
       ++id;
     }
   });
-  std::vector<int32_t> resolved = grid_vertex;
   par::for_n(leaves, threads, [&](int64_t i) {
-    for (int c = 0; c < 8; ++c) {
-      if (owned[at(i)] >> c & 1)
-        continue;
-      int corner = c;
-      const int32_t other = owner(static_cast<int32_t>(i), c, corner);
-      resolved[at(8 * i + c)] = grid_vertex[at(int64_t{8} * other + corner)];
-    }
+    for (int c = 0; c < 8; ++c)
+      if (const int32_t o = owned[at(8 * i + c)]; o != 8 * i + c)
+        grid_vertex[at(8 * i + c)] = grid_vertex[at(o)];
   });
-  grid_vertex.swap(resolved);
+}
+
+/// Mean of the surface's crossings with the leaf's edges (the paper's mass centre).
+Vec3d Complex::mean_crossing(int32_t leaf) const {
+  Vec3d sum;
+  int crossings = 0;
+  for (int c = 0; c < 8; ++c)
+    for (int bit = 1; bit < 8; bit *= 2) {
+      const int32_t a = grid_vertex[at(int64_t{8} * leaf + c)], b = grid_vertex[at(int64_t{8} * leaf + (c | bit))];
+      if ((c & bit) || inside(a) == inside(b))
+        continue;
+      sum += crossing(a, b);
+      ++crossings;
+    }
+  return sum / double(crossings);
+}
+
+/// x moved onto the tangent plane of the nearest fine surface in the leaf: the mean of a curved sheet's crossings
+/// lies on its hollow side. Not out of the leaf's box.
+Vec3d Complex::onto_surface(int32_t leaf, Vec3d x) const {
+  const int32_t end = end_cell(leaf);
+  Vec3d nearest, normal;
+  double least = 1e300;
+  for (int32_t c = first_cell[at(leaf)]; c < end; ++c) {
+    const Vec3d foot = lattice.between(samples[at(c)].point);
+    if (const double d = norm2(foot - x); d < least) {
+      least = d;
+      nearest = foot;
+      normal = samples[at(c)].normal;
+    }
+  }
+  const Vec3d moved = x + dot(nearest - x, normal) * normal;
+  const Vec3i corner = tree.corner(leaf);
+  const int32_t extent = tree.extent(leaf);
+  const Vec3d low = lattice.position(corner), size = lattice.position(corner + Vec3i{extent, extent, extent}) - low;
+  for (int a = 0; a < 3; ++a)
+    if (!(std::fabs(moved[a] - low[a] - 0.5 * size[a]) < 0.45 * size[a]))
+      return x;
+  return moved;
 }
 
 void Complex::place_duals(int threads) {
@@ -151,74 +190,34 @@ void Complex::place_duals(int threads) {
   std::vector<int32_t> extra(at(leaves), 0);
   par::for_n(leaves, threads, [&](int64_t i) {
     const auto leaf = static_cast<int32_t>(i);
-    const Vec3i corner = tree.corner(leaf);
     const int32_t extent = tree.extent(leaf);
-    const Vec3d low = lattice.position(corner), high = lattice.position(corner + Vec3i{extent, extent, extent});
     Vec3d& dual_position = position[at(dual(leaf))];
-    const auto fine_centre = [&](const SurfaceCell& cell) {
-      const Vec3i p = morton_point(cell.key);
-      const Vec3d a = lattice.position(p), b = lattice.position(p + Vec3i{1, 1, 1}),
-                  t = mass_centre(cell.value, lattice.isovalue);
-      return Vec3d{a.x + t.x * (b.x - a.x), a.y + t.y * (b.y - a.y), a.z + t.z * (b.z - a.z)};
-    };
     if (side[at(i)] != Side::crossed) {
       // The lattice's own middle plane: seen from a smaller neighbour it is the rim of that neighbour's face.
-      const int32_t half = extent / 2;
-      dual_position = extent > 1 ? lattice.position(corner + Vec3i{half, half, half}) : 0.5 * (low + high);
+      const Vec3i corner = tree.corner(leaf), half{extent / 2, extent / 2, extent / 2};
+      dual_position = extent > 1 ? lattice.position(corner + half)
+                                 : 0.5 * (lattice.position(corner) + lattice.position(corner + Vec3i{1, 1, 1}));
       return;
     }
-    if (extent == 1) {
-      Vec3d sum;
-      int crossings = 0;
-      for (int c = 0; c < 8; ++c)
-        for (int bit = 1; bit < 8; bit *= 2) {
-          const int32_t a = grid_vertex[at(8 * i + c)], b = grid_vertex[at(8 * i + (c | bit))];
-          if ((c & bit) || inside(a) == inside(b))
-            continue;
-          sum += crossing(a, b);
-          ++crossings;
-        }
-      dual_position = sum / double(crossings);
-      const CellTopology t = topology(leaf);
-      if (t.split())
-        extra[at(i)] = 1 + SplitCell(t).pieces + (t.chop >= 0);
+    dual_position = onto_surface(leaf, mean_crossing(leaf));
+    if (extent > 1)
       return;
-    }
-    // Mean of the fine mass centres, moved along the gradient of the nearest onto its tangent plane: the mean of a
-    // curved sheet lies on its hollow side.
-    const uint64_t end = tree.key[at(i)] + (uint64_t{1} << 3 * tree.level[at(i)]);
-    const size_t begin = at(first_cell[at(i)]);
-    size_t stop = begin;
-    Vec3d mean;
-    for (; stop < cells.size() && cells[stop].key < end; ++stop)
-      mean += fine_centre(cells[stop]);
-    mean = mean / double(stop - begin);
-    size_t nearest = begin;
-    for (size_t c = begin; c < stop; ++c)
-      if (norm2(fine_centre(cells[c]) - mean) < norm2(fine_centre(cells[nearest]) - mean))
-        nearest = c;
-    const Vec3d normal = surface_sample(cells[nearest], lattice.isovalue).normal;
-    const Vec3d moved = mean + dot(fine_centre(cells[nearest]) - mean, normal) * normal;
-    bool within = true;
-    for (int a = 0; a < 3; ++a)
-      within =
-          within && moved[a] > low[a] + 0.05 * (high[a] - low[a]) && moved[a] < high[a] - 0.05 * (high[a] - low[a]);
-    dual_position = within ? moved : mean;
+    const CellTopology t = topology(leaf);
+    if (t.split())
+      extra[at(i)] = 1 + SplitCell(t).pieces + (t.chop >= 0);
   });
   const int32_t total = par::exclusive_scan(extra);
   const auto first = static_cast<int32_t>(position.size());
   position.resize(at(first + total));
   value.resize(at(first + total), lattice.isovalue);
-  for (int64_t i = 0; i < leaves; ++i)
-    if ((i + 1 < leaves ? extra[at(i + 1)] : total) > extra[at(i)])
-      split[at(i)] = first + extra[at(i)];
   split_leaf_.assign(at(total), -1);
-  for (int64_t i = 0; i < leaves; ++i)
-    if (split[at(i)] >= 0) {
-      const int32_t end = i + 1 < leaves ? extra[at(i + 1)] : total;
-      for (int32_t k = extra[at(i)]; k < end; ++k)
-        split_leaf_[at(k)] = static_cast<int32_t>(i);
-    }
+  for (int64_t i = 0; i < leaves; ++i) {
+    const int32_t end = i + 1 < leaves ? extra[at(i + 1)] : total;
+    if (end > extra[at(i)])
+      split[at(i)] = first + extra[at(i)];
+    for (int32_t k = extra[at(i)]; k < end; ++k)
+      split_leaf_[at(k)] = static_cast<int32_t>(i);
+  }
   par::for_n(leaves, threads, [&](int64_t i) {
     if (split[at(i)] >= 0)
       place_split(static_cast<int32_t>(i));
@@ -279,6 +278,26 @@ int32_t Complex::piece_dual(int32_t leaf, const SplitCell& s, int f, int off) co
   return -1; // every face has its patches
 }
 
+/// On a coarse edge whose ends have moved: the distances to the surface say about where, the tangent plane at the
+/// nearer of the ends' nearest samples more exactly.
+Vec3d Complex::moved_crossing(int32_t a, int32_t b) const {
+  const Vec3d pa = position[at(a)], along = position[at(b)] - pa;
+  const double da = distance[at(a)], db = distance[at(b)];
+  double share = da != 0 && db != 0 ? da / (da - db) : 0.5;
+  const Vec3d x = pa + share * along;
+  const SurfaceSample* nearest = nullptr;
+  for (int32_t v : {a, b})
+    if (const int32_t k = nearest_[at(v)]; k >= 0) {
+      const SurfaceSample& s = samples[at(k)];
+      if (!nearest || norm2(lattice.between(s.point) - x) < norm2(lattice.between(nearest->point) - x))
+        nearest = &s;
+    }
+  if (nearest)
+    if (const double slope = dot(along, nearest->normal); std::fabs(slope) > 0.3 * norm(along))
+      share = dot(lattice.between(nearest->point) - pa, nearest->normal) / slope;
+  return pa + std::clamp(share, least_share, 1 - least_share) * along;
+}
+
 Vec3d Complex::crossing(int32_t a, int32_t b) const {
   Vec3d pa = position[at(a)], pb = position[at(b)];
   float va = value[at(a)], vb = value[at(b)];
@@ -287,6 +306,8 @@ Vec3d Complex::crossing(int32_t a, int32_t b) const {
     const auto length = [&] {
       return std::max({std::abs(qa.x - qb.x), std::abs(qa.y - qb.y), std::abs(qa.z - qb.z)});
     };
+    if (length() > 1 && (moved_[at(a)] || moved_[at(b)]))
+      return moved_crossing(a, b);
     const bool in = inside(a);
     while (length() > 1) { // one sign change along the edge: halve
       const Vec3i middle{(qa.x + qb.x) / 2, (qa.y + qb.y) / 2, (qa.z + qb.z) / 2};
@@ -297,7 +318,7 @@ Vec3d Complex::crossing(int32_t a, int32_t b) const {
     if (qa == point[at(a)] && qb == point[at(b)]) {
       const double da = distance[at(a)], db = distance[at(b)];
       if (da != 0 && db != 0)
-        return pa + std::clamp(da / (da - db), 0.02, 0.98) * (pb - pa);
+        return pa + std::clamp(da / (da - db), least_share, 1 - least_share) * (pb - pa);
     } else {
       pa = lattice.position(qa);
       pb = lattice.position(qb);

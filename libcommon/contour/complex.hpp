@@ -5,6 +5,7 @@
 #include "contour/lattice.hpp"
 #include "contour/octree.hpp"
 #include "contour/surface_cells.hpp"
+#include "contour/surface_sample.hpp"
 #include <cstdint>
 #include <vector>
 
@@ -33,11 +34,13 @@ struct SplitCell {
 /// Everything known per leaf and per vertex of the complex. Vertex ids: grid points first, then one dual vertex per
 /// leaf (dual0 + leaf), then for each split cell its centre and the dual vertices of its pieces.
 struct Complex {
-  Complex(const Lattice& lattice, const Octree& tree, const std::vector<SurfaceCell>& cells, int threads);
+  Complex(const Lattice& lattice, const Octree& tree, const std::vector<SurfaceCell>& cells,
+          const std::vector<SurfaceSample>& samples, int threads);
 
   const Lattice& lattice;
   const Octree& tree;
   const std::vector<SurfaceCell>& cells;
+  const std::vector<SurfaceSample>& samples; ///< [cells]
 
   std::vector<Side> side;           ///< [leaves]
   std::vector<int32_t> grid_vertex; ///< [8·leaves] vertex id of each corner
@@ -48,7 +51,7 @@ struct Complex {
   std::vector<Vec3d> position; ///< [vertices] Å
   std::vector<float> value;    ///< [vertices] G at grid points and split centres; isovalue elsewhere
   std::vector<Vec3i> point;    ///< [grid vertices] lattice point
-  /// [grid vertices] estimated distance to the surface, Å, positive inside; 0: unknown
+  /// [grid vertices] estimated distance to the surface, Å, positive inside; 0: unknown, or no surface cell's
   std::vector<float> distance;
 
   bool inside(int32_t vertex) const { return value[static_cast<size_t>(vertex)] > lattice.isovalue; }
@@ -67,16 +70,23 @@ struct Complex {
   /// Puts moved grid points back where the lattice has them, and places all dual vertices anew.
   void restore(const std::vector<int32_t>& grid_vertex_ids, int threads);
   bool moved(int32_t vertex) const { return vertex < grid_vertices && moved_[static_cast<size_t>(vertex)]; }
-  /// Where the surface crosses the edge between two vertices on opposite sides, Å. Coarse edges are searched on the
-  /// fine grid.
+  /// Surface cells within a leaf: first_cell[leaf] up to here.
+  int32_t end_cell(int32_t leaf) const;
+  /// Where the surface crosses the edge between two vertices on opposite sides, Å. Coarse edges whose ends have not
+  /// moved are searched on the fine grid.
   Vec3d crossing(int32_t a, int32_t b) const;
 
 private:
   void number_grid_vertices(int threads);
   void keep_distance(int threads);
+  bool estimate_distance(int32_t v, Vec3d foot, double& d, Vec3d& inwards) const;
   void place_duals(int threads);
+  Vec3d mean_crossing(int32_t leaf) const;
+  Vec3d moved_crossing(int32_t a, int32_t b) const;
+  Vec3d onto_surface(int32_t leaf, Vec3d x) const;
   void place_split(int32_t leaf);
   std::vector<uint8_t> moved_;
+  std::vector<int32_t> nearest_;    ///< [grid vertices] nearest sample in the leaves around, -1: none
   std::vector<float> estimate_;     ///< [grid vertices] distance before the move
   std::vector<int32_t> split_leaf_; ///< [vertices after the leaves' duals]
 };

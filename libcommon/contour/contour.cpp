@@ -6,6 +6,7 @@
 #include "contour/elements.hpp"
 #include "contour/octree.hpp"
 #include "contour/refinement.hpp"
+#include "contour/relax.hpp"
 #include "contour/surface_cells.hpp"
 #include "error.hpp"
 #include "par/par.hpp"
@@ -118,9 +119,11 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   refine_options.adapt = options.adapt;
   refine_options.inside = options.meshed != Options::exterior;
   refine_options.outside = with_outside;
-  const Octree tree(lattice.cells, lattice.top_level, refine(lattice, cells, refine_options, threads), threads);
+  const std::vector<SurfaceSample> samples = surface_samples(cells, lattice.isovalue, threads);
+  const Octree tree(lattice.cells, lattice.top_level, Refinement(lattice, cells, samples, refine_options, threads),
+                    threads);
   on_phase("dual vertices");
-  Complex complex(lattice, tree, cells, threads);
+  Complex complex(lattice, tree, cells, samples, threads);
   refuse_surface_at_wall(complex);
   on_phase("elements");
   const bool on_inside = refine_options.inside || options.drop_below > 0,
@@ -136,6 +139,7 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
     summary.restored_points += static_cast<int64_t>(spoiling.size());
     elements = make_elements(complex, on_inside, on_outside, threads);
   }
+  relax(elements, threads);
   on_phase("regions");
   RegionOptions region_options;
   region_options.fill_cavities = options.fill_cavities;

@@ -13,7 +13,7 @@ namespace molmesh::contour {
 struct Options {
   enum Meshed { interior, exterior, both } meshed = interior;
   BoxRequest box;
-  double adapt = 0.25; ///< allowed distance from the mean plane, in grid spacings; 0: uniform
+  double adapt = 0.1; ///< allowed distance from the mean plane, in grid spacings; 0: uniform
   bool fill_cavities = false;
   double drop_below = 0; ///< Å³, 0: nothing
   int threads = 1;

@@ -4,40 +4,31 @@
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace molmesh::contour {
 
 using detail::at;
 namespace {
 
-/// Grid points nearer than this (in spacings) are moved away from the surface
+/// Grid points nearer than this (in the edges of the smallest leaf round them) are moved away from the surface
 /// along the gradient: slivers come from grid points next to it (Liang & Zhang, Engineering with Computers 2014).
 constexpr double least_distance = 0.3;
 
+/// Nearer than this (in fine spacings) the gradient at the grid point tells the distance better than the nearest
+/// sample does.
+constexpr double gradient_reach = 0.7;
+
+/// Square of the gradient's part within a wall below which a grid point on it does not move.
+constexpr double least_along = 0.5;
+
 } // namespace
 
-void Complex::keep_distance(int threads) {
-  distance.assign(at(grid_vertices), 0);
-  moved_.assign(at(grid_vertices), 0);
-  estimate_.assign(at(grid_vertices), 0);
-  // Of the surface cells' grid points only those with eight fine cells round them move: the centre of a larger cell
-  // looks past its smaller neighbours' grid points by no margin.
-  std::vector<uint8_t> fine(at(grid_vertices), 0), near(at(grid_vertices), 0);
-  for (int32_t leaf = 0; leaf < tree.size(); ++leaf) {
-    for (int c = 0; c < 8; ++c) {
-      const size_t v = at(grid_vertex[at(int64_t{8} * leaf + c)]);
-      fine[v] = static_cast<uint8_t>(fine[v] + (tree.level[at(leaf)] == 0));
-      near[v] = near[v] || side[at(leaf)] == Side::crossed;
-    }
-  }
-  const double h = lattice.grid().frame.spacing;
-  par::for_n(grid_vertices, threads, [&](int64_t v) {
-    if (!near[at(v)])
-      return;
-    const Vec3i p = point[at(v)];
-    const double here = value[at(v)];
-    if (!(here > 0) || !lattice.active(p))
-      return;
+/// d: distance to the surface (Å, positive inside); inwards: unit. foot: the nearest sample (Å).
+bool Complex::estimate_distance(int32_t v, Vec3d foot, double& d, Vec3d& inwards) const {
+  const Vec3i p = point[at(v)];
+  const double here = value[at(v)];
+  if (here > 0 && lattice.active(p)) {
     // Gradient of log G, from whichever neighbours the band knows.
     Vec3d gradient;
     for (int a = 0; a < 3; ++a) {
@@ -56,18 +47,66 @@ void Complex::keep_distance(int threads) {
       }
       gradient[a] = n ? sum / n : 0;
     }
-    const double slope = norm(gradient);
-    if (!(slope > 0))
+    if (const double slope = norm(gradient); slope > 0) {
+      d = std::log(here / lattice.isovalue) / slope;
+      inwards = gradient / slope;
+      if (std::fabs(d) <= gradient_reach * lattice.grid().frame.spacing)
+        return true;
+    }
+  }
+  const double sign = inside(v) ? 1 : -1;
+  const Vec3d from = sign * (position[at(v)] - foot);
+  const double length = norm(from);
+  if (!(length > 0))
+    return false;
+  d = sign * length;
+  inwards = from / length;
+  return true;
+}
+
+void Complex::keep_distance(int threads) {
+  distance.assign(at(grid_vertices), 0);
+  moved_.assign(at(grid_vertices), 0);
+  estimate_.assign(at(grid_vertices), 0);
+  std::vector<int32_t> least_extent(at(grid_vertices), std::numeric_limits<int32_t>::max());
+  nearest_.assign(at(grid_vertices), -1);
+  std::vector<float> nearest_d2(at(grid_vertices), std::numeric_limits<float>::max());
+  for (int32_t leaf = 0; leaf < tree.size(); ++leaf) {
+    const bool crossed = side[at(leaf)] == Side::crossed;
+    const int32_t end = crossed ? end_cell(leaf) : 0;
+    for (int c = 0; c < 8; ++c) {
+      const size_t v = at(grid_vertex[at(int64_t{8} * leaf + c)]);
+      least_extent[v] = std::min(least_extent[v], tree.extent(leaf));
+      for (int32_t k = first_cell[at(leaf)]; crossed && k < end; ++k) {
+        const auto d2 = static_cast<float>(norm2(samples[at(k)].point - to_double(point[v])));
+        if (d2 < nearest_d2[v]) {
+          nearest_d2[v] = d2;
+          nearest_[v] = k;
+        }
+      }
+    }
+  }
+  const double h = lattice.grid().frame.spacing;
+  par::for_n(grid_vertices, threads, [&](int64_t i) {
+    const auto v = static_cast<int32_t>(i);
+    double d;
+    Vec3d inwards;
+    if (nearest_[at(v)] < 0 ||
+        !estimate_distance(v, lattice.between(samples[at(nearest_[at(v)])].point), d, inwards))
       return;
-    const double d = std::log(here / lattice.isovalue) / slope, least = least_distance * h;
-    distance[at(v)] = static_cast<float>(d);
-    if (std::fabs(d) >= least || fine[at(v)] != 8)
+    distance[at(v)] = estimate_[at(v)] = static_cast<float>(d);
+    const double least = (inside(v) ? 1 : -1) * least_distance * h * least_extent[at(v)];
+    if (std::fabs(d) >= std::fabs(least))
       return;
-    const bool in = inside(static_cast<int32_t>(v));
-    position[at(v)] += ((in ? least : -least) - d) / slope * gradient;
-    distance[at(v)] = static_cast<float>(in ? least : -least);
+    for (int a = 0; a < 3; ++a) // walls stay plane
+      if (point[at(v)][a] == 0 || point[at(v)][a] == lattice.cells[a])
+        inwards[a] = 0;
+    const double along = norm2(inwards);
+    if (along < least_along)
+      return;
+    position[at(v)] += (least - d) / along * inwards;
+    distance[at(v)] = static_cast<float>(least);
     moved_[at(v)] = 1;
-    estimate_[at(v)] = static_cast<float>(d);
   });
 }
 

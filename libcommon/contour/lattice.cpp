@@ -9,6 +9,9 @@ namespace {
 
 constexpr int32_t most_cells = 1 << 20; // a Morton key holds 21 bits an axis
 
+/// How much spacings beyond the grid may stretch or shrink, as a share, for the walls to lie where asked.
+constexpr double most_stretch = 0.3;
+
 /// Largest level whose cells are no longer than half of `extent` cells; at most 12.
 int level_for(double extent) {
   int level = 0;
@@ -78,12 +81,17 @@ Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls)
            "--box: found " + std::to_string(extent) + " grid spacings along an axis, expected fewer than 524288");
     least = std::min(least, extent);
   }
-  top_level = level_for(least);
-  for (int a = 0; a < 3; ++a)
-    plan_axis(a, lower[a], upper[a], frame.lower[a], grid_last[a], request.kind != BoxRequest::automatic);
+  const bool exact = request.kind != BoxRequest::automatic;
+  for (top_level = level_for(least);; --top_level) {
+    bool whole = true;
+    for (int a = 0; a < 3; ++a)
+      whole = plan_axis(a, lower[a], upper[a], frame.lower[a], grid_last[a], exact) && whole;
+    if (whole || top_level == 0)
+      return;
+  }
 }
 
-void Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_t last, bool exact) {
+bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_t last, bool exact) {
   const double h = grid_.frame.spacing, origin = grid_.frame.origin[a];
   const double low = (lower - origin) / h, high = (upper - origin) / h; // in grid indices
   const int32_t unit = 1 << top_level;
@@ -97,16 +105,20 @@ void Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
     cut.plane = static_cast<int32_t>(std::floor(wall));
     cut.share = wall - cut.plane;
   }
-  // A whole number of the largest cells, so that no layer of small ones lines the walls. Where the walls are exact,
-  // planes beyond the grid stretch for it, if there is room to.
-  const int32_t missing = (unit - (end - begin) % unit) % unit;
-  if (!exact) {
-    begin -= missing / 2;
-    end += missing - missing / 2;
-  } else if (high - last >= missing) {
-    end += missing;
-  } else if (first - low >= missing) {
-    begin -= missing;
+  // A whole number of the largest cells, so that no layer of small ones lines the walls: spacings beyond the grid
+  // stretch or shrink for it. Between two walls that cut the grid nothing can give way.
+  const int32_t rest = (end - begin) % unit;
+  const int32_t below = std::max(0, first - begin), beyond = below + std::max(0, end - last);
+  bool whole = true;
+  if (rest != 0 && !exact) {
+    begin -= (unit - rest) / 2;
+    end += (unit - rest) - (unit - rest) / 2;
+  } else if (rest != 0 && beyond > 0) {
+    const int32_t change = 2 * rest < unit ? -rest : unit - rest;
+    whole = std::abs(change) <= most_stretch * beyond;
+    const auto low_change = static_cast<int32_t>(std::lround(double(change) * below / beyond));
+    begin -= low_change;
+    end += change - low_change;
   }
   cells[a] = end - begin;
   base_[a] = begin;
@@ -114,8 +126,8 @@ void Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
   x.resize(static_cast<size_t>(cells[a]) + 1);
   for (int32_t i = 0; i <= cells[a]; ++i)
     x[static_cast<size_t>(i)] = origin + h * (begin + i);
-  if (!exact)
-    return;
+  if (!exact || !whole)
+    return whole;
   if (begin < first) {
     const double anchor = origin + h * first, step = (anchor - lower) / (first - begin);
     for (int32_t i = begin; i < first; ++i)
@@ -128,6 +140,7 @@ void Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
   }
   x.front() = lower; // to the last bit
   x.back() = upper;
+  return true;
 }
 
 bool Lattice::cuts() const {

@@ -2,6 +2,7 @@
 #pragma once
 #include "density/block_grid.hpp"
 #include "geom/vec.hpp"
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -37,6 +38,16 @@ public:
     return {axis_[0][static_cast<size_t>(p.x)], axis_[1][static_cast<size_t>(p.y)],
             axis_[2][static_cast<size_t>(p.z)]};
   }
+  /// Between lattice points, each axis by itself; p within 0 … cells.
+  Vec3d between(Vec3d p) const {
+    Vec3d x;
+    for (int a = 0; a < 3; ++a) {
+      const auto i = std::min(static_cast<size_t>(p[a]), axis_[static_cast<size_t>(a)].size() - 2);
+      const double* at = &axis_[static_cast<size_t>(a)][i];
+      x[a] = at[0] + (p[a] - static_cast<double>(i)) * (at[1] - at[0]);
+    }
+    return x;
+  }
   const BlockGrid& grid() const { return grid_; }
   const BlockIndex& index() const { return index_; }
   Vec3i base() const { return base_; }
@@ -53,7 +64,8 @@ private:
     double share = 0;  ///< of the plane above
   };
   float grid_value(Vec3i grid_index) const { return value_at(grid_, index_, grid_index); }
-  void plan_axis(int axis, double lower, double upper, int32_t first, int32_t last, bool exact);
+  /// False when the axis does not divide into cells of top_level.
+  bool plan_axis(int axis, double lower, double upper, int32_t first, int32_t last, bool exact);
 
   const BlockGrid& grid_;
   BlockIndex index_;

@@ -20,7 +20,7 @@ uint64_t mix(uint64_t key) {
 
 /// Walks below one node; `next` holds, per level, the position in refined[level] that the walk has reached.
 struct Walk {
-  const RefinedNodes& refined;
+  const std::vector<std::vector<uint64_t>>& refined;
   Vec3i cells;
   std::vector<size_t> next;
   std::vector<uint64_t> key;
@@ -71,8 +71,8 @@ void append_parents_of_neighbours(const std::vector<uint64_t>& nodes, Vec3i node
 
 } // namespace
 
-Octree::Octree(Vec3i cells, int top_level, RefinedNodes refined, int threads) : cells_(cells) {
-  refined.resize(static_cast<size_t>(top_level) + 1);
+Octree::Octree(Vec3i cells, int top_level, const Refine& refine, int threads) : cells_(cells) {
+  std::vector<std::vector<uint64_t>> refined(static_cast<size_t>(top_level) + 1); // per level, ascending
   const auto nodes_per_axis = [&](int l) {
     const auto up = [&](int32_t n) { return (n + (1 << l) - 1) >> l; };
     return Vec3i{up(cells.x), up(cells.y), up(cells.z)};
@@ -91,6 +91,8 @@ Octree::Octree(Vec3i cells, int top_level, RefinedNodes refined, int threads) : 
         for (p[c] = 0; p[c] < n[c]; ++p[c])
           here.push_back(morton(p));
     }
+    sort_unique(here, threads);
+    refine(l, here);
     sort_unique(here, threads);
     if (l < top_level)
       append_parents_of_neighbours(here, nodes_per_axis(l + 1), refined[static_cast<size_t>(l) + 1]);

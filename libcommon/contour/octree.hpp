@@ -4,18 +4,19 @@
 #include "geom/vec.hpp"
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace molmesh::contour {
 
-/// Nodes that must have children, per level (1 … top): Morton keys of the lower corner shifted right by 3·level,
-/// in any order, with repetitions.
-using RefinedNodes = std::vector<std::vector<uint64_t>>;
+/// Called once for each level 1 … top, with the nodes of that level that have children already for balance: Morton
+/// keys of the lower corner shifted right by 3·level. Appends those that must have them too.
+using Refine = std::function<void(int level, std::vector<uint64_t>& nodes)>;
 
 class Octree {
 public:
-  /// cells: size of the domain in fine cells; leaves never reach beyond it. refined[l] for l ≤ top_level.
-  Octree(Vec3i cells, int top_level, RefinedNodes refined, int threads);
+  /// cells: size of the domain in fine cells; leaves never reach beyond it.
+  Octree(Vec3i cells, int top_level, const Refine& refine, int threads);
 
   int32_t size() const { return static_cast<int32_t>(key.size()); }
   /// The leaf that holds fine cell p, or -1 beyond the domain.

@@ -1,8 +1,9 @@
 // refinement.hpp — which octree nodes must have children: where the surface needs its fine cells.
 #pragma once
 #include "contour/lattice.hpp"
-#include "contour/octree.hpp"
 #include "contour/surface_cells.hpp"
+#include "contour/surface_sample.hpp"
+#include <cstdint>
 #include <vector>
 
 namespace molmesh::contour {
@@ -14,23 +15,24 @@ struct RefineOptions {
   bool inside = true, outside = true; ///< regions to mesh
 };
 
-/// A node with surface cells in it may be one cell only when its surface is one sheet near enough to a plane, and
-/// when merging keeps the topology: every child may be one cell, and the signs at the middles of its edges, faces
-/// and volume each agree with a corner of that edge, face or volume (Ju et al. 2002, the paper's reference 22).
-RefinedNodes refine(const Lattice& lattice, const std::vector<SurfaceCell>& cells, const RefineOptions& options,
-                    int threads);
+/// A node has children where merging its surface cells is not allowed (see merging.hpp), and where the surface
+/// passes close to a face with children behind. Keeps references.
+class Refinement {
+public:
+  Refinement(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
+             const std::vector<SurfaceSample>& samples, const RefineOptions& options, int threads);
+  /// nodes: those of this level (Morton keys shifted right by 3·level) that have children already; appends all that
+  /// must have them too, some perhaps twice.
+  void operator()(int level, std::vector<uint64_t>& nodes) const;
 
-/// Crossing of the surface with the straight line between two neighbouring values, as a share of the way from a to
-/// b: log G is interpolated, since G falls exponentially. Kept away from both ends.
-double crossing_share(double a, double b, double isovalue);
-
-/// Surface of one fine cell: its mass centre (in fine spacings, lattice coordinates) and unit gradient.
-struct SurfaceSample {
-  Vec3d point, normal;
+private:
+  void spread(int level, const std::vector<int64_t>& begin, std::vector<uint64_t>& nodes) const;
+  const Lattice& lattice_;
+  const std::vector<SurfaceCell>& cells_;
+  const std::vector<SurfaceSample>& samples_;
+  RefineOptions options_;
+  int threads_;
+  std::vector<int8_t> merged_;
 };
-SurfaceSample surface_sample(const SurfaceCell& cell, double isovalue);
-
-/// Mean of the surface's crossings with the cell's edges, in cell coordinates 0..1 (the paper's mass centre).
-Vec3d mass_centre(const float value[8], double isovalue);
 
 } // namespace molmesh::contour

@@ -18,7 +18,7 @@ struct Polygon {
 };
 
 /// Volumes below this share of the cube of the face's shortest edge get a face point instead.
-constexpr double least_volume = 0.03;
+constexpr double least_volume = 0.003;
 
 /// The same between boxes of one size, whose grid points may have moved.
 constexpr double least_moved_volume = 1e-4;

@@ -1,0 +1,22 @@
+// surface_sample.hpp — where the surface passes through a fine cell, and which way it faces.
+#pragma once
+#include "contour/surface_cells.hpp"
+#include "geom/vec.hpp"
+#include <vector>
+
+namespace molmesh::contour {
+
+/// Surface of one fine cell: the mean of its crossings with the cell's edges (the paper's mass centre), in lattice
+/// coordinates, and the unit gradient of G, inwards; zero where it vanishes.
+struct SurfaceSample {
+  Vec3d point, normal;
+};
+
+/// One per cell, in the same order.
+std::vector<SurfaceSample> surface_samples(const std::vector<SurfaceCell>& cells, float isovalue, int threads);
+
+/// Crossing of the surface with the straight line between two neighbouring values, as a share of the way from a to
+/// b: log G is interpolated, since G falls exponentially. Kept away from both ends.
+double crossing_share(double a, double b, double isovalue);
+
+} // namespace molmesh::contour
