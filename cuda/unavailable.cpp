@@ -1,5 +1,6 @@
 // unavailable.cpp — what --mode cuda answers in a build without CUDA.
 #include "cuda/density/density.hpp"
+#include "cuda/improve/improve.hpp"
 #include "cuda/par/device.hpp"
 #include "error.hpp"
 
@@ -15,6 +16,12 @@ std::string device_name() {
 }
 
 density::Band compute_density(const Hierarchy&, const density::Options&, density::Counts&, DeviceReport&) {
+  require_device();
+  return {};
+}
+
+improve::Result improve_mesh(TetMesh&, const BlockGrid*, const improve::Options&,
+                             const std::function<void(const std::string&)>&, DeviceReport&) {
   require_device();
   return {};
 }

@@ -1,6 +1,9 @@
 // tetsmooth.cpp — tetrahedral mesh (.vtu) to a better one: every element good enough to solve on.
 #include "cli/file.hpp"
 #include "cli/run.hpp"
+#include "cuda/improve/improve.hpp"
+#include "cuda/par/device.hpp"
+#include "cuda/report.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "improve/improve.hpp"
@@ -14,6 +17,7 @@ using namespace molmesh;
 namespace {
 
 struct Options : cli::Common {
+  Options() { require_device = cuda::require_device; }
   std::string density;
   int iterations = 15, parts = 8;
   double min_dihedral = 0, max_dihedral = 180; // degrees asked for
@@ -68,7 +72,13 @@ Status run_tool(const Options& o, cli::Run& run) {
     options.sharp = 180; // an isosurface is smooth: folds of its first mesh are no features
   improve::Result result;
   try {
-    result = improve::improve(mesh, grid ? &*grid : nullptr, options, [&](const std::string& p) { run.phase(p); });
+    const auto phase = [&](const std::string& p) { run.phase(p); };
+    const BlockGrid* const density = grid ? &*grid : nullptr;
+    cuda::DeviceReport device;
+    result = o.on_device() ? cuda::improve_mesh(mesh, density, options, phase, device)
+                           : improve::improve(mesh, density, options, phase);
+    if (o.on_device())
+      run.counts["device"] = cuda::json(device);
   } catch (const Error& e) {
     fail(e.status, input.name() + ": " + e.what());
   }

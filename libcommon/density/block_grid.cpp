@@ -1,18 +1,7 @@
-// block_grid.cpp — the block hash (open addressing, at most half full).
+// block_grid.cpp — filling the block hash; values at any index.
 #include "density/block_grid.hpp"
 
 namespace molmesh {
-namespace {
-
-uint64_t hash(Vec3i corner) {
-  const auto u = [](int32_t c) { return static_cast<uint64_t>(static_cast<uint32_t>(c >> 3)); };
-  uint64_t h =
-      u(corner.x) * 0x9E3779B97F4A7C15u ^ u(corner.y) * 0xC2B2AE3D27D4EB4Fu ^ u(corner.z) * 0x165667B19E3779F9u;
-  return h ^ (h >> 29);
-}
-
-} // namespace
-
 BlockIndex::BlockIndex(const BlockGrid& grid) {
   uint64_t capacity = 16;
   while (capacity < 2 * (grid.corner.size() + grid.inside.size()))
@@ -21,7 +10,7 @@ BlockIndex::BlockIndex(const BlockGrid& grid) {
   block_.assign(capacity, outside);
   mask_ = capacity - 1;
   const auto insert = [this](Vec3i corner, int64_t block) {
-    uint64_t i = hash(corner) & mask_;
+    uint64_t i = BlockIndexView::hash(corner) & mask_;
     while (block_[i] != outside)
       i = (i + 1) & mask_;
     key_[i] = corner;
@@ -31,14 +20,6 @@ BlockIndex::BlockIndex(const BlockGrid& grid) {
     insert(grid.corner[b], static_cast<int64_t>(b));
   for (const Vec3i& corner : grid.inside)
     insert(corner, inside);
-}
-
-int64_t BlockIndex::find(Vec3i p) const {
-  const Vec3i corner = block_corner(p);
-  for (uint64_t i = hash(corner) & mask_; block_[i] != outside; i = (i + 1) & mask_)
-    if (key_[i] == corner)
-      return block_[i];
-  return outside;
 }
 
 float value_at(const BlockGrid& grid, const BlockIndex& index, Vec3i p) {

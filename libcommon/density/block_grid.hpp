@@ -49,28 +49,52 @@ struct BlockGrid {
   std::vector<Vec3i> inside;
 };
 
+/// Slot of p in BlockGrid::value within its block.
+HD constexpr int slot(Vec3i p) {
+  return (p.x & 7) << 6 | (p.y & 7) << 3 | (p.z & 7);
+}
+/// Lowest index of p's block (rounds down, also for negative indices).
+HD constexpr Vec3i block_corner(Vec3i p) {
+  return {p.x & ~7, p.y & ~7, p.z & ~7};
+}
+
+/// The hash of a BlockIndex as plain arrays: open addressing, at most half full.
+struct BlockIndexView {
+  static constexpr int64_t outside = -1, inside = -2;
+  const Vec3i* key;
+  const int64_t* block;
+  uint64_t mask;
+
+  HD static uint64_t hash(Vec3i corner) {
+    const auto u = [](int32_t c) { return static_cast<uint64_t>(static_cast<uint32_t>(c >> 3)); };
+    uint64_t h =
+        u(corner.x) * 0x9E3779B97F4A7C15u ^ u(corner.y) * 0xC2B2AE3D27D4EB4Fu ^ u(corner.z) * 0x165667B19E3779F9u;
+    return h ^ (h >> 29);
+  }
+  /// p: any index, also beyond the grid. ≥ 0: position in BlockGrid::corner.
+  HD int64_t find(Vec3i p) const {
+    const Vec3i corner = block_corner(p);
+    for (uint64_t i = hash(corner) & mask; block[i] != outside; i = (i + 1) & mask)
+      if (key[i] == corner)
+        return block[i];
+    return outside;
+  }
+};
+
 /// Finds the block of a grid point: O(1), built in O(n). Keeps no reference to the grid.
 class BlockIndex {
 public:
-  static constexpr int64_t outside = -1, inside = -2;
+  static constexpr int64_t outside = BlockIndexView::outside, inside = BlockIndexView::inside;
   explicit BlockIndex(const BlockGrid& grid);
-  /// p: any index, also beyond the grid. ≥ 0: position in BlockGrid::corner.
-  int64_t find(Vec3i p) const;
+  int64_t find(Vec3i p) const { return view().find(p); }
+  BlockIndexView view() const { return {key_.data(), block_.data(), mask_}; }
+  int64_t capacity() const { return static_cast<int64_t>(key_.size()); }
 
 private:
   std::vector<Vec3i> key_;
   std::vector<int64_t> block_;
   uint64_t mask_ = 0;
 };
-
-/// Slot of p in BlockGrid::value within its block.
-constexpr int slot(Vec3i p) {
-  return (p.x & 7) << 6 | (p.y & 7) << 3 | (p.z & 7);
-}
-/// Lowest index of p's block (rounds down, also for negative indices).
-constexpr Vec3i block_corner(Vec3i p) {
-  return {p.x & ~7, p.y & ~7, p.z & ~7};
-}
 
 /// Value at any index: G if active, else 0 or inside_value.
 float value_at(const BlockGrid& grid, const BlockIndex& index, Vec3i p);

@@ -150,17 +150,8 @@ bool Editor::outward(const Element& e, size_t face) const {
   return lower != m_.labels[e.label[face]].reversed;
 }
 
-// At most 1 when the guard is kept. A triangle where the target is not known is bad, but not worse than another
-// such one.
 double Editor::misfit(Vec3d a, Vec3d b, Vec3d c) const {
-  double distance;
-  Vec3d normal;
-  if (!target_->probe((a + b + c) / 3., distance, normal))
-    return 10;
-  const Vec3d n = cross(b - a, c - a);
-  const double cosine = dot(n, normal) / std::max(norm(n), 1e-300);
-  const double limit = std::cos(guard_.angle * 3.14159265358979323846 / 180);
-  return std::max(std::abs(distance) / (guard_.distance * target_->spacing()), (1 - cosine) / (1 - limit));
+  return improve::misfit(*target_, guard_, a, b, c);
 }
 
 // Of a labelled face with vertex `from` put at `at`; 0 for flat labels and without a target.

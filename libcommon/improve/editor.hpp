@@ -3,6 +3,7 @@
 // of different parts may run at the same time, and what they do does not depend on the order.
 #pragma once
 #include "improve/dynamic_mesh.hpp"
+#include "improve/guard.hpp"
 #include "improve/search.hpp"
 #include "improve/target.hpp"
 #include <array>
@@ -16,15 +17,6 @@ struct Counts {
   int64_t moves = 0, edge_removals = 0, surface_flips = 0, face_swaps = 0, contractions = 0, splits = 0;
   Counts& operator+=(const Counts& o);
   int64_t total() const { return moves + edge_removals + surface_flips + face_swaps + contractions + splits; }
-};
-
-/// How far a surface triangle may be from the target.
-struct Guard {
-  double angle = 32;      ///< degrees between its normal and the target's at its centroid
-  double distance = 0.12; ///< of its centroid, in spacings
-  double reach = 0.5;     ///< of a projection, in edge lengths: further, and pinches drop two points on one place
-  double lift = 0;        ///< how far one operation may take a surface point off the target, in spacings
-  bool operator==(const Guard&) const = default;
 };
 
 /// What one part may touch. Reserved slots are those of dead elements and vertices.
@@ -89,13 +81,7 @@ private:
   bool edge_is_labelled(int32_t a, int32_t b);
   bool surface_link_holds(int32_t a, int32_t b, const Ring& r);
   float worst(const std::vector<int32_t>& elements) const;
-  /// What an element below the goal lacks: goal / q - 1 when the worst matter most, (1 - q / goal)² when all do;
-  /// nothing where only the worst element counts.
-  float lack(float q) const {
-    return q >= goal || guard_.lift > 0 ? 0
-           : worst_first                ? goal / std::max(q, 1e-4f) - 1
-                                        : (1 - q / goal) * (1 - q / goal);
-  }
+  float lack(float q) const { return improve::lack(q, goal, worst_first, guard_); }
   float lack(const std::vector<int32_t>& elements) const;
   float lack(const std::vector<Candidate>& elements) const;
   bool outward(const Element& e, size_t face) const;

@@ -130,7 +130,7 @@ int64_t off_surface(const DynamicMesh& m, const Isosurface& surface, int threads
 } // namespace
 
 Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
-               const std::function<void(const std::string&)>& phase) {
+               const std::function<void(const std::string&)>& phase, const FlowPass& flow) {
   const auto begin = [&](const char* name) {
     if (phase)
       phase(name);
@@ -172,6 +172,10 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     pass.guard = stage.guard;
     pass.yield = round == 0 ? 0.25f : 1.f; // clusters far smaller than the grid have to go as a whole
     int64_t done = 0;
+    if (flow) {
+      done = flow(m, isosurface.get(), pass);
+      result.counts.moves += done;
+    }
     for (int repeat = 0; repeat < 2; ++repeat) {
       const Counts c = schedule.run(pass);
       result.counts += c;

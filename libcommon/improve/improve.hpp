@@ -1,7 +1,7 @@
 // improve.hpp — quality improvement of a tetrahedral mesh: §5 of the paper and design §10.
 #pragma once
 #include "density/block_grid.hpp"
-#include "improve/editor.hpp"
+#include "improve/schedule.hpp"
 #include "mesh/tet_mesh.hpp"
 #include <functional>
 #include <string>
@@ -27,11 +27,17 @@ struct Result {
   int64_t off_surface = 0; ///< surface points that could not reach the isosurface (with a density)
 };
 
+class Isosurface;
+/// Moves many points at once where no element below the pass' goal becomes worse: what a device does before each
+/// round of operations. The isosurface is null without a density. Returns how many moves were done; changed
+/// elements have their new quality and count as never tried.
+using FlowPass = std::function<int64_t(DynamicMesh&, const Isosurface*, const Pass&)>;
+
 /// Improves the mesh in place. With a density, points of the curved boundary labels are put on G = isovalue;
 /// without, they move on the surface that came in, whose sharp edges are kept. Regions, labels
 /// and the topology of every surface stay; the worst element never becomes worse (I9). Same result for any number
 /// of threads. phase(name), when given, is told what begins. Throws Error(bad_input) for a mesh that is not valid.
 Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
-               const std::function<void(const std::string&)>& phase = {});
+               const std::function<void(const std::string&)>& phase = {}, const FlowPass& flow = {});
 
 } // namespace molmesh::improve

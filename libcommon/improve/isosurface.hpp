@@ -2,6 +2,7 @@
 // Where G is exponential log G is nearly quadratic: its interpolant is closer to the field than G's.
 #pragma once
 #include "density/block_grid.hpp"
+#include "improve/isosurface_view.hpp"
 #include "improve/target.hpp"
 #include <vector>
 
@@ -11,14 +12,18 @@ namespace molmesh::improve {
 class Isosurface final : public Target {
 public:
   Isosurface(const BlockGrid& grid, int threads);
-  bool project(Vec3d& p, double reach) const override;
-  bool probe(Vec3d p, double& distance, Vec3d& normal) const override;
+  bool project(Vec3d& p, double reach) const override { return view().project(p, reach); }
+  bool probe(Vec3d p, double& distance, Vec3d& normal) const override { return view().probe(p, distance, normal); }
   double spacing() const override { return frame_.spacing; }
   /// f = log(G / isovalue) and its gradient (1/Å). False where a corner is not active.
-  bool evaluate(Vec3d p, double& f, Vec3d& gradient) const;
+  bool evaluate(Vec3d p, double& f, Vec3d& gradient) const { return view().evaluate(p, f, gradient); }
+  IsosurfaceView view() const { return {frame_, index_.view(), log_.data(), offset_}; }
   /// Points are projected this far outside the isosurface (Å), so that chords enclose the isosurface's own volume.
   void set_offset(double offset) { offset_ = offset; }
   double offset() const { return offset_; }
+
+  int64_t values() const { return static_cast<int64_t>(log_.size()); } ///< of view().log
+  int64_t slots() const { return index_.capacity(); }                  ///< of view().index
 
 private:
   GridFrame frame_;

@@ -1,0 +1,17 @@
+// improve.hpp — tetsmooth --mode cuda.
+#pragma once
+#include "cuda/par/backend.hpp"
+#include "improve/improve.hpp"
+
+namespace molmesh::cuda {
+
+/// improve::improve with sweeps of geometric flow on the GPU before each round; the topological passes stay on
+/// options.threads threads of the host. Without a density, points of curved surfaces stay in the flow. Throws
+/// Error(mode_unavailable) where there is no GPU.
+improve::Result improve_mesh(TetMesh& mesh, const BlockGrid* density, const improve::Options& options,
+                             const std::function<void(const std::string&)>& phase, DeviceReport& report);
+
+/// Sweeps in a round.
+inline constexpr int flow_sweeps = 8;
+
+} // namespace molmesh::cuda

@@ -1,0 +1,163 @@
+// flow_test.cpp — the device's geometric flow, run by the host: never worse (I9), on the surface, deterministic.
+#include "cuda/improve/flow.hpp"
+#include "cuda/par/host.hpp"
+#include "geom/predicates.hpp"
+#include "unit/improve/lattice_mesh.hpp"
+#include <catch2/catch.hpp>
+
+using namespace molmesh;
+using namespace molmesh::test;
+
+namespace {
+
+double three_atoms(Vec3d p) {
+  const Vec3d centre[] = {{4.1, 4.2, 4.3}, {5.6, 4.9, 4.0}, {5.2, 6.1, 5.5}};
+  double sum = 1e-30;
+  for (const Vec3d& c : centre)
+    sum += std::exp(-0.3 * (norm2(p - c) - 1.7 * 1.7));
+  return sum;
+}
+constexpr double h = 0.5;
+constexpr int n = 20;
+
+float worst(const improve::DynamicMesh& m) {
+  float w = 2;
+  for (const improve::Element& e : m.element)
+    if (e.alive())
+      w = std::min(w, m.quality(e.v));
+  return w;
+}
+
+double lacking(const improve::DynamicMesh& m, const improve::Pass& pass) {
+  double sum = 0;
+  for (const improve::Element& e : m.element)
+    if (e.alive())
+      sum += improve::lack(m.quality(e.v), pass.goal, pass.worst_first, pass.guard);
+  return sum;
+}
+
+improve::Pass pass_with(double degrees, bool worst_first) {
+  improve::Pass p;
+  p.goal = static_cast<float>(improve::angle_quality(degrees));
+  p.worst_first = worst_first;
+  return p;
+}
+
+} // namespace
+
+TEST_CASE("flow: the worst element rises, none is inverted, what is bound stays bound") {
+  const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  const improve::Isosurface surface(grid, 1);
+  const int keep = GENERATE(0, 1, 2);
+  const bool with_surface = GENERATE(true, false), worst_first = GENERATE(true, false);
+  CAPTURE(keep, with_surface, worst_first);
+  improve::DynamicMesh m = improve::build(lattice_mesh(three_atoms, {0, 0, 0}, h, n, keep), 180, 1);
+  const improve::Pass pass = pass_with(26, worst_first);
+  const improve::DynamicMesh before = m;
+  cuda::HostBackend backend(1);
+  cuda::Flow<cuda::HostBackend> flow(backend, with_surface ? &surface : nullptr);
+  const int64_t moves = flow.run(m, pass, 8);
+  CHECK(moves > 100);
+  CHECK(flow.visited() >= moves);
+  CHECK(worst(m) >= worst(before));
+  CHECK(lacking(m, pass) < 0.9 * lacking(before, pass));
+  int64_t moved = 0, wrong = 0, off = 0, stale = 0;
+  for (const improve::Element& e : m.element) {
+    if (!e.alive())
+      continue;
+    const auto p = [&](size_t i) { return m.point[size_t(e.v[i])]; };
+    wrong += orient3d(p(0), p(1), p(2), p(3)) <= 0;
+    stale += e.q != m.quality(e.v);
+  }
+  for (size_t v = 0; v < m.point.size(); ++v) {
+    if (m.point[v] == before.point[v])
+      continue;
+    ++moved;
+    const improve::Vertex& k = m.vertex[v];
+    wrong += k.kind == improve::Kind::fixed;
+    for (int a = 0; a < 3; ++a)
+      wrong += (k.frozen >> a & 1) && m.point[v][a] != before.point[v][a];
+    if (k.kind != improve::Kind::surface)
+      continue;
+    double distance = 1;
+    Vec3d normal;
+    off += !with_surface || !surface.probe(m.point[v], distance, normal) || std::abs(distance) > 0.001 * h;
+  }
+  CHECK(moved > 50);
+  CHECK(wrong == 0);
+  CHECK(off == 0);
+  CHECK(stale == 0);
+}
+
+TEST_CASE("flow: the same points at any number of threads; a goal that is met moves nothing") {
+  const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  const improve::Isosurface surface(grid, 1);
+  improve::DynamicMesh one = improve::build(lattice_mesh(three_atoms, {0, 0, 0}, h, n), 180, 1), more = one;
+  const improve::Pass pass = pass_with(26, true);
+  for (auto [m, threads] : {std::pair{&one, 1}, {&more, 3}}) {
+    cuda::HostBackend backend(threads);
+    cuda::Flow<cuda::HostBackend>(backend, &surface).run(*m, pass, 5);
+  }
+  CHECK(one.point == more.point);
+  const std::vector<Vec3d> before = one.point;
+  cuda::HostBackend backend;
+  improve::Pass met;
+  met.goal = std::min(1e-7f, 0.5f * worst(one));
+  CHECK(cuda::Flow<cuda::HostBackend>(backend, &surface).run(one, met, 5) == 0);
+  CHECK(one.point == before);
+}
+
+TEST_CASE("flow: points are grouped by valence and stars are complete") {
+  const improve::DynamicMesh m = improve::build(lattice_mesh(three_atoms, {0, 0, 0}, h, n), 180, 1);
+  std::vector<cuda::Corners> corners;
+  for (const improve::Element& e : m.element)
+    corners.push_back({{e.v[0], e.v[1], e.v[2], e.v[3]}});
+  cuda::HostBackend backend;
+  const cuda::Stars<cuda::HostBackend> stars(backend, backend.upload(corners.data(), int64_t(corners.size())),
+                                             static_cast<int64_t>(m.point.size()));
+  const auto order = stars.by_valence();
+  std::vector<int> seen(m.point.size(), 0);
+  int64_t last = int64_t{1} << 40, wrong = 0;
+  for (int64_t i = 0; i < order.size(); ++i) {
+    const uint32_t v = order.data()[i];
+    ++seen[v];
+    const int64_t begin = stars.begin.data()[v], end = stars.begin.data()[v + 1];
+    wrong += end - begin > last;
+    last = end - begin;
+    for (int64_t k = begin; k < end; ++k) {
+      const cuda::Corners& c = corners[stars.item.data()[k]];
+      wrong += std::count(c.v, c.v + 4, int32_t(v)) != 1;
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(std::count(seen.begin(), seen.end(), 1) == std::ptrdiff_t(seen.size()));
+  CHECK(stars.begin.data()[m.point.size()] == 4 * std::ptrdiff_t(corners.size()));
+}
+
+TEST_CASE("improvement with the device's flow keeps what improvement keeps, at any number of threads") {
+  const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  const bool with_density = GENERATE(true, false);
+  std::vector<TetMesh> result;
+  for (const int threads : {1, 3}) {
+    TetMesh mesh = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
+    cuda::HostBackend backend(threads);
+    std::unique_ptr<cuda::Flow<cuda::HostBackend>> flow;
+    improve::Options options;
+    options.threads = threads;
+    const improve::Result r = improve::improve(
+        mesh, with_density ? &grid : nullptr, options, {},
+        [&](improve::DynamicMesh& m, const improve::Isosurface* surface, const improve::Pass& pass) {
+          if (!flow)
+            flow = std::make_unique<cuda::Flow<cuda::HostBackend>>(backend, surface);
+          return flow->run(m, pass, 4);
+        });
+    CHECK(r.after.min >= 15);
+    CHECK(r.after.max <= 155);
+    CHECK(r.after.min >= r.before.min);
+    CHECK(r.off_surface == 0);
+    CHECK_NOTHROW(improve::build(mesh, 180, 1));
+    result.push_back(std::move(mesh));
+  }
+  CHECK(result[0].point == result[1].point);
+  CHECK(result[0].tet == result[1].tet);
+}
