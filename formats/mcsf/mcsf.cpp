@@ -1,0 +1,53 @@
+// mcsf.cpp — simplices with their material and the types of their faces.
+#include "formats/mcsf/mcsf.hpp"
+#include "formats/text_out.hpp"
+#include "formats/vtu/names.hpp"
+#include "mesh/adjacency.hpp"
+#include <algorithm>
+
+namespace molmesh::formats {
+namespace {
+
+/// Odd is Dirichlet for MC, even Neumann, 0 a face within the mesh; (type + 1) / 2 is the label.
+int32_t face_type(int32_t label) {
+  return label == Boundary::surface ? 2 : 2 * label - 1;
+}
+
+} // namespace
+
+void write_mcsf(std::ostream& stream, const TetMesh& m) {
+  const std::vector<int32_t> patch = patches(m);
+  std::vector<std::pair<Tri, int32_t>> face; // sorted corners, label
+  for (size_t t = 0; t < m.tri.size(); ++t) {
+    Tri f = m.tri[t];
+    std::sort(f.begin(), f.end());
+    face.emplace_back(f, patch[t]);
+  }
+  std::sort(face.begin(), face.end());
+  const std::vector<int32_t> across = face_neighbors(m, 1);
+  TextOut out(stream);
+  out << "mcsf_begin=1;\n\ndim=3;\ndimii=3;\nvertices=" << m.point.size() << ";\nsimplices=" << m.tet.size()
+      << ";\n\nvert=[" << '\n';
+  for (size_t p = 0; p < m.point.size(); ++p)
+    out << p << " 0 " << m.point[p].x << ' ' << m.point[p].y << ' ' << m.point[p].z << '\n';
+  out << "];\n\nsimp=[" << '\n';
+  for (size_t t = 0; t < m.tet.size(); ++t) {
+    out << t << " 0 " << m.region[t];
+    for (size_t f = 0; f < 4; ++f) {
+      int32_t type = 0;
+      if (across[4 * t + f] < 0) {
+        Tri corner = face_points(m, static_cast<int64_t>(4 * t + f));
+        std::sort(corner.begin(), corner.end());
+        const auto found = std::lower_bound(face.begin(), face.end(), std::make_pair(corner, int32_t{0}));
+        type = face_type(found != face.end() && found->first == corner ? found->second : Boundary::surface);
+      }
+      out << ' ' << type;
+    }
+    for (const int32_t p : m.tet[t])
+      out << ' ' << p;
+    out << '\n';
+  }
+  out << "];\n\nmcsf_end=1;" << '\n';
+}
+
+} // namespace molmesh::formats

@@ -1,0 +1,128 @@
+// tetconvert.cpp — a mesh (.vtu) in the formats of other programs.
+#include "cli/file.hpp"
+#include "cli/run.hpp"
+#include "formats/gmsh/gmsh.hpp"
+#include "formats/mcsf/mcsf.hpp"
+#include "formats/medit/medit.hpp"
+#include "formats/surface/surface.hpp"
+#include "formats/tetgen/tetgen.hpp"
+#include "formats/vtu/vtu.hpp"
+#include "formats/xdmf/xdmf.hpp"
+#include <algorithm>
+
+using namespace molmesh;
+
+namespace {
+
+struct Options : cli::Common {
+  std::string format = "auto";
+};
+
+/// By the ending of the output's name. Those of several files are named by any of them.
+const std::vector<std::pair<const char*, const char*>> endings = {
+    {".msh", "gmsh"},   {".msh2", "gmsh22"}, {".mesh", "medit"}, {".node", "tetgen"},
+    {".ele", "tetgen"}, {".face", "tetgen"}, {".xdmf", "xdmf"},  {".m", "mcsf"},
+    {".stl", "stl"},    {".ply", "ply"},     {".off", "off"}};
+
+void describe(CLI::App& app, Options& o) {
+  app.add_option("--format", o.format,
+                 "gmsh: .msh 4.1; gmsh22: .msh 2.2; medit: .mesh; tetgen: .node, .ele, .face; xdmf: .xdmf, .h5; "
+                 "mcsf: FEtk's .m; of the molecular surface alone: stl, ply, off; auto: by the output's name")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"auto", "gmsh", "gmsh22", "medit", "tetgen", "xdmf", "mcsf", "stl", "ply", "off"}));
+}
+
+std::string ending(const std::string& path) {
+  const size_t name = path.rfind('/') + 1, dot = path.rfind('.');
+  return dot == std::string::npos || dot <= name ? "" : path.substr(dot);
+}
+
+std::string format_of(const Options& o) {
+  if (o.format != "auto")
+    return o.format;
+  const std::string end = ending(o.output);
+  std::string known;
+  for (const auto& [e, format] : endings) {
+    if (end == e)
+      return format;
+    known += (known.empty() ? "" : ", ") + std::string(e);
+  }
+  fail(Status::usage, "-o: found " + o.output + ", expected a name that ends in one of " + known + ", or --format");
+}
+
+/// The output's name without its ending.
+std::string stem(const Options& o, const std::string& format) {
+  if (o.output == "-")
+    fail(Status::usage, "--format " + format + ": several files, expected -o FILE");
+  const std::string end = ending(o.output);
+  const bool known = std::any_of(endings.begin(), endings.end(), [&](const auto& e) { return end == e.first; });
+  return o.output.substr(0, o.output.size() - (known ? end.size() : 0));
+}
+
+void write_several(const Options& o, const std::string& format, const TetMesh& m) {
+  const std::string name = stem(o, format);
+  if (format == "tetgen") {
+    cli::OutputFile node(name + ".node"), ele(name + ".ele"), face(name + ".face");
+    formats::write_tetgen(node.stream(), ele.stream(), face.stream(), m);
+    node.commit();
+    ele.commit();
+    face.commit();
+  } else {
+    cli::OutputFile xdmf(name + ".xdmf"), h5(name + ".h5");
+    formats::write_xdmf(xdmf.stream(), h5.stream(), name.substr(name.rfind('/') + 1) + ".h5", m);
+    h5.commit(); // first: an .xdmf without it would be of no use
+    xdmf.commit();
+  }
+}
+
+void write_one(const Options& o, const std::string& format, const TetMesh& m, const std::string& input) {
+  cli::OutputFile output(o.output);
+  std::ostream& out = output.stream();
+  if (format == "gmsh" || format == "gmsh22")
+    formats::write_gmsh(out, m, format == "gmsh" ? formats::GmshVersion::v4_1 : formats::GmshVersion::v2_2);
+  else if (format == "medit")
+    formats::write_medit(out, m);
+  else if (format == "mcsf")
+    formats::write_mcsf(out, m);
+  else
+    (format == "stl"   ? formats::write_stl
+     : format == "ply" ? formats::write_ply
+                       : formats::write_off)(out, m, input);
+  output.commit();
+}
+
+/// What the format has no place for.
+void note_losses(const cli::Run& run, const std::string& format, const TetMesh& m) {
+  if (format == "gmsh" || format == "xdmf")
+    return;
+  std::string lost = m.part.empty() ? "" : "part";
+  for (const CellArray& a : m.cell_array)
+    if (format != "ply" && (a.name != "patch" || format == "stl" || format == "off"))
+      lost += (lost.empty() ? "" : ", ") + a.name;
+  if (!lost.empty())
+    run.note("left out, " + format + " has no place for them: " + lost);
+}
+
+Status run_tool(const Options& o, cli::Run& run) {
+  const std::string format = format_of(o);
+  run.phase("read");
+  cli::InputFile input(o.input);
+  const TetMesh mesh = formats::read_vtu(input.stream(), input.name(), nullptr, formats::CellArrays::keep);
+  run.counts["points"] = mesh.point.size();
+  run.counts["tetrahedra"] = mesh.tet.size();
+  run.counts["triangles"] = mesh.tri.size();
+  run.phase("write");
+  if (format == "tetgen" || format == "xdmf")
+    write_several(o, format, mesh);
+  else
+    write_one(o, format, mesh, input.name());
+  note_losses(run, format, mesh);
+  return Status::good;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  return cli::run_main<Options>("tetconvert", "A mesh (.vtu) in the formats of solvers and viewers, tags intact.",
+                                argc, argv, describe, run_tool);
+}
