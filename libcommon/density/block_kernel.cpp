@@ -308,103 +308,6 @@ void raise_group_simd(float p, float* from, float* to) {
   }
 }
 
-void classify_points_simd(const float* v, float lower, float upper, uint64_t* below, uint64_t* above) {
-#if HWY_TARGET <= HWY_AVX2
-  uint8_t b[64 + 8], a[64 + 8];
-  for (int32_t s = 0; s < 512; s += lanes) {
-    const V x = hn::LoadU(f, v + s);
-    hn::StoreMaskBits(f, hn::Lt(x, hn::Set(f, lower)), b + s / 8);
-    hn::StoreMaskBits(f, hn::Gt(x, hn::Set(f, upper)), a + s / 8);
-  }
-  std::memcpy(below, b, 64);
-  std::memcpy(above, a, 64);
-#else
-  for (int32_t w = 0; w < 8; ++w) {
-    below[w] = above[w] = 0;
-    for (int32_t s = 0; s < 64; ++s) {
-      below[w] |= uint64_t{v[64 * w + s] < lower} << s;
-      above[w] |= uint64_t{v[64 * w + s] > upper} << s;
-    }
-  }
-#endif
-}
-
-/// One x-plane of the 10³ points around a block: rows along z, bit k + 1 is point k; row j + 1 is point j.
-struct Plane {
-  uint16_t row[16];
-};
-
-/// word[9]: the plane in the 3 × 3 blocks around, by (y, z).
-HWY_INLINE Plane make_plane(const uint64_t* word) {
-  uint8_t lo[8], mid[8], hi[8];
-  std::memcpy(lo, word + 3, 8);
-  std::memcpy(mid, word + 4, 8);
-  std::memcpy(hi, word + 5, 8);
-  Plane p{};
-  for (size_t j = 0; j < 8; ++j)
-    p.row[j + 1] = static_cast<uint16_t>(mid[j] << 1 | lo[j] >> 7 | (hi[j] & 1) << 9);
-  p.row[0] = static_cast<uint16_t>((word[1] >> 56) << 1 | word[0] >> 63 | (word[2] >> 56 & 1) << 9);
-  p.row[9] = static_cast<uint16_t>((word[7] & 0xff) << 1 | (word[6] >> 7 & 1) | (word[8] & 1) << 9);
-  return p;
-}
-
-/// Bit k of row j: all eight corners of cell (j, k) between two planes are set.
-HWY_INLINE Plane all_corners(const Plane& a, const Plane& b) {
-  Plane c{};
-  uint16_t both[17] = {};
-  for (int j = 0; j < 16; ++j)
-    both[j] = a.row[j] & b.row[j];
-  for (int j = 0; j < 16; ++j) {
-    const auto four = static_cast<uint16_t>(both[j] & both[j + 1]);
-    c.row[j] = static_cast<uint16_t>(four & four >> 1);
-  }
-  return c;
-}
-
-void band_points_simd(const uint64_t* const* below, const uint64_t* const* above, const uint16_t* cells,
-                      uint64_t* out) {
-  const auto plane = [](const uint64_t* const* masks, size_t i) { // i = 0 … 9
-    uint64_t word[9];
-    for (size_t n = 0; n < 9; ++n)
-      word[n] = masks[9 * ((i + 7) / 8) + n][(i + 7) % 8];
-    return make_plane(word);
-  };
-  Plane below_0 = plane(below, 0), above_0 = plane(above, 0), cell_0{};
-  for (size_t i = 0; i < 9; ++i) {
-    const Plane below_1 = plane(below, i + 1), above_1 = plane(above, i + 1);
-    const Plane all_below = all_corners(below_0, below_1), all_above = all_corners(above_0, above_1);
-    Plane cell{};
-    for (size_t j = 0; j < 9; ++j)
-      cell.row[j] = static_cast<uint16_t>(~(all_below.row[j] | all_above.row[j]) & cells[9 * i + j]);
-    if (i > 0) {
-      uint8_t bytes[8];
-      for (size_t j = 0; j < 8; ++j) {
-        const int four = cell_0.row[j] | cell_0.row[j + 1] | cell.row[j] | cell.row[j + 1];
-        bytes[j] = static_cast<uint8_t>(four | four >> 1);
-      }
-      std::memcpy(out + i - 1, bytes, 8);
-    }
-    below_0 = below_1;
-    above_0 = above_1;
-    cell_0 = cell;
-  }
-}
-
-int32_t pack_active_simd(const float* v, const uint64_t* active, float* out) {
-  float* const begin = out;
-#if HWY_TARGET <= HWY_AVX2
-  uint8_t bits[64 + 8] = {}; // LoadMaskBits may read eight bytes
-  std::memcpy(bits, active, 64);
-  for (int32_t s = 0; s < 512; s += lanes)
-    out += hn::CompressBlendedStore(hn::LoadU(f, v + s), hn::LoadMaskBits(f, bits + s / 8), f, out);
-#else
-  for (int32_t s = 0; s < 512; ++s)
-    if (active[s >> 6] >> (s & 63) & 1)
-      *out++ = v[s];
-#endif
-  return static_cast<int32_t>(out - begin);
-}
-
 const char* instruction_set_name() {
   return hwy::TargetName(HWY_TARGET);
 }
@@ -420,12 +323,9 @@ namespace molmesh::density {
 HWY_EXPORT(near_clusters_simd);
 HWY_EXPORT(upper_bounds_simd);
 HWY_EXPORT(take_unit_simd);
-HWY_EXPORT(band_points_simd);
 HWY_EXPORT(exp2_all_simd);
 HWY_EXPORT(add_unit_simd);
 HWY_EXPORT(raise_group_simd);
-HWY_EXPORT(classify_points_simd);
-HWY_EXPORT(pack_active_simd);
 HWY_EXPORT(instruction_set_name);
 
 int32_t near_clusters(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& box, int32_t* out) {
@@ -439,9 +339,6 @@ bool take_unit(const LocalClusters& c, const int32_t* list, int32_t n, const Loc
                float log2_small, const AtomArguments& to, UnitMiddle& middle) {
   return HWY_DYNAMIC_DISPATCH(take_unit_simd)(c, list, n, block, decay, log2_small, to, middle);
 }
-void band_points(const uint64_t* const* below, const uint64_t* const* above, const uint16_t* cells, uint64_t* out) {
-  HWY_DYNAMIC_DISPATCH(band_points_simd)(below, above, cells, out);
-}
 void exp2_all(float* v, int32_t n) {
   HWY_DYNAMIC_DISPATCH(exp2_all_simd)(v, n);
 }
@@ -450,12 +347,6 @@ void add_unit(const UnitArguments& unit, float* scratch, float* sum) {
 }
 void raise_group(float p, float* from, float* to) {
   HWY_DYNAMIC_DISPATCH(raise_group_simd)(p, from, to);
-}
-void classify_points(const float* v, float lower, float upper, uint64_t* below, uint64_t* above) {
-  HWY_DYNAMIC_DISPATCH(classify_points_simd)(v, lower, upper, below, above);
-}
-int32_t pack_active(const float* v, const uint64_t* active, float* out) {
-  return HWY_DYNAMIC_DISPATCH(pack_active_simd)(v, active, out);
 }
 const char* instruction_set() {
   return HWY_DYNAMIC_DISPATCH(instruction_set_name)();

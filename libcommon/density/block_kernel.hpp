@@ -65,17 +65,6 @@ void add_unit(const UnitArguments& unit, float* scratch, float* sum);
 /// to[512] += from^p, from = 0. Zero stays zero.
 void raise_group(float p, float* from, float* to);
 
-/// Bit 8·j + k of word i of below and above: v < lower, v > upper.
-void classify_points(const float* v, float lower, float upper, uint64_t* below, uint64_t* above);
-
-/// Corners of band cells in a block. below, above: for the 27 blocks around it, in order, the points that are below
-/// and above the band (8 words each). cells: bit k of cells[9 i + j] says whether cell (i - 1, j - 1, k - 1),
-/// counted from the block's lowest point, lies in the grid. out: bit 8·j + k of word i.
-void band_points(const uint64_t* const* below, const uint64_t* const* above, const uint16_t* cells, uint64_t* out);
-
-/// Copies the v whose bit of active[8] is set to out, in order; writes nothing more. Returns how many.
-int32_t pack_active(const float* v, const uint64_t* active, float* out);
-
 /// Name of the instruction set in use.
 const char* instruction_set();
 

@@ -3,6 +3,7 @@
 #pragma once
 #include "density/band.hpp"
 #include "density/field.hpp"
+#include "density/search_counts.hpp"
 #include "density/selection.hpp"
 #include <functional>
 
@@ -24,18 +25,9 @@ struct SearchOptions {
   std::function<void(int64_t done, int64_t total)> progress; ///< called from any thread; may be empty
 };
 
-struct SearchCounts {
-  int64_t blocks_visited = 0, blocks_evaluated = 0;
-  int64_t group_visits = 0, atom_visits = 0; ///< groups and atoms summed, once a block
-  int64_t active_points = 0;
-};
-
 /// The field must be made with budget_for(options).far. The result has frame, values, sides and the numbers of
 /// `info` that it knows; the texts are the caller's. Same result for any number of threads.
 Budget budget_for(const SearchOptions& options);
 Band find_band(const Field& f, const GridFrame& frame, const SearchOptions& options, SearchCounts& counts);
-
-/// True when a point on the grid's outermost layer has G > isovalue: the wall cuts the surface.
-bool wall_cuts_surface(const Band& band);
 
 } // namespace molmesh::density

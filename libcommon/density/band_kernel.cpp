@@ -1,0 +1,223 @@
+// band_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
+#include "density/band_kernel.hpp"
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "density/band_kernel.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace molmesh::density {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using F = hn::CappedTag<float, 16>;
+constexpr F f{};
+constexpr int32_t float_lanes = static_cast<int32_t>(HWY_MIN(16, HWY_LANES(float)));
+using U = hn::CappedTag<uint64_t, 8>;
+constexpr U u{};
+constexpr int32_t lanes = static_cast<int32_t>(HWY_MIN(8, HWY_LANES(uint64_t)));
+
+void classify_points_simd(const float* v, float lower, float upper, uint64_t* below, uint64_t* above) {
+#if HWY_TARGET <= HWY_AVX2
+  using V = hn::Vec<F>;
+  uint8_t b[64 + 8], a[64 + 8];
+  for (int32_t s = 0; s < 512; s += float_lanes) {
+    const V x = hn::LoadU(f, v + s);
+    hn::StoreMaskBits(f, hn::Lt(x, hn::Set(f, lower)), b + s / 8);
+    hn::StoreMaskBits(f, hn::Gt(x, hn::Set(f, upper)), a + s / 8);
+  }
+  std::memcpy(below, b, 64);
+  std::memcpy(above, a, 64);
+#else
+  for (int32_t w = 0; w < 8; ++w) {
+    below[w] = above[w] = 0;
+    for (int32_t s = 0; s < 64; ++s) {
+      below[w] |= uint64_t{v[64 * w + s] < lower} << s;
+      above[w] |= uint64_t{v[64 * w + s] > upper} << s;
+    }
+  }
+#endif
+}
+
+// Eight rows of 32 points are eight words of four bytes, or four blocks of eight bytes: a transposition.
+#if HWY_TARGET != HWY_SCALAR
+/// 4 × 4 bytes transposed.
+HWY_INLINE hn::Vec<hn::Full128<uint32_t>> transposed(const void* from) {
+  constexpr hn::Full128<uint8_t> b8{};
+  alignas(16) static constexpr uint8_t order[16] = {0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15};
+  return hn::BitCast(hn::Full128<uint32_t>(),
+                     hn::TableLookupBytes(hn::LoadU(b8, static_cast<const uint8_t*>(from)), hn::Load(b8, order)));
+}
+#endif
+
+void words_from_rows_simd(const NodeBits& rows, NodeWords& words) {
+  for (size_t x = 0; x < 32; ++x)
+    for (size_t by = 0; by < 4; ++by) {
+      const uint32_t* const row = &rows.row[x][8 * by];
+      uint64_t word[4];
+#if HWY_TARGET != HWY_SCALAR
+      constexpr hn::Full128<uint32_t> d{};
+      const auto lo = transposed(row), hi = transposed(row + 4);
+      hn::StoreU(hn::InterleaveLower(d, lo, hi), d, reinterpret_cast<uint32_t*>(word));
+      hn::StoreU(hn::InterleaveUpper(d, lo, hi), d, reinterpret_cast<uint32_t*>(word + 2));
+#else
+      for (size_t bz = 0; bz < 4; ++bz) {
+        word[bz] = 0;
+        for (size_t j = 0; j < 8; ++j)
+          word[bz] |= uint64_t{row[j] >> 8 * bz & 255} << 8 * j;
+      }
+#endif
+      for (size_t bz = 0; bz < 4; ++bz)
+        words.word[16 * (x >> 3) + 4 * by + bz][x & 7] = word[bz];
+    }
+}
+
+void rows_from_words_simd(const NodeWords& words, NodeBits& rows) {
+  for (size_t x = 0; x < 32; ++x)
+    for (size_t by = 0; by < 4; ++by) {
+      uint32_t* const row = &rows.row[x][8 * by];
+      uint64_t word[4];
+      for (size_t bz = 0; bz < 4; ++bz)
+        word[bz] = words.word[16 * (x >> 3) + 4 * by + bz][x & 7];
+#if HWY_TARGET != HWY_SCALAR
+      constexpr hn::Full128<uint32_t> d{};
+      const auto a = hn::LoadU(d, reinterpret_cast<const uint32_t*>(word)),
+                 b = hn::LoadU(d, reinterpret_cast<const uint32_t*>(word + 2));
+      uint32_t half[8]; // rows 0 to 3 of the four blocks, then rows 4 to 7
+      hn::StoreU(hn::ConcatEven(d, b, a), d, half);
+      hn::StoreU(hn::ConcatOdd(d, b, a), d, half + 4);
+      hn::StoreU(transposed(half), d, row);
+      hn::StoreU(transposed(half + 4), d, row + 4);
+#else
+      for (size_t j = 0; j < 8; ++j) {
+        row[j] = 0;
+        for (size_t bz = 0; bz < 4; ++bz)
+          row[j] |= static_cast<uint32_t>(word[bz] >> 8 * j & 255) << 8 * bz;
+      }
+#endif
+    }
+}
+
+/// An x-plane of the 34³ points around a node: bit k + 1 of row j + 1 is point (j, k); room for one more vector.
+struct Plane {
+  HWY_ALIGN uint64_t row[48];
+};
+
+/// nodes[9]: the 3 × 3 nodes that the plane passes, by (y, z).
+HWY_INLINE void make_plane(const NodeBits* const* nodes, int32_t x, Plane& p) {
+  const auto join = [](uint64_t lo, uint64_t mid, uint64_t hi) { return mid << 1 | lo >> 31 | (hi & 1) << 33; };
+  const auto edge = [&](int32_t dy, int32_t y) {
+    return join(nodes[3 * dy]->row[x][y], nodes[3 * dy + 1]->row[x][y], nodes[3 * dy + 2]->row[x][y]);
+  };
+  constexpr hn::Rebind<uint32_t, U> half{};
+  for (int32_t y = 0; y < 32; y += lanes) {
+    const auto row = [&](int32_t n) { return hn::PromoteTo(u, hn::LoadU(half, &nodes[n]->row[x][y])); };
+    const auto lo = hn::ShiftRight<31>(row(3)), mid = hn::ShiftLeft<1>(row(4)),
+               hi = hn::ShiftLeft<33>(hn::And(row(5), hn::Set(u, uint64_t{1})));
+    hn::StoreU(hn::Or(mid, hn::Or(lo, hi)), u, p.row + 1 + y);
+  }
+  p.row[0] = edge(0, 31);
+  p.row[33] = edge(2, 0);
+}
+
+/// Bit k of row j: the four corners in the plane of cell (j - 1, k - 1) are set.
+HWY_INLINE void all_in_plane(const Plane& p, Plane& four) {
+  Plane two;
+  for (int32_t j = 0; j < 40; j += lanes) {
+    const auto row = hn::Load(u, p.row + j);
+    hn::Store(hn::And(row, hn::ShiftRight<1>(row)), u, two.row + j);
+  }
+  std::fill_n(two.row + 40, 8, uint64_t{0});
+  for (int32_t j = 0; j < 40; j += lanes)
+    hn::Store(hn::And(hn::Load(u, two.row + j), hn::LoadU(u, two.row + j + 1)), u, four.row + j);
+}
+
+void band_points_simd(const NodeBits* const* below, const NodeBits* const* above, const CellRange& cells,
+                      NodeBits& active) {
+  const auto in = [&](int axis, int32_t cell) { return cell >= cells.first[axis] && cell < cells.end[axis]; };
+  uint64_t z_valid = 0;
+  for (int32_t k = 0; k < 33; ++k)
+    z_valid |= uint64_t{in(2, k - 1)} << k;
+  HWY_ALIGN uint64_t valid[40] = {};
+  for (int32_t j = 0; j < 33; ++j)
+    valid[j] = in(1, j - 1) ? z_valid : 0;
+  Plane p{}, four_below[2]{}, four_above[2]{}, cell{}, point[2]{};
+  for (int32_t x = -1; x <= 32; ++x) {
+    const int32_t n = x < 0 ? 0 : x < 32 ? 9 : 18, now = x & 1, last = now ^ 1;
+    make_plane(below + n, x & 31, p);
+    all_in_plane(p, four_below[now]);
+    make_plane(above + n, x & 31, p);
+    all_in_plane(p, four_above[now]);
+    if (x < 0)
+      continue;
+    // Cells between planes x - 1 and x; then which points of a plane they touch.
+    const bool valid_x = in(0, x - 1);
+    for (int32_t j = 0; j < 40; j += lanes) {
+      const auto both = [&](const Plane* four) {
+        return hn::And(hn::Load(u, four[last].row + j), hn::Load(u, four[now].row + j));
+      };
+      const auto c =
+          valid_x ? hn::AndNot(hn::Or(both(four_below), both(four_above)), hn::Load(u, valid + j)) : hn::Zero(u);
+      hn::Store(hn::Or(c, hn::ShiftRight<1>(c)), u, cell.row + j);
+    }
+    for (int32_t j = 0; j < 32; j += lanes)
+      hn::Store(hn::Or(hn::Load(u, cell.row + j), hn::LoadU(u, cell.row + j + 1)), u, point[now].row + j);
+    if (x > 0)
+      for (int32_t j = 0; j < 32; ++j)
+        active.row[x - 1][j] = static_cast<uint32_t>(point[now].row[j] | point[last].row[j]);
+  }
+}
+
+int32_t pack_active_simd(const float* v, const uint64_t* active, float* out) {
+  float* const begin = out;
+#if HWY_TARGET <= HWY_AVX2
+  uint8_t bits[64 + 8] = {}; // LoadMaskBits may read eight bytes
+  std::memcpy(bits, active, 64);
+  for (int32_t s = 0; s < 512; s += float_lanes)
+    out += hn::CompressStore(hn::LoadU(f, v + s), hn::LoadMaskBits(f, bits + s / 8), f, out);
+#else
+  for (int32_t s = 0; s < 512; ++s)
+    if (active[s >> 6] >> (s & 63) & 1)
+      *out++ = v[s];
+#endif
+  return static_cast<int32_t>(out - begin);
+}
+
+} // namespace
+} // namespace HWY_NAMESPACE
+} // namespace molmesh::density
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace molmesh::density {
+
+HWY_EXPORT(classify_points_simd);
+HWY_EXPORT(rows_from_words_simd);
+HWY_EXPORT(words_from_rows_simd);
+HWY_EXPORT(band_points_simd);
+HWY_EXPORT(pack_active_simd);
+
+void classify_points(const float* v, float lower, float upper, uint64_t* below, uint64_t* above) {
+  HWY_DYNAMIC_DISPATCH(classify_points_simd)(v, lower, upper, below, above);
+}
+void rows_from_words(const NodeWords& words, NodeBits& rows) {
+  HWY_DYNAMIC_DISPATCH(rows_from_words_simd)(words, rows);
+}
+void words_from_rows(const NodeBits& rows, NodeWords& words) {
+  HWY_DYNAMIC_DISPATCH(words_from_rows_simd)(rows, words);
+}
+void band_points(const NodeBits* const* below, const NodeBits* const* above, const CellRange& cells,
+                 NodeBits& active) {
+  HWY_DYNAMIC_DISPATCH(band_points_simd)(below, above, cells, active);
+}
+int32_t pack_active(const float* v, const uint64_t* active, float* out) {
+  return HWY_DYNAMIC_DISPATCH(pack_active_simd)(v, active, out);
+}
+
+} // namespace molmesh::density
+#endif

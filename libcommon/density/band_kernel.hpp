@@ -1,0 +1,41 @@
+// band_kernel.hpp — band cells by bit masks: from the values of blocks to the active points of a node of 4³ blocks,
+// vectorized for the best instruction set of this machine.
+#pragma once
+#include <cstdint>
+
+namespace molmesh::density {
+
+/// A node is a cube of 4³ blocks; block 16·i + 4·j + k of it lies at (i, j, k).
+constexpr int32_t node_blocks = 4, blocks_a_node = 64, node_edge = 32;
+
+/// A set of the 32³ points of a node: bit z of row[x][y].
+struct NodeBits {
+  uint32_t row[node_edge][node_edge];
+};
+
+/// The same set by blocks: bit 8·j + k of word [block][i].
+struct NodeWords {
+  uint64_t word[blocks_a_node][8];
+};
+
+/// Bit 8·j + k of word i of below and above, of the 512 values of a block: v < lower, v > upper.
+void classify_points(const float* v, float lower, float upper, uint64_t* below, uint64_t* above);
+
+void rows_from_words(const NodeWords& words, NodeBits& rows);
+void words_from_rows(const NodeBits& rows, NodeWords& words);
+
+/// Cells of a node and of the layer of cells before it: cell (i, j, k) lies between points i and i + 1, and so on;
+/// those with first[axis] ≤ index < end[axis] lie in the grid, -1 is the lowest that touches the node.
+struct CellRange {
+  int32_t first[3], end[3];
+};
+
+/// Corners of band cells in a node: of cells whose corners are neither all below nor all above the band. below and
+/// above: the sets of the 27 nodes around it, in order of (x, y, z), the node itself the 14th.
+void band_points(const NodeBits* const* below, const NodeBits* const* above, const CellRange& cells,
+                 NodeBits& active);
+
+/// Copies the v whose bit of active[8] is set to out, in order; may write up to 16 values more. Returns how many.
+int32_t pack_active(const float* v, const uint64_t* active, float* out);
+
+} // namespace molmesh::density

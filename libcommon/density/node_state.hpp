@@ -1,0 +1,55 @@
+// node_state.hpp — what the search knows of a node of 4³ blocks, and slabs of nodes along x.
+#pragma once
+#include "density/band.hpp"
+#include "density/band_kernel.hpp"
+#include <memory>
+#include <vector>
+
+namespace molmesh::density {
+
+constexpr uint64_t every_block = ~uint64_t{0};
+
+constexpr Vec3i block_at(int b) { // in a node, in blocks
+  return {b >> 4, b >> 2 & 3, b & 3};
+}
+constexpr Vec3i direction(int n) { // of the 27 nodes around one
+  return {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1};
+}
+
+/// The sides of a node's points, and where the values of its evaluated blocks are.
+struct Sides {
+  NodeBits below, above;
+  const float* value[blocks_a_node]; ///< [512] each, null where not evaluated
+};
+
+/// Sets of blocks are bits, by number of the block in the node.
+struct NodeState {
+  Vec3i corner;                   ///< in blocks
+  uint64_t known = 0, inside = 0; ///< evaluated; not evaluated and above the band
+  std::unique_ptr<Sides> sides;   ///< none: all below the band, or all above it when `inside` is full
+  std::vector<Vec3i> needed;      ///< nodes without clusters that this one may give corners of band cells
+  uint64_t kept = 0, closed = 0;  ///< blocks with active points; without and inside
+  std::vector<BandBlock> band;    ///< of kept, in order
+};
+
+/// The nodes that begin at block x.
+struct SlabState {
+  int32_t x = 0;
+  std::vector<NodeState> node; ///< ascending
+};
+
+/// Bit 2·axis + (upper side): not every point of that face is below the band.
+unsigned open_faces(const NodeState& s);
+
+/// A node of a slab among its neighbors: below[27] and above[27] as band_points() wants them. False when all are on
+/// one side. before, after: the next slabs.
+bool sides_around(const SlabState& before, const SlabState& slab, const SlabState& after, const NodeState& s,
+                  const NodeBits** below, const NodeBits** above);
+
+/// Puts the nodes that any of the slabs needs into the one in the middle.
+void add_needed(const SlabState& before, SlabState& slab, const SlabState& after);
+
+/// Appends what a slab keeps and encloses to the band, ascending.
+void append(const SlabState& slab, Band& band, int threads);
+
+} // namespace molmesh::density

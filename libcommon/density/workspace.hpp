@@ -1,0 +1,73 @@
+// workspace.hpp — what a thread of the search keeps from one node to the next, so that nothing is allocated twice.
+#pragma once
+#include "density/band_kernel.hpp"
+#include "density/evaluate.hpp"
+#include "density/large_array.hpp"
+#include "density/search_counts.hpp"
+#include "density/selection.hpp"
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace molmesh::density {
+
+/// Floats handed out piece by piece; they stay where they are until all are given back.
+class Arena {
+public:
+  /// A piece of at most `most` ≤ 512 + 16 floats; keep() says how many of them stay.
+  float* take(size_t most) {
+    if (chunk_.empty() || used_ + most > size) {
+      used_ = 0;
+      if (++current_ >= chunk_.size()) {
+        chunk_.emplace_back(size);
+        current_ = chunk_.size() - 1;
+      }
+    }
+    return chunk_[current_].data() + used_;
+  }
+  void keep(size_t n) { used_ += n; }
+  void give_back_all() { current_ = used_ = 0; }
+  std::vector<LargeArray<float>> release() { return std::move(chunk_); }
+
+private:
+  static constexpr size_t size = size_t{1} << 21; // 8 MiB: large pages
+  std::vector<LargeArray<float>> chunk_;
+  size_t current_ = 0, used_ = 0;
+};
+
+struct Workspace {
+  Selection selection;
+  Evaluator evaluator;
+  NodeWords below, above, active;
+  NodeBits rows;
+  Arena values[2] = {}; ///< of blocks, for slabs of even and odd number
+  Arena packed = {};    ///< of the band
+  SearchCounts counts = {};
+  int64_t points = 0; ///< of the grid, evaluated
+};
+
+/// Hands workspaces to whoever works; as many as ever worked at once.
+class Workspaces {
+public:
+  template <class Make>
+  std::unique_ptr<Workspace> borrow(Make&& make) {
+    const std::lock_guard<std::mutex> lock(guard_);
+    if (free_.empty())
+      return make();
+    std::unique_ptr<Workspace> w = std::move(free_.back());
+    free_.pop_back();
+    return w;
+  }
+  void give_back(std::unique_ptr<Workspace> w) {
+    const std::lock_guard<std::mutex> lock(guard_);
+    free_.push_back(std::move(w));
+  }
+  /// When nobody works.
+  std::vector<std::unique_ptr<Workspace>>& all() { return free_; }
+
+private:
+  std::mutex guard_;
+  std::vector<std::unique_ptr<Workspace>> free_;
+};
+
+} // namespace molmesh::density
