@@ -178,8 +178,11 @@ int32_t pack_active_simd(const float* v, const uint64_t* active, float* out) {
 #if HWY_TARGET <= HWY_AVX2
   uint8_t bits[64 + 8] = {}; // LoadMaskBits may read eight bytes
   std::memcpy(bits, active, 64);
-  for (int32_t s = 0; s < 512; s += float_lanes)
-    out += hn::CompressStore(hn::LoadU(f, v + s), hn::LoadMaskBits(f, bits + s / 8), f, out);
+  for (int32_t s = 0; s < 512; s += float_lanes) {
+    const auto keep = hn::LoadMaskBits(f, bits + s / 8);
+    hn::StoreU(hn::Compress(hn::LoadU(f, v + s), keep), f, out);
+    out += hn::CountTrue(f, keep);
+  }
 #else
   for (int32_t s = 0; s < 512; ++s)
     if (active[s >> 6] >> (s & 63) & 1)

@@ -70,32 +70,33 @@ void add_power(const Unit& u, double decay, Vec3d middle, double h, const double
 
 } // namespace
 
-/// The kernel's form of a unit: every argument in log2, products of three axes near their final size.
-void Evaluator::in_single(const Field& f, Selection& s, Vec3d middle, double h, float* out) {
+void Evaluator::in_single(const Field& f, const Selection& s, double h, float* out) {
   constexpr double log2e = std::numbers::log2e;
+  const BlockUnits& u = s.block_units;
+  const double step = 2 * f.decay * h * log2e;
+  BlockShape shape{{}, static_cast<float>(step), static_cast<float>(-0.5 * step * h)};
+  std::copy_n(s.box.middle, 3, shape.middle);
+  const auto rows = static_cast<size_t>(s.atoms + s.units + 2);
+  rows_.x.resize(std::max(rows_.x.size(), 8 * rows));
+  rows_.yz.resize(std::max(rows_.yz.size(), 64 * rows));
+  make_rows(u, shape, rows_);
+  alignas(64) float root[points] = {}; // near, until it is done
   OpenGroups groups(f);
-  single_.assign(groups.levels() * points, 0.0f); // [l]: the open group of level l
-  std::fill_n(out, points, 0.0f);
-  const auto sum_of = [&](size_t l) { return l < groups.levels() ? &single_[l * points] : out; };
-  const auto close = [&](size_t l, int64_t g) {
-    raise_group(static_cast<float>(f.level[l].exponent[static_cast<size_t>(g)]), sum_of(l), sum_of(l + 1));
-  };
-  for (const Unit& u : s.unit) {
-    groups.enter(u.group, close);
-    const double step = 2 * u.exponent * f.decay * h * log2e;
-    const Vec3d away = u.centroid - middle;
-    const UnitArguments unit{
-        static_cast<float>(u.exponent),
-        static_cast<float>(u.exponent * log2e * u.ln_center),
-        {static_cast<float>(step * away.x), static_cast<float>(step * away.y), static_cast<float>(step * away.z)},
-        static_cast<float>(-0.5 * step * h),
-        {&s.argument[0][0] + u.begin, &s.argument[1][0] + u.begin, &s.argument[2][0] + u.begin,
-         &s.argument[3][0] + u.begin},
-        u.end - u.begin};
-    scratch_.resize(std::max(scratch_.size(), static_cast<size_t>(96 * (unit.atoms + 1) + 64)));
-    add_unit(unit, scratch_.data(), sum_of(1));
+  if (groups.levels() == 1) {
+    add_units(u, rows_, 0, u.n, root);
+  } else {
+    single_.assign(groups.levels() * points, 0.0f); // [l]: the open group of level l
+    const auto sum_of = [&](size_t l) { return l < groups.levels() ? &single_[l * points] : root; };
+    const auto close = [&](size_t l, int64_t g) {
+      raise_group(static_cast<float>(f.level[l].exponent[static_cast<size_t>(g)]), sum_of(l), sum_of(l + 1));
+    };
+    for (int32_t n = 0; n < u.n; ++n) {
+      groups.enter(s.unit_group[static_cast<size_t>(n)], close);
+      add_units(u, rows_, n, n + 1, sum_of(1));
+    }
+    groups.finish(close);
   }
-  groups.finish(close);
+  std::copy_n(root, points, out);
 }
 
 void Evaluator::in_double(const Field& f, const Selection& s, Vec3d middle, double h, float* out) {
@@ -151,10 +152,10 @@ void Evaluator::by_logarithms(const Field& f, const Selection& s, Vec3d middle, 
   }
 }
 
-void Evaluator::evaluate(const Field& f, Selection& s, Vec3d middle, double h, float* out) {
+void Evaluator::evaluate(const Field& f, const Selection& s, Vec3d middle, double h, float* out) {
   switch (s.arithmetic) {
   case Arithmetic::in_single:
-    return in_single(f, s, middle, h, out);
+    return in_single(f, s, h, out);
   case Arithmetic::in_double:
     return in_double(f, s, middle, h, out);
   case Arithmetic::in_logarithms:

@@ -63,7 +63,7 @@ float* Search::evaluate(Vec3i corner, Workspace& w) const {
   float* const value = w.values[bank_].take(512);
   w.evaluator.evaluate(f_, w.selection, 0.5 * (box.lo + box.hi), frame_.spacing, value);
   ++w.counts.blocks_evaluated;
-  w.counts.group_visits += static_cast<int64_t>(w.selection.unit.size());
+  w.counts.group_visits += w.selection.units;
   w.counts.atom_visits += w.selection.atoms;
   w.points += points_in_grid(frame_, 8 * corner);
   return value;
@@ -203,12 +203,12 @@ void Search::finish(NodeState& s, const NodeBits* const* below, const NodeBits* 
     if (!value) {
       // Bounds left it out: its points are on corners of band cells, and lie where the bounds say.
       const Box node = points_box(frame_, s.corner, node_blocks), box = points_box(frame_, corner, 1);
-      const Vec3d middle = 0.5 * (node.lo + node.hi);
-      if (!entered) {
-        w.selection.enter(middle, nodes_.clusters_at(s.corner));
-        w.selection.narrow(middle, 0.5 * (node.hi - node.lo));
-      }
+      if (!entered)
+        w.selection.enter(0.5 * (node.lo + node.hi), nodes_.clusters_at(s.corner));
       entered = true;
+      const Vec3i in_node = block_at(b);
+      const Box part = points_box(frame_, s.corner + Vec3i{in_node.x & 2, in_node.y & 2, in_node.z & 2}, 2);
+      w.selection.narrow(0.5 * (part.lo + part.hi), 0.5 * (part.hi - part.lo));
       ++w.counts.blocks_visited;
       w.selection.select(0.5 * (box.lo + box.hi), 0.5 * (box.hi - box.lo), false);
       value = evaluate(corner, w);
@@ -289,7 +289,7 @@ Band Search::run(SearchCounts& counts) {
 Budget budget_for(const SearchOptions& o) {
   Budget b(o.tolerance);
   if (o.atoms == AtomSearch::all)
-    b.far = b.block = b.within = 0;
+    b.far = b.part = b.block = b.within = 0;
   return b;
 }
 

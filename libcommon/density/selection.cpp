@@ -63,13 +63,16 @@ void Selection::enter(Vec3d middle, std::span<const int32_t> clusters) {
   const size_t n = clusters.size(), padded = (n + 15) / 16 * 16;
   LocalClusters& l = local_;
   l.cluster.assign(clusters.begin(), clusters.end());
+  l.group.resize(n);
+  l.exponent.resize(n);
   for (std::vector<float>* v : {&l.lo_x, &l.lo_y, &l.lo_z, &l.hi_x, &l.hi_y, &l.hi_z, &l.cutoff2, &l.peak})
-    v->assign(padded, 0);
-  for (std::vector<float>* v : {&l.atom_x, &l.atom_y, &l.atom_z})
-    v->assign(16 * n, 0);
-  l.atom_peak.assign(16 * n, -1e30f);
+    v->resize(padded);
+  for (std::vector<float>* v : {&l.atom_x, &l.atom_y, &l.atom_z, &l.atom_peak})
+    v->resize(16 * n);
   for (size_t i = 0; i < n; ++i) {
     const auto c = static_cast<size_t>(clusters[i]);
+    l.group[i] = f_.group[c];
+    l.exponent[i] = static_cast<float>(f_.level[0].exponent[static_cast<size_t>(f_.group[c])]);
     const Vec3d lo = f_.box[c].lo - middle, hi = f_.box[c].hi - middle;
     l.lo_x[i] = static_cast<float>(lo.x), l.lo_y[i] = static_cast<float>(lo.y),
     l.lo_z[i] = static_cast<float>(lo.z);
@@ -85,13 +88,14 @@ void Selection::enter(Vec3d middle, std::span<const int32_t> clusters) {
       l.atom_peak[slot] = static_cast<float>(log2e * f_.peak[a]);
       peak = std::max(peak, l.atom_peak[slot]);
     }
+    for (; slot < 16 * (i + 1); ++slot) {
+      l.atom_x[slot] = l.atom_y[slot] = l.atom_z[slot] = 0;
+      l.atom_peak[slot] = -1e30f;
+    }
     l.peak[i] = peak;
   }
   all_.resize(n);
   std::iota(all_.begin(), all_.end(), 0);
-  narrowed_.resize(n + 16);
-  near_.resize(n + 16);
-  upper_bound_.resize(n + 16);
 }
 
 LocalBox Selection::local(Vec3d middle, Vec3d half) const {
@@ -105,48 +109,64 @@ LocalBox Selection::local(Vec3d middle, Vec3d half) const {
 
 bool Selection::narrow(Vec3d middle, Vec3d half) {
   narrowed_.resize(all_.size() + 16);
-  const LocalBox box = local(middle, half);
-  const int32_t n = near_clusters(local_, all_.data(), static_cast<int32_t>(all_.size()), box, narrowed_.data());
+  const LocalBox part = local(middle, half);
+  const int32_t n = near_clusters(local_, all_.data(), static_cast<int32_t>(all_.size()), part, narrowed_.data());
   narrowed_.resize(static_cast<size_t>(n));
   near_ = narrowed_;
-  gather(box);
-  if (!f_.plain_above)
-    return true;
-  effect_.resize((candidate_.size() + 15) / 16 * 16);
-  for (size_t i = 0; i < candidate_.size(); ++i)
-    effect_[i] = candidate_[i].exponent * candidate_[i].log2_upper;
-  exp2_all(effect_.data(), static_cast<int32_t>(effect_.size()));
-  double upper = 0;
-  for (size_t i = 0; i < candidate_.size(); ++i)
-    upper += effect_[i];
-  return (1 + single) * upper + 2 * (budget_.far + budget_.block + budget_.within) >= lower_;
+  gather(part);
+  find_effects();
+  if (surely_outside())
+    return false;
+  drop(budget_.part);
+  narrowed_.clear();
+  for (const Candidate& c : candidate_)
+    if (c.kept)
+      narrowed_.insert(narrowed_.end(), near_.begin() + c.range.begin, near_.begin() + c.range.end);
+  return true;
 }
 
 /// Candidates and their upper bounds from the clusters in near_.
-void Selection::gather(const LocalBox& box) {
-  const auto n = static_cast<int32_t>(near_.size());
-  upper_bound_.resize(near_.size() + 16);
-  upper_bounds(local_, near_.data(), n, box, static_cast<float>(log2e * f_.decay), scaled_, upper_bound_.data());
+void Selection::gather(const LocalBox& b) {
+  const size_t n = near_.size();
+  for (std::vector<float>* v : {&cluster_sum_, &cluster_scale_, &log2_upper_, &exponent_, &effect_})
+    v->resize(n + 16);
+  upper_sums(local_, near_.data(), static_cast<int32_t>(n), b, static_cast<float>(log2e * f_.decay), scaled_,
+             cluster_sum_.data(), cluster_scale_.data());
+  if (scaled_) {
+    std::fill_n(cluster_sum_.begin() + static_cast<std::ptrdiff_t>(n), 16, 1.0f);
+    log2_all(cluster_sum_.data(), static_cast<int32_t>(n));
+  }
   candidate_.clear();
-  for (int32_t i = 0; i < n; ++i) {
-    const auto c = static_cast<size_t>(local_.cluster[static_cast<size_t>(near_[static_cast<size_t>(i)])]);
-    const auto p = static_cast<float>(f_.level[0].exponent[static_cast<size_t>(f_.group[c])]);
-    const float bound = upper_bound_[static_cast<size_t>(i)];
-    if (candidate_.empty() || p == 1 || candidate_.back().group != f_.group[c]) {
-      candidate_.push_back({f_.group[c], p, i, i + 1, bound, true});
+  size_t last = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const auto c = static_cast<size_t>(near_[i]);
+    const float p = local_.exponent[c], sum = scaled_ ? cluster_sum_[i] + cluster_scale_[i] : cluster_sum_[i];
+    const auto at = static_cast<int32_t>(i);
+    if (candidate_.empty() || p == 1 || candidate_.back().group != local_.group[c]) {
+      last = candidate_.size();
+      candidate_.push_back({local_.group[c], p, {at, at + 1}, true});
+      exponent_[last] = p;
+      log2_upper_[last] = sum;
     } else {
-      candidate_.back().end = i + 1;
-      candidate_.back().log2_upper = log2_add(candidate_.back().log2_upper, bound);
+      candidate_.back().range.end = at + 1;
+      log2_upper_[last] = scaled_ ? log2_add(log2_upper_[last], sum) : log2_upper_[last] + sum;
     }
   }
+  const size_t candidates = candidate_.size();
+  std::fill_n(log2_upper_.begin() + static_cast<std::ptrdiff_t>(candidates), 16, 1.0f);
+  std::fill_n(exponent_.begin() + static_cast<std::ptrdiff_t>(candidates), 16, 1.0f);
+  if (!scaled_)
+    log2_all(log2_upper_.data(), static_cast<int32_t>(candidates));
 }
 
 /// effect_: the most that dropping each candidate can change G.
 void Selection::find_effects() {
-  effect_.assign((candidate_.size() + 15) / 16 * 16, -200);
+  if (f_.plain_above)
+    return power_terms(log2_upper_.data(), exponent_.data(), static_cast<int32_t>(candidate_.size()),
+                       effect_.data());
   for (size_t i = 0; i < candidate_.size(); ++i)
-    effect_[i] = candidate_[i].exponent * candidate_[i].log2_upper;
-  if (!f_.plain_above) {
+    effect_[i] = candidate_[i].exponent * log2_upper_[i];
+  {
     // Upper bounds of the sums of all open groups, as runs per level; `run` counts them on the second pass.
     sum_.resize(f_.level.size());
     for (std::vector<double>& s : sum_)
@@ -179,20 +199,22 @@ void Selection::find_effects() {
       effect_[i] = static_cast<float>(log2e * e);
     }
   }
-  exp2_all(effect_.data(), static_cast<int32_t>(effect_.size()));
+  std::fill_n(effect_.begin() + static_cast<std::ptrdiff_t>(candidate_.size()), 16, 0.0f);
+  std::fill_n(cluster_scale_.begin(), candidate_.size(), 1.0f); // as exponents
+  power_terms(effect_.data(), cluster_scale_.data(), static_cast<int32_t>(candidate_.size()), effect_.data());
 }
 
 /// Drops candidates of small effect while their total is within the budget: those below a threshold, the largest of
 /// a few that the budget allows.
-void Selection::drop() {
+void Selection::drop(double budget) {
   const auto n = static_cast<double>(candidate_.size());
   for (const double share : {0.5, 0.2, 0.08, 0.0}) {
-    const double threshold = share > 0 ? share * budget_.block : budget_.block / n;
+    const double threshold = share > 0 ? share * budget : budget / n;
     double total = 0;
     for (size_t i = 0; i < candidate_.size(); ++i)
       if (effect_[i] <= threshold)
         total += effect_[i];
-    if (total * (1 + single) > budget_.block && share > 0)
+    if (total * (1 + single) > budget && share > 0)
       continue;
     for (size_t i = 0; i < candidate_.size(); ++i)
       candidate_[i].kept = effect_[i] > threshold;
@@ -201,37 +223,32 @@ void Selection::drop() {
 }
 
 /// Units for arithmetic in single precision. False when it does not hold here.
-bool Selection::take_single(const LocalBox& block) {
-  const auto decay = static_cast<float>(log2e * f_.decay);
-  size_t to = 0;
-  for (const Candidate& c : candidate_) {
-    if (!c.kept)
-      continue;
-    const size_t room = to + 16 * static_cast<size_t>(c.end - c.begin) + 16;
-    for (std::vector<float>& a : argument)
-      if (a.size() < room)
-        a.resize(2 * room);
-    const AtomArguments arguments{argument[0].data() + to, argument[1].data() + to, argument[2].data() + to,
-                                  argument[3].data() + to};
-    // T ≥ 1, so atoms whose terms of T together stay below η are at most η of the sum (field.md §4).
-    const int32_t clusters = c.end - c.begin;
-    const double small = within_ / static_cast<double>(Field::cluster_size * clusters);
-    UnitMiddle m;
-    if (!take_unit(local_, near_.data() + c.begin, clusters, block, decay,
-                   small > 0 ? std::log2(static_cast<float>(small)) : -1e30f, arguments, m))
-      return false;
-    const double p = c.exponent;
-    unit.push_back({c.group, p, static_cast<int32_t>(to), static_cast<int32_t>(to) + m.kept, ln2 * m.log2_sum,
-                    node_middle_ + Vec3d{m.centroid[0], m.centroid[1], m.centroid[2]}});
-    to += static_cast<size_t>(m.kept);
-    float away = 0;
-    for (int a = 0; a < 3; ++a)
-      away += block.half[a] * std::abs(block.middle[a] - m.centroid[a]);
-    constexpr float range = 115; // log2: nothing may overflow
-    if (m.swing > range || 2 * decay * c.exponent * away > range)
-      return false;
-  }
-  atoms = static_cast<int64_t>(to);
+bool Selection::take_single() {
+  BlockUnits& u = block_units;
+  u.range.clear();
+  u.exponent.clear();
+  unit_group.clear();
+  int32_t clusters = 0;
+  for (const Candidate& c : candidate_)
+    if (c.kept) {
+      u.range.push_back(c.range);
+      u.exponent.push_back(c.exponent);
+      unit_group.push_back(c.group);
+      clusters += c.range.end - c.range.begin;
+    }
+  u.n = static_cast<int32_t>(u.range.size());
+  const size_t room = u.range.size() + 16, atom_room = 16 * static_cast<size_t>(clusters) + 32;
+  u.begin.resize(room);
+  for (std::vector<float>* v : {&u.exponent, &u.log2_sum, &u.x, &u.y, &u.z, &u.log2_scale})
+    v->resize(room);
+  for (std::vector<float>* v : {&u.atom_x, &u.atom_y, &u.atom_z, &u.atom_constant})
+    if (v->size() < atom_room)
+      v->resize(2 * atom_room);
+  if (!take_units(local_, near_.data(), box, static_cast<float>(log2e * f_.decay), static_cast<float>(within_),
+                  scaled_, u))
+    return false;
+  units = u.n;
+  atoms = u.begin[static_cast<size_t>(u.n)];
   return true;
 }
 
@@ -247,7 +264,7 @@ void Selection::take_double(Vec3d middle) {
         c.group, f_.level[0].exponent[static_cast<size_t>(c.group)], static_cast<int32_t>(ln_weight.size()), 0, 0,
         {}};
     double largest = -infinity;
-    for (auto i = static_cast<size_t>(c.begin); i < static_cast<size_t>(c.end); ++i) {
+    for (auto i = static_cast<size_t>(c.range.begin); i < static_cast<size_t>(c.range.end); ++i) {
       const auto cluster = static_cast<size_t>(local_.cluster[static_cast<size_t>(near_[i])]);
       for (auto a = static_cast<size_t>(f_.begin[cluster]); a < static_cast<size_t>(f_.begin[cluster + 1]); ++a) {
         const Vec3d d{f_.x[a] - middle.x, f_.y[a] - middle.y, f_.z[a] - middle.z};
@@ -275,20 +292,12 @@ void Selection::take_double(Vec3d middle) {
 /// ln G + κQ|δ|² is convex, so it lies above its tangent at the middle (field.md §5).
 bool Selection::surely_inside(Vec3d middle, Vec3d half) {
   Fold root;
-  if (f_.plain_above) {
-    effect_.assign((unit.size() + 15) / 16 * 16, -126);
-    for (size_t i = 0; i < unit.size(); ++i)
-      effect_[i] = static_cast<float>(log2e * unit[i].exponent * unit[i].ln_center);
-    exp2_all(effect_.data(), static_cast<int32_t>(effect_.size()));
-    double sum = 0;
-    for (size_t i = 0; i < unit.size(); ++i) {
-      sum += effect_[i];
-      root.gradient += 2 * f_.decay * unit[i].exponent * effect_[i] * (unit[i].centroid - middle);
-    }
+  if (f_.plain_above && arithmetic == Arithmetic::in_single) {
+    float sum, gradient[3];
+    sum_of_powers(block_units, box, static_cast<float>(f_.decay), &sum, gradient);
     if (sum <= upper_)
       return false;
-    root.gradient = root.gradient / sum;
-    root.middle = std::log(sum);
+    root = {std::log(double{sum}), Vec3d{gradient[0], gradient[1], gradient[2]} / double{sum}};
   } else {
     OpenGroups groups(f_);
     std::vector<Fold> open(groups.levels());
@@ -296,16 +305,23 @@ bool Selection::surely_inside(Vec3d middle, Vec3d half) {
       (l + 1 < open.size() ? open[l + 1] : root).add(open[l].raised(f_.level[l].exponent[static_cast<size_t>(g)]));
       open[l] = Fold{};
     };
-    for (const Unit& u : unit) {
-      groups.enter(u.group, close);
-      open[1].add(Fold{u.ln_center, 2 * f_.decay * (u.centroid - middle)}.raised(u.exponent));
-    }
+    const auto add = [&](int64_t group, double exponent, double ln_center, Vec3d centroid) {
+      groups.enter(group, close);
+      (open.size() > 1 ? open[1] : root).add(Fold{ln_center, 2 * f_.decay * (centroid - middle)}.raised(exponent));
+    };
+    if (arithmetic == Arithmetic::in_single)
+      for (size_t i = 0; i < unit_group.size(); ++i)
+        add(unit_group[i], block_units.exponent[i], ln2 * block_units.log2_sum[i],
+            node_middle_ + Vec3d{block_units.x[i], block_units.y[i], block_units.z[i]});
+    else
+      for (const Unit& u : unit)
+        add(u.group, u.exponent, u.ln_center, u.centroid);
     groups.finish(close);
   }
   const Vec3d g = root.gradient;
   const double least = root.middle - (std::abs(g.x) * half.x + std::abs(g.y) * half.y + std::abs(g.z) * half.z) -
                        f_.decay * f_.steepest * norm2(half);
-  const double total = budget_.far + budget_.block + budget_.within;
+  const double total = budget_.total();
   return std::exp(least) * (1 - 4 * total - single) > upper_ + 4 * total;
 }
 
@@ -339,6 +355,7 @@ void Selection::filter(Vec3d middle, Vec3d half) {
   }
   for (std::vector<double>* v : {&ln_weight, &offset_x, &offset_y, &offset_z})
     v->resize(to);
+  units = static_cast<int64_t>(unit.size());
   atoms = static_cast<int64_t>(to);
   if (range > 690)
     arithmetic = Arithmetic::in_logarithms;
@@ -360,20 +377,19 @@ bool Selection::surely_outside() {
     };
     for (const Candidate& c : candidate_) {
       up.enter(c.group, close);
-      open[1] = log_add(open[1], ln2 * c.exponent * c.log2_upper);
+      open[1] = log_add(open[1], ln2 * c.exponent * log2_upper_[static_cast<size_t>(&c - candidate_.data())]);
     }
     up.finish(close);
     upper = std::exp(root);
   }
   const double slack = single * std::max(1.0, f_.steepest);
-  return (1 + slack) * upper + 2 * (budget_.far + budget_.block + budget_.within) < lower_;
+  return (1 + slack) * upper + 2 * budget_.total() < lower_;
 }
 
 void Selection::select(Vec3d middle, Vec3d half, bool classify) {
   side = Side::mixed;
   arithmetic = least_;
-  unit.clear();
-  const LocalBox box = local(middle, half);
+  box = local(middle, half);
   near_.resize(narrowed_.size() + 16);
   near_.resize(static_cast<size_t>(
       near_clusters(local_, narrowed_.data(), static_cast<int32_t>(narrowed_.size()), box, near_.data())));
@@ -383,14 +399,13 @@ void Selection::select(Vec3d middle, Vec3d half, bool classify) {
     side = Side::outside;
     return;
   }
-  drop();
-  if (arithmetic == Arithmetic::in_single && !take_single(box))
+  drop(budget_.block);
+  if (arithmetic == Arithmetic::in_single && !take_single())
     arithmetic = Arithmetic::in_double;
   if (arithmetic != Arithmetic::in_single)
     take_double(middle);
   if (classify && surely_inside(middle, half)) {
     side = Side::inside;
-    unit.clear();
     return;
   }
   if (arithmetic != Arithmetic::in_single)

@@ -1,18 +1,20 @@
 // selection.hpp — what matters in one block of 8³ grid points: the kept atoms, and bounds on G over the block.
 // Derivations in field.md.
 #pragma once
-#include "density/block_kernel.hpp"
+#include "density/bounds_kernel.hpp"
 #include "density/field.hpp"
 #include <span>
 #include <vector>
 
 namespace molmesh::density {
 
-/// Shares of the tolerance ε (field.md §2): far clusters, groups dropped per block, atoms dropped within groups;
-/// the rest is for rounding.
+/// Shares of the tolerance ε (field.md §2): far clusters, groups dropped in a part of a node and in a block, atoms
+/// dropped within groups; the rest is for rounding.
 struct Budget {
-  double far, block, within;
-  explicit Budget(double tolerance) : far(0.1 * tolerance), block(0.3 * tolerance), within(0.2 * tolerance) {}
+  double far, part, block, within;
+  explicit Budget(double tolerance)
+      : far(0.05 * tolerance), part(0.05 * tolerance), block(0.3 * tolerance), within(0.2 * tolerance) {}
+  double total() const { return far + part + block + within; }
 };
 
 enum class Side : uint8_t { outside, inside, mixed };
@@ -25,13 +27,14 @@ enum class Arithmetic { in_single, in_double, in_logarithms };
 /// overflow.
 Arithmetic arithmetic_for(const Field& f, double tolerance);
 
-/// A sum of atoms that is raised to one power: an innermost group, or one cluster of it when its exponent is 1.
+/// A unit is a sum of atoms that is raised to one power: an innermost group, or one cluster of it when its exponent
+/// is 1; in double precision:
 /// In the block S(x) = exp(ln_center - κ(2δ·(m - centroid) + δ²)) · T(x), δ = x - m, m the block's middle,
 /// T(x) = Σ exp(ln_weight + 2κ δ·offset), at least about 1.
 struct Unit {
   int64_t group;      ///< innermost group
   double exponent;    ///< P
-  int32_t begin, end; ///< kept atoms in Selection::argument or Selection::atom
+  int32_t begin, end; ///< kept atoms in Selection::ln_weight and so on
   double ln_center;
   Vec3d centroid; ///< Å
 };
@@ -50,28 +53,30 @@ public:
   void select(Vec3d middle, Vec3d half, bool classify);
 
   Side side = Side::mixed;
-  Arithmetic arithmetic; ///< that this block needs: the one asked for, or a safer one
+  Arithmetic arithmetic;        ///< that this block needs: the one asked for, or a safer one
+  int64_t units = 0, atoms = 0; ///< kept
+  /// Kept units and atoms when the arithmetic is in_single, relative to node_middle.
+  BlockUnits block_units;
+  std::vector<int64_t> unit_group; ///< innermost group of each
+  LocalBox box;                    ///< of the block
+  /// Kept units and atoms otherwise.
   std::vector<Unit> unit;
-  int64_t atoms = 0; ///< kept
-  /// Kept atoms when the arithmetic is in_single: arguments of block_kernel.hpp, base 2.
-  std::vector<float> argument[4]; ///< x, y, z, constant
-  /// Kept atoms otherwise.
   std::vector<double> ln_weight, offset_x, offset_y, offset_z; ///< offsets in Å
 
 private:
+  /// A unit that may matter.
   struct Candidate {
     int64_t group;
     float exponent;
-    int32_t begin, end; ///< in near_
-    float log2_upper;   ///< upper bound over the block of log2 S
+    UnitRange range; ///< in near_
     bool kept;
   };
   LocalBox local(Vec3d middle, Vec3d half) const;
-  void gather(const LocalBox& box);
+  void gather(const LocalBox& b);
   void find_effects();
   bool surely_outside();
-  void drop();
-  bool take_single(const LocalBox& block);
+  void drop(double budget);
+  bool take_single();
   void take_double(Vec3d middle);
   bool surely_inside(Vec3d middle, Vec3d half);
   void filter(Vec3d middle, Vec3d half);
@@ -85,7 +90,9 @@ private:
   LocalClusters local_;
   std::vector<int32_t> all_, narrowed_, near_;
   std::vector<Candidate> candidate_;
-  std::vector<float> upper_bound_, effect_;
+  std::vector<float> cluster_sum_, cluster_scale_;
+  std::vector<float> log2_upper_, exponent_,
+      effect_;                           ///< of candidates: bound on log2 S over the box, P, and effect
   std::vector<std::vector<double>> sum_; ///< per level, per run of candidates of one group: upper bound of ln S
 };
 
