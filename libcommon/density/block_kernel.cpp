@@ -162,7 +162,7 @@ void make_rows_simd(const BlockUnits& u, const BlockShape& b, BlockRows& rows) {
                rows.x.data() + 8 * static_cast<size_t>(row), rows.yz.data() + 64 * static_cast<size_t>(row));
     row += atoms;
     const float p = u.exponent[s];
-    make.quadratic({p * u.log2_sum[s],
+    make.quadratic({p * u.log2_term[s],
                     {p * b.slope * (u.x[s] - b.middle[0]), p * b.slope * (u.y[s] - b.middle[1]),
                      p * b.slope * (u.z[s] - b.middle[2])}},
                    p * b.curvature, rows.x.data() + 8 * static_cast<size_t>(row),

@@ -19,15 +19,10 @@ HWY_INLINE V distance_beyond(V lo, V hi, float middle, float half) {
   return hn::Max(hn::Max(below, above), hn::Zero(f));
 }
 
-int32_t near_clusters_simd(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& b,
-                           int32_t* out) {
+int32_t near_clusters_simd(const LocalClusters& c, int32_t n, const LocalBox& b, int32_t* out) {
   int32_t found = 0;
   for (int32_t i = 0; i < n; i += lanes) {
-    HWY_ALIGN int32_t index[lanes];
-    for (int32_t l = 0; l < lanes; ++l)
-      index[l] = list[std::min(i + l, n - 1)];
-    const auto at = hn::Load(I(), index);
-    const auto get = [&](const std::vector<float>& v) { return hn::GatherIndex(f, v.data(), at); };
+    const auto get = [&](const std::vector<float>& v) { return hn::LoadU(f, v.data() + i); };
     const V dx = distance_beyond(get(c.lo_x), get(c.hi_x), b.middle[0], b.half[0]);
     const V dy = distance_beyond(get(c.lo_y), get(c.hi_y), b.middle[1], b.half[1]);
     const V dz = distance_beyond(get(c.lo_z), get(c.hi_z), b.middle[2], b.half[2]);
@@ -35,186 +30,185 @@ int32_t near_clusters_simd(const LocalClusters& c, const int32_t* list, int32_t 
     HWY_ALIGN float excess[lanes];
     hn::Store(hn::Sub(d2, get(c.cutoff2)), f, excess);
     for (int32_t l = 0; l < lanes && i + l < n; ++l) {
-      out[found] = index[l];
+      out[found] = i + l;
       found += excess[l] < 0;
     }
   }
   return found;
 }
 
-/// log2 of the largest term any atom of the cluster can have at the point or box at squared distance d2.
-HWY_INLINE float shift(const LocalClusters& c, int32_t k, const LocalBox& b, float decay, bool point) {
-  const auto s = static_cast<size_t>(k);
-  float d2 = 0;
-  const float lo[3] = {c.lo_x[s], c.lo_y[s], c.lo_z[s]}, hi[3] = {c.hi_x[s], c.hi_y[s], c.hi_z[s]};
-  for (int a = 0; a < 3; ++a) {
-    const float half = point ? 0 : b.half[a];
-    const float d = std::max({lo[a] - b.middle[a] - half, b.middle[a] - half - hi[a], 0.0f});
-    d2 += d * d;
-  }
-  return c.peak[s] - decay * d2;
-}
-
-void upper_sums_simd(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& b, float decay,
-                     bool scaled, float* out, float* log2_scale) {
+void bound_units_simd(const NearUnits& u, const LocalBox& b, float decay, bool scaled, float* log2_upper) {
   const V mx = hn::Set(f, b.middle[0]), my = hn::Set(f, b.middle[1]), mz = hn::Set(f, b.middle[2]);
   const V hx = hn::Set(f, b.half[0]), hy = hn::Set(f, b.half[1]), hz = hn::Set(f, b.half[2]);
   const V k = hn::Set(f, decay), zero = hn::Zero(f);
   const auto beyond = [zero](const float* v, V middle, V half) {
     return hn::Max(hn::Sub(hn::Abs(hn::Sub(hn::LoadU(f, v), middle)), half), zero);
   };
-  for (int32_t i = 0; i < n; ++i) {
-    const size_t first = 16 * static_cast<size_t>(list[i]);
-    const float base = scaled ? shift(c, list[i], b, decay, false) : 0.0f;
+  const auto log2_term = [&](size_t a) {
+    const V dx = beyond(&u.atom_x[a], mx, hx), dy = beyond(&u.atom_y[a], my, hy), dz = beyond(&u.atom_z[a], mz, hz);
+    const V d2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+    return hn::NegMulAdd(d2, k, hn::LoadU(f, &u.atom_peak[a]));
+  };
+  for (int32_t n = 0; n < u.n; ++n) {
+    const size_t begin = 16 * static_cast<size_t>(u.begin[static_cast<size_t>(n)]),
+                 end = 16 * static_cast<size_t>(u.begin[static_cast<size_t>(n) + 1]);
+    V scale = zero;
+    if (scaled) {
+      V largest = hn::Set(f, -1e30f);
+      for (size_t a = begin; a < end; a += lanes)
+        largest = hn::Max(largest, log2_term(a));
+      scale = hn::MaxOfLanes(f, largest);
+    }
     V sum = zero;
-    for (int32_t l = 0; l < 16; l += lanes) {
-      const size_t a = first + static_cast<size_t>(l);
-      const V dx = beyond(&c.atom_x[a], mx, hx), dy = beyond(&c.atom_y[a], my, hy),
-              dz = beyond(&c.atom_z[a], mz, hz);
-      const V d2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-      sum = hn::Add(sum, exp2(hn::NegMulAdd(d2, k, hn::Sub(hn::LoadU(f, &c.atom_peak[a]), hn::Set(f, base)))));
-    }
-    out[i] = hn::GetLane(hn::SumOfLanes(f, sum));
-    log2_scale[i] = base;
+    for (size_t a = begin; a < end; a += lanes)
+      sum = hn::Add(sum, exp2(hn::Sub(log2_term(a), scale)));
+    sum = hn::SumOfLanes(f, sum);
+    log2_upper[n] = hn::GetLane(scaled ? hn::Add(scale, log2(sum)) : sum);
   }
+  std::fill_n(log2_upper + u.n, 16, 1.0f);
+  if (!scaled)
+    for (int32_t n = 0; n < u.n; n += lanes)
+      hn::StoreU(log2(hn::LoadU(f, log2_upper + n)), f, log2_upper + n);
 }
 
-void power_terms_simd(float* log2_sum, const float* exponent, int32_t n, float* term) {
+void power_terms_simd(const float* log2_sum, const float* exponent, int32_t n, float* term) {
   for (int32_t i = 0; i < n; i += lanes)
-    hn::StoreU(exp2(hn::Mul(hn::LoadU(f, log2_sum + i), hn::LoadU(f, exponent + i))), f, term + i);
+    hn::StoreU(exp2(hn::Min(hn::Mul(hn::LoadU(f, log2_sum + i), hn::LoadU(f, exponent + i)), hn::Set(f, 127.0f))),
+               f, term + i);
 }
 
-void log2_all_simd(float* v, int32_t n) {
-  for (int32_t i = 0; i < n; i += lanes)
-    hn::StoreU(log2(hn::LoadU(f, v + i)), f, v + i);
-}
-
-/// Of the atoms of the clusters list[n] at a block's middle, scaled by 2^-base: sum of the terms and their moments.
-HWY_INLINE void sum_at_middle(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& b,
-                              float decay, float base, float* total) {
-  const V mx = hn::Set(f, b.middle[0]), my = hn::Set(f, b.middle[1]), mz = hn::Set(f, b.middle[2]),
-          k = hn::Set(f, decay), scale = hn::Set(f, base);
-  V w = hn::Zero(f), wx = w, wy = w, wz = w;
-  for (int32_t i = 0; i < n; ++i)
-    for (int32_t l = 0; l < 16; l += lanes) {
-      const size_t a = 16 * static_cast<size_t>(list[i]) + static_cast<size_t>(l);
-      const V x = hn::LoadU(f, &c.atom_x[a]), y = hn::LoadU(f, &c.atom_y[a]), z = hn::LoadU(f, &c.atom_z[a]);
-      const V dx = hn::Sub(x, mx), dy = hn::Sub(y, my), dz = hn::Sub(z, mz);
-      const V d2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-      const V e = exp2(hn::NegMulAdd(d2, k, hn::Sub(hn::LoadU(f, &c.atom_peak[a]), scale)));
-      w = hn::Add(w, e);
-      wx = hn::MulAdd(e, x, wx);
-      wy = hn::MulAdd(e, y, wy);
-      wz = hn::MulAdd(e, z, wz);
-    }
-  total[0] = hn::GetLane(hn::SumOfLanes(f, w));
-  total[1] = hn::GetLane(hn::SumOfLanes(f, wx));
-  total[2] = hn::GetLane(hn::SumOfLanes(f, wy));
-  total[3] = hn::GetLane(hn::SumOfLanes(f, wz));
-}
-
-/// Middles of units; false when single precision cannot tell or would overflow.
-bool find_middles(const LocalClusters& c, const int32_t* list, const LocalBox& b, float decay, bool scaled,
-                  BlockUnits& to) {
-  const float least = 1e-30f;
-  for (int32_t u = 0; u < to.n; ++u) {
-    const auto s = static_cast<size_t>(u);
-    const UnitRange r = to.range[s];
-    const int32_t n = r.end - r.begin;
-    float total[4], base = 0;
-    if (!scaled)
-      sum_at_middle(c, list + r.begin, n, b, decay, 0, total);
-    if (scaled || total[0] < least) {
-      base = -1e30f;
-      for (int32_t i = r.begin; i < r.end; ++i)
-        base = std::max(base, shift(c, list[i], b, decay, true));
-      sum_at_middle(c, list + r.begin, n, b, decay, base, total);
-      if (total[0] < least)
-        return false;
-    }
-    to.log2_sum[s] = total[0];
-    to.x[s] = total[1];
-    to.y[s] = total[2];
-    to.z[s] = total[3];
-    to.log2_scale[s] = base;
+float sum_up_to_simd(const float* v, int32_t n, float limit) {
+  V sum = hn::Zero(f);
+  for (int32_t i = 0; i < n; i += lanes) {
+    const V x = hn::LoadU(f, v + i);
+    const auto used = hn::Lt(hn::Iota(f, static_cast<float>(i)), hn::Set(f, static_cast<float>(n)));
+    sum = hn::Add(sum, hn::IfThenElseZero(hn::And(used, hn::Le(x, hn::Set(f, limit))), x));
   }
-  const auto pad = static_cast<size_t>(to.n);
-  for (std::vector<float>* v : {&to.log2_sum, &to.x, &to.y, &to.z, &to.log2_scale, &to.exponent})
-    std::fill_n(v->begin() + static_cast<std::ptrdiff_t>(pad), 16, 1.0f);
-  V farthest = hn::Zero(f);
-  const V k = hn::Set(f, 2 * decay);
-  for (int32_t u = 0; u < to.n; u += lanes) {
-    const V total = hn::LoadU(f, &to.log2_sum[static_cast<size_t>(u)]), per = hn::Div(hn::Set(f, 1.0f), total);
+  return hn::GetLane(hn::SumOfLanes(f, sum));
+}
+
+/// log2 of the atoms' terms at a point.
+struct TermsAt {
+  V x, y, z, k;
+  HWY_INLINE V operator()(V ax, V ay, V az, V peak) const {
+    const V dx = hn::Sub(ax, x), dy = hn::Sub(ay, y), dz = hn::Sub(az, z);
+    return hn::NegMulAdd(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), k, peak);
+  }
+};
+
+bool take_units_simd(const NearUnits& from, const int32_t* list, int32_t n, const LocalBox& b, float decay,
+                     float within, BlockUnits& to) {
+  const TermsAt middle{hn::Set(f, b.middle[0]), hn::Set(f, b.middle[1]), hn::Set(f, b.middle[2]),
+                       hn::Set(f, decay)};
+  const V sx = hn::Set(f, 2 * decay * b.half[0] / 3.5f), sy = hn::Set(f, 2 * decay * b.half[1] / 3.5f),
+          sz = hn::Set(f, 2 * decay * b.half[2] / 3.5f);
+  const float log2_within = within > 0 ? std::log2(within / 16) : -1e30f;
+  V widest = hn::Zero(f);
+  size_t kept = 0;
+  for (int32_t u = 0; u < n; ++u) {
+    const auto s = static_cast<size_t>(u), at = static_cast<size_t>(list[u]);
+    const size_t begin = 16 * static_cast<size_t>(from.begin[at]),
+                 end = 16 * static_cast<size_t>(from.begin[at + 1]);
+    const auto log2_term = [&](size_t a) {
+      return middle(hn::LoadU(f, &from.atom_x[a]), hn::LoadU(f, &from.atom_y[a]), hn::LoadU(f, &from.atom_z[a]),
+                    hn::LoadU(f, &from.atom_peak[a]));
+    };
+    // The atom with the largest term in the middle: of T its term is 1 everywhere (field.md §4).
+    V largest = hn::Set(f, -2e30f), where = hn::Zero(f);
+    for (size_t a = begin; a < end; a += lanes) {
+      const V term = log2_term(a);
+      const auto more = hn::Gt(term, largest);
+      largest = hn::IfThenElse(more, term, largest);
+      where = hn::IfThenElse(more, hn::Set(f, static_cast<float>(a - begin)), where);
+    }
+    const V log2_largest = hn::MaxOfLanes(f, largest);
+    const intptr_t lane = hn::FindFirstTrue(f, hn::Eq(largest, log2_largest));
+    size_t first = begin + static_cast<size_t>(lane);
+    if (end - begin > static_cast<size_t>(lanes)) {
+      HWY_ALIGN float offset[lanes];
+      hn::Store(where, f, offset);
+      first += static_cast<size_t>(offset[lane]);
+    }
+    to.exponent[s] = from.exponent[at];
+    to.log2_term[s] = hn::GetLane(log2_largest);
+    to.x[s] = from.atom_x[first];
+    to.y[s] = from.atom_y[first];
+    to.z[s] = from.atom_z[first];
+    // T ≥ 1, so atoms whose terms of T together stay below η are at most η of the sum.
+    const float slots = static_cast<float>(end - begin) / 16;
+    const V least = hn::Set(f, slots == 1 ? log2_within : log2_within - std::log2(slots));
+    const V cx = hn::Set(f, to.x[s]), cy = hn::Set(f, to.y[s]), cz = hn::Set(f, to.z[s]);
+    for (size_t a = begin; a < end; a += lanes) {
+      const V ax = hn::LoadU(f, &from.atom_x[a]), ay = hn::LoadU(f, &from.atom_y[a]),
+              az = hn::LoadU(f, &from.atom_z[a]);
+      const V weight = hn::Sub(middle(ax, ay, az, hn::LoadU(f, &from.atom_peak[a])), log2_largest);
+      const V x = hn::Mul(hn::Sub(ax, cx), sx), y = hn::Mul(hn::Sub(ay, cy), sy), z = hn::Mul(hn::Sub(az, cz), sz);
+      const V swing = hn::Mul(hn::Set(f, 3.5f), hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z))));
+      // Unused slots have a peak of -1e30: never kept.
+      const auto keep = hn::And(hn::Ge(hn::Add(weight, swing), least), hn::Gt(weight, hn::Set(f, -1e29f)));
+      widest = hn::Max(widest, hn::IfThenElseZero(keep, swing));
+      hn::StoreU(hn::Compress(x, keep), f, &to.atom_x[kept]);
+      hn::StoreU(hn::Compress(y, keep), f, &to.atom_y[kept]);
+      hn::StoreU(hn::Compress(z, keep), f, &to.atom_z[kept]);
+      hn::StoreU(hn::Compress(weight, keep), f, &to.atom_constant[kept]);
+      kept += hn::CountTrue(f, keep);
+    }
+    to.begin[s + 1] = static_cast<int32_t>(kept);
+  }
+  to.n = n;
+  for (std::vector<float>* v : {&to.exponent, &to.log2_term, &to.x, &to.y, &to.z})
+    std::fill_n(v->begin() + n, 16, 0.0f);
+  const V twice = hn::Set(f, 2 * decay);
+  for (int32_t u = 0; u < n; u += lanes) {
     V away = hn::Zero(f);
     int axis = 0;
-    for (std::vector<float>* v : {&to.x, &to.y, &to.z}) {
-      float* const at = &(*v)[static_cast<size_t>(u)];
-      const V center = hn::Mul(hn::LoadU(f, at), per);
-      hn::StoreU(center, f, at);
+    for (const std::vector<float>* v : {&to.x, &to.y, &to.z}) {
+      const V center = hn::LoadU(f, v->data() + u);
       away = hn::MulAdd(hn::Set(f, b.half[axis]), hn::Abs(hn::Sub(center, hn::Set(f, b.middle[axis]))), away);
       ++axis;
     }
-    float* const sum = &to.log2_sum[static_cast<size_t>(u)];
-    hn::StoreU(hn::Add(log2(total), hn::LoadU(f, &to.log2_scale[static_cast<size_t>(u)])), f, sum);
-    away = hn::Mul(hn::Mul(away, k), hn::LoadU(f, &to.exponent[static_cast<size_t>(u)]));
-    const auto used = hn::Lt(hn::Iota(f, static_cast<float>(u)), hn::Set(f, static_cast<float>(to.n)));
-    farthest = hn::Max(farthest, hn::IfThenElseZero(used, away));
-  }
-  return hn::GetLane(hn::MaxOfLanes(f, farthest)) <= log2_range;
-}
-
-bool take_units_simd(const LocalClusters& c, const int32_t* list, const LocalBox& b, float decay, float within,
-                     bool scaled, BlockUnits& to) {
-  if (!find_middles(c, list, b, decay, scaled, to))
-    return false;
-  const V mx = hn::Set(f, b.middle[0]), my = hn::Set(f, b.middle[1]), mz = hn::Set(f, b.middle[2]),
-          k = hn::Set(f, decay);
-  const V sx = hn::Set(f, 2 * decay * b.half[0] / 3.5f), sy = hn::Set(f, 2 * decay * b.half[1] / 3.5f),
-          sz = hn::Set(f, 2 * decay * b.half[2] / 3.5f);
-  V widest = hn::Zero(f);
-  size_t kept = 0;
-  for (int32_t u = 0; u < to.n; ++u) {
-    const auto s = static_cast<size_t>(u);
-    const UnitRange r = to.range[s];
-    // T ≥ 1, so atoms whose terms of T together stay below η are at most η of the sum (field.md §4).
-    const float small = within > 0 ? std::log2(within / static_cast<float>(16 * (r.end - r.begin))) : -1e30f;
-    const V cx = hn::Set(f, to.x[s]), cy = hn::Set(f, to.y[s]), cz = hn::Set(f, to.z[s]),
-            sum = hn::Set(f, to.log2_sum[s]), least = hn::Set(f, small);
-    for (int32_t i = r.begin; i < r.end; ++i)
-      for (int32_t l = 0; l < 16; l += lanes) {
-        const size_t a = 16 * static_cast<size_t>(list[i]) + static_cast<size_t>(l);
-        const V ax = hn::LoadU(f, &c.atom_x[a]), ay = hn::LoadU(f, &c.atom_y[a]), az = hn::LoadU(f, &c.atom_z[a]);
-        const V dx = hn::Sub(ax, mx), dy = hn::Sub(ay, my), dz = hn::Sub(az, mz);
-        const V d2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-        const V weight = hn::Sub(hn::NegMulAdd(d2, k, hn::LoadU(f, &c.atom_peak[a])), sum);
-        const V x = hn::Mul(hn::Sub(ax, cx), sx), y = hn::Mul(hn::Sub(ay, cy), sy),
-                z = hn::Mul(hn::Sub(az, cz), sz);
-        const V swing = hn::Mul(hn::Set(f, 3.5f), hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z))));
-        // Unused slots have a peak of -1e30: never kept.
-        const auto keep = hn::And(hn::Ge(hn::Add(weight, swing), least), hn::Gt(weight, hn::Set(f, -1e29f)));
-        widest = hn::Max(widest, hn::IfThenElseZero(keep, swing));
-        hn::StoreU(hn::Compress(x, keep), f, &to.atom_x[kept]);
-        hn::StoreU(hn::Compress(y, keep), f, &to.atom_y[kept]);
-        hn::StoreU(hn::Compress(z, keep), f, &to.atom_z[kept]);
-        hn::StoreU(hn::Compress(weight, keep), f, &to.atom_constant[kept]);
-        kept += hn::CountTrue(f, keep);
-      }
-    to.begin[s + 1] = static_cast<int32_t>(kept);
+    widest = hn::Max(widest, hn::Mul(hn::Mul(away, twice), hn::LoadU(f, to.exponent.data() + u)));
   }
   return hn::GetLane(hn::MaxOfLanes(f, widest)) <= log2_range;
 }
 
-void sum_of_powers_simd(const BlockUnits& units, const LocalBox& b, float decay, float* value, float* gradient) {
+void unit_middles_simd(const BlockUnits& u, const LocalBox& b, float decay, UnitMiddles& to) {
+  for (int32_t n = 0; n < u.n; ++n) {
+    const auto s = static_cast<size_t>(n);
+    V w = hn::Zero(f), wx = w, wy = w, wz = w;
+    for (int32_t a = u.begin[s]; a < u.begin[s + 1]; a += lanes) {
+      const auto used = hn::Lt(hn::Iota(f, static_cast<float>(a - u.begin[s])),
+                               hn::Set(f, static_cast<float>(u.begin[s + 1] - u.begin[s])));
+      const V e = hn::IfThenElseZero(used, exp2(hn::LoadU(f, u.atom_constant.data() + a)));
+      w = hn::Add(w, e);
+      wx = hn::Add(hn::IfThenElseZero(used, hn::Mul(e, hn::LoadU(f, u.atom_x.data() + a))), wx);
+      wy = hn::Add(hn::IfThenElseZero(used, hn::Mul(e, hn::LoadU(f, u.atom_y.data() + a))), wy);
+      wz = hn::Add(hn::IfThenElseZero(used, hn::Mul(e, hn::LoadU(f, u.atom_z.data() + a))), wz);
+    }
+    const float total = hn::GetLane(hn::SumOfLanes(f, w)), per = 3.5f / (2 * decay * total);
+    to.log2_sum[s] = total;
+    to.x[s] = u.x[s] + per / b.half[0] * hn::GetLane(hn::SumOfLanes(f, wx));
+    to.y[s] = u.y[s] + per / b.half[1] * hn::GetLane(hn::SumOfLanes(f, wy));
+    to.z[s] = u.z[s] + per / b.half[2] * hn::GetLane(hn::SumOfLanes(f, wz));
+  }
+  std::fill_n(to.log2_sum.begin() + u.n, 16, 1.0f);
+  for (int32_t n = 0; n < u.n; n += lanes)
+    hn::StoreU(hn::Add(log2(hn::LoadU(f, to.log2_sum.data() + n)), hn::LoadU(f, u.log2_term.data() + n)), f,
+               to.log2_sum.data() + n);
+}
+
+void sum_of_powers_simd(int32_t n, const float* exponent, const float* log2_sum, const float* x, const float* y,
+                        const float* z, const LocalBox& b, float decay, float* value, float* gradient) {
   V sum = hn::Zero(f), gx = sum, gy = sum, gz = sum;
-  for (int32_t u = 0; u < units.n; u += lanes) {
-    const auto s = static_cast<size_t>(u);
-    const V p = hn::LoadU(f, &units.exponent[s]);
-    const auto used = hn::Lt(hn::Iota(f, static_cast<float>(u)), hn::Set(f, static_cast<float>(units.n)));
-    const V e = hn::IfThenElseZero(used, exp2(hn::Mul(p, hn::LoadU(f, &units.log2_sum[s])))), ep = hn::Mul(e, p);
+  for (int32_t u = 0; u < n; u += lanes) {
+    const V p = hn::LoadU(f, exponent + u);
+    const auto used = hn::Lt(hn::Iota(f, static_cast<float>(u)), hn::Set(f, static_cast<float>(n)));
+    const V e = hn::IfThenElseZero(used, exp2(hn::Min(hn::Mul(p, hn::LoadU(f, log2_sum + u)), hn::Set(f, 100.0f)))),
+            ep = hn::Mul(e, p);
     sum = hn::Add(sum, e);
-    gx = hn::MulAdd(ep, hn::Sub(hn::LoadU(f, &units.x[s]), hn::Set(f, b.middle[0])), gx);
-    gy = hn::MulAdd(ep, hn::Sub(hn::LoadU(f, &units.y[s]), hn::Set(f, b.middle[1])), gy);
-    gz = hn::MulAdd(ep, hn::Sub(hn::LoadU(f, &units.z[s]), hn::Set(f, b.middle[2])), gz);
+    gx = hn::MulAdd(ep, hn::Sub(hn::LoadU(f, x + u), hn::Set(f, b.middle[0])), gx);
+    gy = hn::MulAdd(ep, hn::Sub(hn::LoadU(f, y + u), hn::Set(f, b.middle[1])), gy);
+    gz = hn::MulAdd(ep, hn::Sub(hn::LoadU(f, z + u), hn::Set(f, b.middle[2])), gz);
   }
   *value = hn::GetLane(hn::SumOfLanes(f, sum));
   gradient[0] = 2 * decay * hn::GetLane(hn::SumOfLanes(f, gx));
@@ -231,31 +225,35 @@ HWY_AFTER_NAMESPACE();
 namespace molmesh::density {
 
 HWY_EXPORT(near_clusters_simd);
-HWY_EXPORT(upper_sums_simd);
+HWY_EXPORT(bound_units_simd);
 HWY_EXPORT(power_terms_simd);
-HWY_EXPORT(log2_all_simd);
+HWY_EXPORT(sum_up_to_simd);
 HWY_EXPORT(take_units_simd);
+HWY_EXPORT(unit_middles_simd);
 HWY_EXPORT(sum_of_powers_simd);
 
-int32_t near_clusters(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& box, int32_t* out) {
-  return HWY_DYNAMIC_DISPATCH(near_clusters_simd)(c, list, n, box, out);
+int32_t near_clusters(const LocalClusters& c, int32_t n, const LocalBox& box, int32_t* out) {
+  return HWY_DYNAMIC_DISPATCH(near_clusters_simd)(c, n, box, out);
 }
-void upper_sums(const LocalClusters& c, const int32_t* list, int32_t n, const LocalBox& box, float decay,
-                bool scaled, float* out, float* log2_scale) {
-  HWY_DYNAMIC_DISPATCH(upper_sums_simd)(c, list, n, box, decay, scaled, out, log2_scale);
+void bound_units(const NearUnits& units, const LocalBox& box, float decay, bool scaled, float* log2_upper) {
+  HWY_DYNAMIC_DISPATCH(bound_units_simd)(units, box, decay, scaled, log2_upper);
 }
-void power_terms(float* log2_sum, const float* exponent, int32_t n, float* term) {
+void power_terms(const float* log2_sum, const float* exponent, int32_t n, float* term) {
   HWY_DYNAMIC_DISPATCH(power_terms_simd)(log2_sum, exponent, n, term);
 }
-void log2_all(float* v, int32_t n) {
-  HWY_DYNAMIC_DISPATCH(log2_all_simd)(v, n);
+float sum_up_to(const float* v, int32_t n, float limit) {
+  return HWY_DYNAMIC_DISPATCH(sum_up_to_simd)(v, n, limit);
 }
-bool take_units(const LocalClusters& c, const int32_t* list, const LocalBox& block, float decay, float within,
-                bool scaled, BlockUnits& units) {
-  return HWY_DYNAMIC_DISPATCH(take_units_simd)(c, list, block, decay, within, scaled, units);
+bool take_units(const NearUnits& from, const int32_t* list, int32_t n, const LocalBox& block, float decay,
+                float within, BlockUnits& to) {
+  return HWY_DYNAMIC_DISPATCH(take_units_simd)(from, list, n, block, decay, within, to);
 }
-void sum_of_powers(const BlockUnits& units, const LocalBox& block, float decay, float* value, float* gradient) {
-  HWY_DYNAMIC_DISPATCH(sum_of_powers_simd)(units, block, decay, value, gradient);
+void unit_middles(const BlockUnits& units, const LocalBox& block, float decay, UnitMiddles& to) {
+  HWY_DYNAMIC_DISPATCH(unit_middles_simd)(units, block, decay, to);
+}
+void sum_of_powers(int32_t n, const float* exponent, const float* log2_sum, const float* x, const float* y,
+                   const float* z, const LocalBox& block, float decay, float* value, float* gradient) {
+  HWY_DYNAMIC_DISPATCH(sum_of_powers_simd)(n, exponent, log2_sum, x, y, z, block, decay, value, gradient);
 }
 
 } // namespace molmesh::density

@@ -91,7 +91,7 @@ void Evaluator::in_single(const Field& f, const Selection& s, double h, float* o
       raise_group(static_cast<float>(f.level[l].exponent[static_cast<size_t>(g)]), sum_of(l), sum_of(l + 1));
     };
     for (int32_t n = 0; n < u.n; ++n) {
-      groups.enter(s.unit_group[static_cast<size_t>(n)], close);
+      groups.enter(s.group_of(n), close);
       add_units(u, rows_, n, n + 1, sum_of(1));
     }
     groups.finish(close);

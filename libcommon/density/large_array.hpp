@@ -27,9 +27,6 @@ struct LargeAllocator {
     void* const p = std::aligned_alloc(page, (bytes + page - 1) / page * page);
     if (!p)
       throw std::bad_alloc();
-#ifdef __linux__
-    madvise(p, (bytes + page - 1) / page * page, MADV_HUGEPAGE); // advice: a refusal changes nothing
-#endif
     return static_cast<T*>(p);
   }
   void deallocate(T* p, size_t n) {

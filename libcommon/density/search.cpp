@@ -251,16 +251,13 @@ Band Search::run(SearchCounts& counts) {
   band.info.atoms = f_.atoms();
   nodes_ = o_.atoms == AtomSearch::kdtree ? nodes_by_tree(f_, frame_, o_.full, o_.threads)
                                           : nodes_by_halving(f_, frame_, o_.full, o_.threads);
+  band.block.reserve(blocks_a_node * nodes_.node.size()); // address space; pages come when they are used
   const int32_t first = first_block(frame_).x, end = (frame_.lower.x + frame_.points.x + 7) >> 3;
   SlabState before, slab;
   for (int32_t x = first; x < end + node_blocks; x += node_blocks) {
     SlabState next = find_slab(x);
-    if (x > first) {
-      if (const size_t n = band.block.size(); n > 0 && n + n / 4 > band.block.capacity())
-        band.block.reserve(n + n / static_cast<size_t>((x - first) / node_blocks) *
-                                   static_cast<size_t>((end - x) / node_blocks + 4));
+    if (x > first)
       finish_slab(before, slab, next, band);
-    }
     bank_ ^= 1;
     for (const std::unique_ptr<Workspace>& w : workspaces_.all())
       w->values[bank_].give_back_all();

@@ -55,26 +55,22 @@ public:
   Side side = Side::mixed;
   Arithmetic arithmetic;        ///< that this block needs: the one asked for, or a safer one
   int64_t units = 0, atoms = 0; ///< kept
-  /// Kept units and atoms when the arithmetic is in_single, relative to node_middle.
+  /// Kept units and atoms when the arithmetic is in_single.
   BlockUnits block_units;
-  std::vector<int64_t> unit_group; ///< innermost group of each
-  LocalBox box;                    ///< of the block
+  LocalBox box; ///< of the block
+  int64_t group_of(int32_t u) const { return near_.group[static_cast<size_t>(kept_[static_cast<size_t>(u)])]; }
   /// Kept units and atoms otherwise.
   std::vector<Unit> unit;
   std::vector<double> ln_weight, offset_x, offset_y, offset_z; ///< offsets in Å
 
 private:
-  /// A unit that may matter.
-  struct Candidate {
-    int64_t group;
-    float exponent;
-    UnitRange range; ///< in near_
-    bool kept;
-  };
   LocalBox local(Vec3d middle, Vec3d half) const;
-  void gather(const LocalBox& b);
-  void find_effects();
-  bool surely_outside();
+  void gather(const LocalBox& part);
+  void keep_only();
+  void find_effects(const LocalBox& b);
+  void find_effects_of_levels();
+  double upper_bound();
+  bool surely_outside() { return (1 + slack_) * upper_bound() + 2 * budget_.total() < lower_; }
   void drop(double budget);
   bool take_single();
   void take_double(Vec3d middle);
@@ -84,16 +80,16 @@ private:
   const Field& f_;
   const Budget budget_;
   const double lower_, upper_, within_;
+  const double slack_;     ///< what single precision can do to an upper bound of G, relative
   const Arithmetic least_; ///< what was asked for
   bool scaled_;            ///< upper bounds need more range than single precision has
   Vec3d node_middle_;
-  LocalClusters local_;
-  std::vector<int32_t> all_, narrowed_, near_;
-  std::vector<Candidate> candidate_;
-  std::vector<float> cluster_sum_, cluster_scale_;
-  std::vector<float> log2_upper_, exponent_,
-      effect_;                           ///< of candidates: bound on log2 S over the box, P, and effect
-  std::vector<std::vector<double>> sum_; ///< per level, per run of candidates of one group: upper bound of ln S
+  LocalClusters local_;                           ///< of the node
+  NearUnits near_;                                ///< of the part of it at work
+  std::vector<int32_t> found_, kept_;             ///< clusters of local_; units of near_ that are not dropped
+  std::vector<float> log2_upper_, effect_, ones_; ///< of near_: bound on S over the box, effect on G of dropping it
+  UnitMiddles middles_;
+  std::vector<std::vector<double>> sum_; ///< per level, per run of units of one group: upper bound of ln S
 };
 
 } // namespace molmesh::density
