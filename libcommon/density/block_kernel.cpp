@@ -17,7 +17,7 @@ struct One {
   HWY_INLINE V operator()(V t) const { return t; }
 };
 struct Half {
-  HWY_INLINE V operator()(V t) const { return square_root(t); }
+  HWY_INLINE V operator()(V t) const { return twice_square_root(t); } // half of it is in the last row
 };
 struct Two {
   HWY_INLINE V operator()(V t) const { return hn::Mul(t, t); }
@@ -162,7 +162,7 @@ void make_rows_simd(const BlockUnits& u, const BlockShape& b, BlockRows& rows) {
                rows.x.data() + 8 * static_cast<size_t>(row), rows.yz.data() + 64 * static_cast<size_t>(row));
     row += atoms;
     const float p = u.exponent[s];
-    make.quadratic({p * u.log2_term[s],
+    make.quadratic({p * u.log2_term[s] - (p == 0.5f ? 1.0f : 0.0f),
                     {p * b.slope * (u.x[s] - b.middle[0]), p * b.slope * (u.y[s] - b.middle[1]),
                      p * b.slope * (u.z[s] - b.middle[2])}},
                    p * b.curvature, rows.x.data() + 8 * static_cast<size_t>(row),

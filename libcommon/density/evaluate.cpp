@@ -80,13 +80,13 @@ void Evaluator::in_single(const Field& f, const Selection& s, double h, float* o
   rows_.x.resize(std::max(rows_.x.size(), 8 * rows));
   rows_.yz.resize(std::max(rows_.yz.size(), 64 * rows));
   make_rows(u, shape, rows_);
-  alignas(64) float root[points] = {}; // near, until it is done
+  std::fill_n(out, points, 0.0f);
   OpenGroups groups(f);
   if (groups.levels() == 1) {
-    add_units(u, rows_, 0, u.n, root);
+    add_units(u, rows_, 0, u.n, out);
   } else {
     single_.assign(groups.levels() * points, 0.0f); // [l]: the open group of level l
-    const auto sum_of = [&](size_t l) { return l < groups.levels() ? &single_[l * points] : root; };
+    const auto sum_of = [&](size_t l) { return l < groups.levels() ? &single_[l * points] : out; };
     const auto close = [&](size_t l, int64_t g) {
       raise_group(static_cast<float>(f.level[l].exponent[static_cast<size_t>(g)]), sum_of(l), sum_of(l + 1));
     };
@@ -96,7 +96,6 @@ void Evaluator::in_single(const Field& f, const Selection& s, double h, float* o
     }
     groups.finish(close);
   }
-  std::copy_n(root, points, out);
 }
 
 void Evaluator::in_double(const Field& f, const Selection& s, Vec3d middle, double h, float* out) {

@@ -6,6 +6,7 @@
 #include "par/par.hpp"
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -32,7 +33,7 @@ private:
   void need_neighbors(NodeState& s) const;
   void finish_slab(const SlabState& before, SlabState& slab, const SlabState& after, Band& band);
   void finish(NodeState& s, const NodeBits* const* below, const NodeBits* const* above, Workspace& w) const;
-  float* evaluate(Vec3i corner, Workspace& w) const;
+  void evaluate(Vec3i corner, Workspace& w) const;
   CellRange cells_of(Vec3i corner) const;
   template <class F>
   void for_nodes(SlabState& slab, F&& work);
@@ -49,6 +50,12 @@ private:
   std::atomic<int64_t> done_{0};
 };
 
+/// Values lie in memory that is cold when a block is written and when it is packed.
+void prefetch_values(const float* value) {
+  for (int i = 0; i < 512; i += 16)
+    __builtin_prefetch(value + i);
+}
+
 /// Points of the block that belong to the grid.
 int64_t points_in_grid(const GridFrame& frame, Vec3i corner) {
   int64_t n = 1;
@@ -57,16 +64,14 @@ int64_t points_in_grid(const GridFrame& frame, Vec3i corner) {
   return n;
 }
 
-/// Values of a block from the selection made for it; they are in the arena but not kept.
-float* Search::evaluate(Vec3i corner, Workspace& w) const {
+/// Values of a block from the selection made for it.
+void Search::evaluate(Vec3i corner, Workspace& w) const {
   const Box box = points_box(frame_, corner, 1);
-  float* const value = w.values[bank_].take(512);
-  w.evaluator.evaluate(f_, w.selection, 0.5 * (box.lo + box.hi), frame_.spacing, value);
+  w.evaluator.evaluate(f_, w.selection, 0.5 * (box.lo + box.hi), frame_.spacing, w.value);
   ++w.counts.blocks_evaluated;
   w.counts.group_visits += w.selection.units;
   w.counts.atom_visits += w.selection.atoms;
   w.points += points_in_grid(frame_, 8 * corner);
-  return value;
 }
 
 void Search::work_through_block(int b, Vec3i corner, NodeState& s, const float** value, Workspace& w) const {
@@ -78,15 +83,19 @@ void Search::work_through_block(int b, Vec3i corner, NodeState& s, const float**
     s.inside |= bit;
   if (w.selection.side != Side::mixed)
     return;
-  value[b] = evaluate(corner, w);
+  float* const kept = w.values[bank_].take(512);
+  prefetch_values(kept);
+  evaluate(corner, w);
   uint64_t *const below = w.below.word[b], *const above = w.above.word[b];
-  classify_points(value[b], lower_, upper_, below, above);
+  classify_points(w.value, lower_, upper_, below, above);
   const auto all = [](const uint64_t* word) { return std::all_of(word, word + 8, [](uint64_t v) { return !~v; }); };
   if (o_.full && (all(below) || all(above))) { // as bounds would have it
     s.inside |= all(above) ? bit : 0;
     return;
   }
+  std::copy_n(w.value, 512, kept);
   w.values[bank_].keep(512);
+  value[b] = kept;
   s.known |= bit;
 }
 
@@ -151,7 +160,7 @@ void Search::for_nodes(SlabState& slab, F&& work) {
   par::for_n(static_cast<int64_t>(slab.node.size()), o_.threads, 1, [&](int64_t i) {
     std::unique_ptr<Workspace> w = workspaces_.borrow([this] {
       return std::make_unique<Workspace>(
-          Workspace{Selection(f_, budget_, o_.band_lower, o_.band_upper, arithmetic_), {}, {}, {}, {}, {}});
+          Workspace{Selection(f_, budget_, o_.band_lower, o_.band_upper, arithmetic_), {}, {}, {}, {}, {}, {}});
     });
     work(slab.node[static_cast<size_t>(i)], *w);
     workspaces_.give_back(std::move(w));
@@ -188,6 +197,8 @@ CellRange Search::cells_of(Vec3i corner) const {
 
 /// Active points of a node among its neighbors, packed.
 void Search::finish(NodeState& s, const NodeBits* const* below, const NodeBits* const* above, Workspace& w) const {
+  if (s.known)
+    prefetch_values(s.sides->value[std::countr_zero(s.known)]);
   band_points(below, above, cells_of(s.corner), w.rows);
   words_from_rows(w.rows, w.active);
   words_from_rows(*above[13], w.above);
@@ -211,8 +222,11 @@ void Search::finish(NodeState& s, const NodeBits* const* below, const NodeBits* 
       w.selection.narrow(0.5 * (part.lo + part.hi), 0.5 * (part.hi - part.lo));
       ++w.counts.blocks_visited;
       w.selection.select(0.5 * (box.lo + box.hi), 0.5 * (box.hi - box.lo), false);
-      value = evaluate(corner, w);
+      evaluate(corner, w);
+      value = w.value;
     }
+    if (const uint64_t later = s.known & ~(bit | (bit - 1)), after = later & (later - 1); after)
+      prefetch_values(s.sides->value[std::countr_zero(after)]);
     s.closed &= ~bit;
     s.kept |= bit;
     float* const packed = w.packed.take(512 + 16);

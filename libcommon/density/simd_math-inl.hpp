@@ -60,10 +60,9 @@ HWY_INLINE V log2(V x) {
   return hn::MulAdd(t, polynomial(f, t, c), hn::ConvertTo(f, n));
 }
 
-HWY_INLINE V square_root(V x) { // one Newton step on the machine's estimate: 3e-7
-  const V r = hn::ApproximateReciprocalSqrt(x);
-  const V half_xr = hn::Mul(hn::Mul(x, r), hn::Set(f, 0.5f));
-  return hn::Mul(hn::Mul(x, r), hn::NegMulAdd(half_xr, r, hn::Set(f, 1.5f)));
+HWY_INLINE V twice_square_root(V x) { // one Newton step on the machine's estimate: 3e-7
+  const V r = hn::ApproximateReciprocalSqrt(x), xr = hn::Mul(x, r);
+  return hn::Mul(xr, hn::NegMulAdd(xr, r, hn::Set(f, 3.0f)));
 }
 
 } // namespace

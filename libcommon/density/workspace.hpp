@@ -40,8 +40,9 @@ struct Workspace {
   Evaluator evaluator;
   NodeWords below, above, active;
   NodeBits rows;
-  Arena values[2] = {}; ///< of blocks, for slabs of even and odd number
-  Arena packed = {};    ///< of the band
+  alignas(64) float value[512]; ///< of the block at work
+  Arena values[2] = {};         ///< of blocks, for slabs of even and odd number
+  Arena packed = {};            ///< of the band
   SearchCounts counts = {};
   int64_t points = 0; ///< of the grid, evaluated
 };
