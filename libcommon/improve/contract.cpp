@@ -126,8 +126,8 @@ bool Editor::contract(int32_t e, int i, int j) {
     if (!sails_fit(pb, limit) || !borders_allow(e, a, b))
       return false;
   }
-  finish_contraction(a, b);
-  return true;
+  rim_.clear();
+  return finish_contraction(a, b);
 }
 
 // As contract(), but b moves too: both stars are judged at the best place for it.
@@ -197,39 +197,55 @@ bool Editor::merge(int32_t e, int i, int j) {
     good = judge(now_[c], before);
   float sum = lack(now_), allowed = lack(star_);
   std::vector<float> q;
+  std::vector<int32_t> kept;
   for (size_t t = 0; t < star2_.size() && good; ++t) {
     const Element& el = m_.element[size_t(star2_[t])];
+    if (el.find(a) >= 0)
+      continue;
     Candidate c{el.v, el.region, 0, {}};
-    good = el.find(a) >= 0 || judge(c, before);
+    good = judge(c, before);
+    kept.push_back(star2_[t]);
     q.push_back(c.q);
-    if (el.find(a) < 0)
-      sum += lack(c.q), allowed += lack(el.q);
+    sum += lack(c.q), allowed += lack(el.q);
   }
   if (!good || sum > allowed) {
     m_.point[size_t(b)] = pb;
     return false;
   }
-  for (size_t t = 0; t < star2_.size(); ++t) {
-    Element& el = m_.element[size_t(star2_[t])];
+  rim_.clear();
+  rim_face_.clear();
+  if (sheets_)
+    list_rim(star2_, b, a);
+  // star2_ but the ring, which goes, has the same elements before and after.
+  if (!finish_contraction(a, b)) {
+    m_.point[size_t(b)] = pb;
+    return false;
+  }
+  move_rim();
+  for (size_t t = 0; t < kept.size(); ++t) {
+    Element& el = m_.element[size_t(kept[t])];
     for (const int32_t v : el.v)
       m_.touched[size_t(v)] = time;
-    if (el.find(a) < 0) {
-      el.q = q[t];
-      changed.push_back(star2_[t]);
-    }
+    el.q = q[t];
+    changed.push_back(kept[t]);
   }
-  finish_contraction(a, b);
   return true;
 }
 
 // star_ gives way to now_.
-void Editor::finish_contraction(int32_t a, int32_t b) {
+bool Editor::finish_contraction(int32_t a, int32_t b) {
   old_ = star_;
-  replace(old_, now_);
+  const bool was_crowded = m_.vertex[size_t(b)].crowded;
+  m_.vertex[size_t(b)].crowded |= m_.vertex[size_t(a)].crowded;
+  if (!replace(old_, now_, m_.vertex[size_t(a)].kind != Kind::interior)) {
+    m_.vertex[size_t(b)].crowded = was_crowded;
+    return false;
+  }
   m_.incident[size_t(a)] = -1;
   m_.touched[size_t(b)] = time;
   room_.vertex.push_back(a);
   ++counts.contractions;
+  return true;
 }
 
 } // namespace molmesh::improve

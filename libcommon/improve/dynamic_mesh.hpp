@@ -18,8 +18,9 @@ enum class Kind : uint8_t {
 
 struct Vertex {
   Kind kind = Kind::interior;
-  uint8_t frozen = 0; ///< sliding: bit a set when coordinate a is kept
-  uint8_t label = 0;  ///< of a labelled face at the vertex (0 inside)
+  uint8_t frozen = 0;   ///< sliding: bit a set when coordinate a is kept
+  uint8_t label = 0;    ///< of a labelled face at the vertex (0 inside)
+  bool crowded = false; ///< another sheet of the surface is near, with no elements between
 };
 
 /// Face i is opposite v[i]; (v1 v2 v3), (v0 v3 v2), (v0 v1 v3), (v0 v2 v1) point out.
@@ -38,6 +39,12 @@ struct Element {
 };
 
 inline constexpr std::array<std::array<int, 3>, 4> outward_face{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+/// Face of the element v, seen from outside it.
+inline std::array<int32_t, 3> outward_triangle(const std::array<int32_t, 4>& v, size_t face) {
+  const auto& o = outward_face[face];
+  return {v[size_t(o[0])], v[size_t(o[1])], v[size_t(o[2])]};
+}
 
 struct Label {
   int32_t name = 0;      ///< TetMesh::boundary

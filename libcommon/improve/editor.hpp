@@ -5,6 +5,7 @@
 #include "improve/dynamic_mesh.hpp"
 #include "improve/guard.hpp"
 #include "improve/search.hpp"
+#include "improve/sheets.hpp"
 #include "improve/target.hpp"
 #include <array>
 #include <cstdint>
@@ -44,10 +45,11 @@ struct Ring {
 
 class Editor {
 public:
-  /// target may be null: then surface points stay. owner [vertices] is the part of each vertex; stamp [elements] is
-  /// scratch, zero where no editor has been since it was cleared.
-  Editor(DynamicMesh& mesh, const Target* target, const std::vector<int32_t>& owner, std::vector<uint32_t>& stamp,
-         PartRoom& room, Guard guard);
+  /// target may be null: then surface points stay. sheets: where the mesh ends in curved surfaces, or null. owner
+  /// [vertices] is the part of each vertex; stamp [elements] is scratch, zero where no editor has been since it was
+  /// cleared.
+  Editor(DynamicMesh& mesh, const Target* target, const Sheets* sheets, const std::vector<int32_t>& owner,
+         std::vector<uint32_t>& stamp, PartRoom& room, Guard guard);
 
   // Each tries its operation and tells whether it was done: the worst quality among the elements concerned has
   // risen.
@@ -63,6 +65,8 @@ public:
 
   /// Elements made or changed by operations since the caller last cleared it.
   std::vector<int32_t> changed;
+  /// How sheets differs now.
+  const Sheets& changed_sheets() const { return changed_sheets_; }
   Counts counts;
   float goal = 1; ///< quality that elements are missed by in the deficit
   bool worst_first = true;
@@ -74,7 +78,15 @@ private:
   bool star(int32_t v, std::vector<int32_t>& out);
   bool ring(int32_t e, int32_t a, int32_t b, Ring& r) const;
   bool judge(Candidate& c, float above) const;
-  void replace(const std::vector<int32_t>& old, const std::vector<Candidate>& now);
+  bool match(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface);
+  /// False, and nothing changed, when faces do not match or the surface would cross itself. rim_: triangles that
+  /// have moved with the operation already; surface: the operation may change them.
+  bool replace(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface);
+  void list_rim(const std::vector<Candidate>& now);
+  void list_rim(const std::vector<int32_t>& elements, int32_t v, int32_t without);
+  bool crowded(const std::array<int32_t, 3>& t) const;
+  bool rim_crosses(bool stamped_go);
+  void move_rim();
   bool has_room(size_t old, size_t now) const { return now <= old + room_.element.size(); }
   double misfit(Vec3d a, Vec3d b, Vec3d c) const;
   double misfit_face(const Element& e, size_t face, int32_t from, Vec3d at) const;
@@ -97,27 +109,33 @@ private:
   bool search(const Vertex& k, Vec3d& x, float& best, float aim, double length, double limit);
   bool take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above, float allowed);
   bool may_contract(const Vertex& a, const Vertex& b) const;
-  void finish_contraction(int32_t a, int32_t b);
+  bool finish_contraction(int32_t a, int32_t b);
   bool borders_allow(int32_t e, int32_t a, int32_t b);
 
   DynamicMesh& m_;
   const Target* target_;
+  const Sheets* sheets_;
+  Sheets changed_sheets_;
   const std::vector<int32_t>& owner_;
   std::vector<uint32_t>& stamp_;
   PartRoom& room_;
   Guard guard_;
   uint32_t clock_ = 0;
   struct FaceEntry {
-    int32_t a, b, c;
-    int32_t element;
+    std::array<int32_t, 3> v;       ///< ascending
+    int64_t old;                    ///< outer: 4 element + face of the one that goes
+    int32_t element, first, second; ///< outer: beyond the face; 4 candidate + face of new ones
     uint8_t face, label;
-    bool open, outer;
+    bool outer;
     uint32_t clock = 0;
   };
   std::vector<FaceEntry> table_;
+  std::vector<int32_t> used_; ///< entries of table_
   uint32_t table_clock_ = 0;
-  FaceEntry& entry(int32_t a, int32_t b, int32_t c);
-  std::vector<int32_t> star_, star2_, old_;
+  FaceEntry& entry(const std::array<int32_t, 3>& v);
+  std::vector<std::array<int32_t, 3>> rim_;
+  std::vector<int64_t> rim_face_;
+  std::vector<int32_t> star_, star2_, old_, made_;
   std::vector<Candidate> now_;
   Ring ring_;
   Spokes spokes_;

@@ -31,36 +31,6 @@ int basis_of(const Vertex& k, const Target* target, bool lifted, Vec3d x, Vec3d 
 
 } // namespace
 
-// A labelled face of e seen from the side that counts it, with vertex `from` moving.
-void Editor::add_sail(const Element& e, size_t face, int32_t from) {
-  if (!target_ || !m_.labels[e.label[face]].curved())
-    return;
-  if (e.n[face] >= 0 && m_.element[size_t(e.n[face])].region < e.region)
-    return; // its other side counts it
-  Sail s{{}, -1};
-  for (size_t i = 0; i < 3; ++i) {
-    const int32_t v = e.v[size_t(outward_face[face][i])];
-    s.p[i] = m_.point[size_t(v)];
-    if (v == from)
-      s.moving = static_cast<int>(i);
-  }
-  if (!outward(e, face)) {
-    std::swap(s.p[1], s.p[2]);
-    s.moving = s.moving == 1 ? 2 : s.moving == 2 ? 1 : s.moving;
-  }
-  sails_.push_back(s);
-}
-
-bool Editor::sails_fit(Vec3d x, double limit) const {
-  for (const Sail& s : sails_) {
-    auto p = s.p;
-    p[size_t(s.moving)] = x;
-    if (misfit(p[0], p[1], p[2]) > limit)
-      return false;
-  }
-  return true;
-}
-
 bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double length, double limit) {
   Vec3d basis[3];
   const int dimensions = basis_of(k, target_, guard_.lift > 0, x, basis);
@@ -110,10 +80,15 @@ bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, f
       return false;
     }
   }
-  if (lack(now_) > allowed) {
+  rim_.clear();
+  rim_face_.clear();
+  if (sheets_ && m_.vertex[size_t(v)].kind == Kind::surface)
+    list_rim(elements, v, -1);
+  if (lack(now_) > allowed || rim_crosses(false)) {
     m_.point[size_t(v)] = from;
     return false;
   }
+  move_rim();
   for (size_t i = 0; i < elements.size(); ++i) {
     Element& e = m_.element[size_t(elements[i])];
     e.q = now_[i].q;
@@ -179,6 +154,7 @@ bool Editor::split(int32_t e, int i, int j) {
       return false;
     const Label& label = m_.labels[ring_.label[0]];
     kind.label = ring_.label[0];
+    kind.crowded = m_.vertex[size_t(a)].crowded || m_.vertex[size_t(b)].crowded;
     kind.kind = label.curved() ? Kind::surface : Kind::sliding;
     if (!label.curved())
       kind.frozen = static_cast<uint8_t>(1 << label.axis);
@@ -227,9 +203,11 @@ bool Editor::split(int32_t e, int i, int j) {
       return false;
   if (lack(now_) > lack(ring_.element))
     return false;
-  room_.vertex.pop_back();
   old_ = ring_.element;
-  replace(old_, now_);
+  rim_.clear();
+  if (!replace(old_, now_, !ring_.border.empty()))
+    return false;
+  room_.vertex.pop_back();
   ++counts.splits;
   return true;
 }

@@ -47,6 +47,45 @@ bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass
 
 } // namespace
 
+Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads)
+    : m_(mesh), target_(target), cell_(cell), threads_(threads), sheets_(target ? target->spacing() : 1) {
+  find_crowded();
+}
+
+// Sheets are looked at only where another one is within a spacing.
+void Schedule::find_crowded() {
+  if (!target_)
+    return;
+  Sheets all(2 * target_->spacing());
+  for (size_t e = 0; e < m_.element.size(); ++e)
+    for (size_t f = 0; f < 4; ++f) {
+      const Element& el = m_.element[e];
+      if (el.alive() && el.n[f] < 0 && m_.labels[el.label[f]].curved())
+        all.insert(sheet_triangle(m_.point, outward_triangle(el.v, f), 4 * int64_t(e) + int64_t(f)));
+    }
+  sheets_ = Sheets(target_->spacing());
+  const std::vector<SheetTriangle>& triangle = all.triangles();
+  std::vector<uint8_t> crowded(triangle.size());
+  par::for_n(static_cast<int64_t>(triangle.size()), threads_, [&](int64_t t) {
+    SheetTriangle wide = triangle[size_t(t)];
+    const auto apart = static_cast<float>(0.6 * target_->spacing());
+    wide.low = wide.low - Vec3f{apart, apart, apart};
+    wide.high = wide.high + Vec3f{apart, apart, apart};
+    crowded[size_t(t)] = all.any(wide, [&](const SheetTriangle& other) {
+      return dot(wide.normal, other.normal) < 0 && wide.box_meets(other, 0);
+    });
+  });
+  for (Vertex& v : m_.vertex)
+    v.crowded = false;
+  for (size_t t = 0; t < triangle.size(); ++t)
+    if (crowded[t])
+      for (const int32_t v : triangle[t].v)
+        m_.vertex[size_t(v)].crowded = true;
+  for (const SheetTriangle& t : triangle)
+    if (m_.vertex[size_t(t.v[0])].crowded || m_.vertex[size_t(t.v[1])].crowded || m_.vertex[size_t(t.v[2])].crowded)
+      sheets_.insert(t);
+}
+
 float Schedule::worst() const {
   return par::reduce(
       static_cast<int64_t>(m_.element.size()), threads_, 2.f,
@@ -105,6 +144,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     PartRoom room;
     std::vector<int32_t> items;
     Counts counts;
+    Sheets sheets{1};
   };
   std::vector<int32_t> job_of(static_cast<size_t>(parts_), -1);
   std::vector<Job> jobs;
@@ -142,16 +182,20 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
   stamp_.assign(m_.element.size(), 0);
   par::for_n(static_cast<int64_t>(jobs.size()), threads_, 1, [&](int64_t j) {
     Job& job = jobs[size_t(j)];
-    Editor editor(m_, target_, owner_, stamp_, job.room, guard);
+    Editor editor(m_, target_, sheets_.alive() > 0 ? &sheets_ : nullptr, owner_, stamp_, job.room, guard);
     work(editor, job.items);
     job.counts = editor.counts;
+    job.sheets = editor.changed_sheets();
   });
   Counts sum;
   for (Job& job : jobs) {
     sum += job.counts;
+    sheets_.merge(job.sheets);
     free_element_.insert(free_element_.end(), job.room.element.begin(), job.room.element.end());
     free_vertex_.insert(free_vertex_.end(), job.room.vertex.begin(), job.room.vertex.end());
   }
+  if (sheets_.records() > 2 * sheets_.alive())
+    sheets_.compact();
   return sum;
 }
 

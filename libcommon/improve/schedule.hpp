@@ -21,8 +21,7 @@ struct Pass {
 /// Runs passes over a mesh that lives as long as it.
 class Schedule {
 public:
-  Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads)
-      : m_(mesh), target_(target), cell_(cell), threads_(threads) {}
+  Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads);
   /// Every part works off its elements below the goal, worst first. Parts are the cells of a coarse lattice,
   /// shifted from pass to pass: what lies across two parts now lies inside one the next time.
   Counts run(const Pass& pass);
@@ -35,6 +34,7 @@ private:
   using Work = std::function<void(Editor&, std::vector<int32_t>&)>;
   Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
                    const Work& work);
+  void find_crowded();
   void set_owners(int shift, double cell);
   int32_t part_of(const Element& e) const;
 
@@ -48,6 +48,7 @@ private:
   int32_t parts_ = 0;
   std::vector<int32_t> owner_;
   std::vector<uint32_t> stamp_;
+  Sheets sheets_; ///< where the mesh ends in curved surfaces
   std::vector<int32_t> free_element_, free_vertex_;
 };
 

@@ -1,0 +1,139 @@
+// bounds.cpp — what surface triangles and vertices are bound to: the target, and not to cross another sheet.
+#include "geom/intersect.hpp" // exact test of two triangles
+#include "improve/editor.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace molmesh::improve {
+
+// Whether the face, seen as an outward one of e, runs as the target's normal does.
+bool Editor::outward(const Element& e, size_t face) const {
+  const bool lower = e.n[face] < 0 || e.region < m_.element[size_t(e.n[face])].region;
+  return lower != m_.labels[e.label[face]].reversed;
+}
+
+double Editor::misfit(Vec3d a, Vec3d b, Vec3d c) const {
+  return improve::misfit(*target_, guard_, a, b, c);
+}
+
+// Of a labelled face with vertex `from` put at `at`; 0 for flat labels and without a target.
+double Editor::misfit_face(const Element& e, size_t face, int32_t from, Vec3d at) const {
+  if (!target_ || !m_.labels[e.label[face]].curved())
+    return 0;
+  std::array<Vec3d, 3> p;
+  for (size_t i = 0; i < 3; ++i) {
+    const int32_t v = e.v[size_t(outward_face[face][i])];
+    p[i] = v == from ? at : m_.point[size_t(v)];
+  }
+  return outward(e, face) ? misfit(p[0], p[1], p[2]) : misfit(p[0], p[2], p[1]);
+}
+
+// Moves a trial x of a vertex at `from` onto what it is bound to.
+bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const {
+  switch (k.kind) {
+  case Kind::interior:
+    return true;
+  case Kind::surface:
+    // The distance to first order means nothing where the gradient vanishes, and that is where points must leave.
+    if (target_ && guard_.lift > 0)
+      return norm(x - from) <= guard_.lift * target_->spacing();
+    return target_ && target_->project(x, reach);
+  case Kind::sliding:
+    for (int a = 0; a < 3; ++a)
+      if (k.frozen >> a & 1)
+        x[a] = from[a];
+    return true;
+  case Kind::fixed:
+    break;
+  }
+  return false;
+}
+
+// A labelled face of e seen from the side that counts it, with vertex `from` moving.
+void Editor::add_sail(const Element& e, size_t face, int32_t from) {
+  if (!target_ || !m_.labels[e.label[face]].curved())
+    return;
+  if (e.n[face] >= 0 && m_.element[size_t(e.n[face])].region < e.region)
+    return; // its other side counts it
+  Sail s{{}, -1};
+  for (size_t i = 0; i < 3; ++i) {
+    const int32_t v = e.v[size_t(outward_face[face][i])];
+    s.p[i] = m_.point[size_t(v)];
+    if (v == from)
+      s.moving = static_cast<int>(i);
+  }
+  if (!outward(e, face)) {
+    std::swap(s.p[1], s.p[2]);
+    s.moving = s.moving == 1 ? 2 : s.moving == 2 ? 1 : s.moving;
+  }
+  sails_.push_back(s);
+}
+
+bool Editor::sails_fit(Vec3d x, double limit) const {
+  for (const Sail& s : sails_) {
+    auto p = s.p;
+    p[size_t(s.moving)] = x;
+    if (misfit(p[0], p[1], p[2]) > limit)
+      return false;
+  }
+  return true;
+}
+
+bool Editor::crowded(const std::array<int32_t, 3>& t) const {
+  return m_.vertex[size_t(t[0])].crowded || m_.vertex[size_t(t[1])].crowded || m_.vertex[size_t(t[2])].crowded;
+}
+
+// True when a triangle of rim_ crosses another one or another of rim_. Triangles of other parts may change
+// meanwhile: their boxes must stay clear.
+bool Editor::rim_crosses(bool stamped_go) {
+  for (size_t i = 0; i < rim_.size(); ++i) {
+    const auto& t = rim_[i];
+    const SheetTriangle now = sheet_triangle(m_.point, t, -1);
+    for (size_t j = 0; j < i; ++j)
+      if (!now.of_one_sheet(sheet_triangle(m_.point, rim_[j], -1), true) && triangles_cross(m_.point, t, rim_[j]))
+        return true;
+    const auto crosses = [&](const SheetTriangle& other) {
+      if (!now.box_meets(other, 0.05f * static_cast<float>(target_->spacing())))
+        return false;
+      bool ours = true, beside = false;
+      for (const int32_t v : other.v) {
+        ours &= owner_[size_t(v)] == room_.part;
+        beside |= v == t[0] || v == t[1] || v == t[2];
+      }
+      if (now.of_one_sheet(other, beside))
+        return false;
+      if (!ours)
+        return !beside;
+      if (stamped_go && stamp_[size_t(other.face / 4)] == clock_)
+        return false;
+      return triangles_cross(m_.point, t, other.v);
+    };
+    if (changed_sheets_.any(now, crosses) || sheets_->any(now, [&](const SheetTriangle& other) {
+          return !changed_sheets_.knows(other.face) && crosses(other);
+        }))
+      return true;
+  }
+  return false;
+}
+
+// Faces at v where the mesh ends, of elements that keep their vertices.
+void Editor::list_rim(const std::vector<int32_t>& elements, int32_t v, int32_t without) {
+  for (const int32_t t : elements) {
+    const Element& e = m_.element[size_t(t)];
+    if (without >= 0 && e.find(without) >= 0)
+      continue;
+    for (size_t f = 0; f < 4; ++f)
+      if (e.n[f] < 0 && e.v[f] != v && m_.labels[e.label[f]].curved() && crowded(outward_triangle(e.v, f))) {
+        rim_.push_back(outward_triangle(e.v, f));
+        rim_face_.push_back(4 * int64_t(t) + int64_t(f));
+      }
+  }
+}
+
+// After the move that list_rim(elements, …) was for.
+void Editor::move_rim() {
+  for (size_t i = 0; i < rim_face_.size(); ++i)
+    changed_sheets_.insert(sheet_triangle(m_.point, rim_[i], rim_face_[i]));
+}
+
+} // namespace molmesh::improve

@@ -1,0 +1,111 @@
+// sheets_test.cpp — where a mesh ends: the triangles known, and surfaces that must not cross themselves.
+#include "geom/tet_measures.hpp"
+#include "improve/schedule.hpp"
+#include "improve/sheets.hpp"
+#include "lattice_mesh.hpp"
+#include "mesh/crossing.hpp"
+#include <catch2/catch.hpp>
+#include <random>
+
+using namespace molmesh;
+using namespace molmesh::test;
+
+TEST_CASE("sheets know the triangles that are there, and only those") {
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> u(0, 10), size(-1, 1);
+  std::vector<Vec3d> point;
+  std::map<int64_t, improve::SheetTriangle> there;
+  improve::Sheets sheets(0.7);
+  const auto put = [&](improve::Sheets& s, int64_t face) {
+    const Vec3d p{u(generator), u(generator), u(generator)};
+    const auto v = static_cast<int32_t>(point.size());
+    for (int i = 0; i < 3; ++i)
+      point.push_back(p + Vec3d{size(generator), size(generator), size(generator)});
+    const improve::SheetTriangle t = improve::sheet_triangle(point, {v, v + 1, v + 2}, face);
+    there[face] = t;
+    s.insert(t);
+  };
+  const auto check = [&](const improve::Sheets& s) {
+    CHECK(s.alive() == there.size());
+    for (int n = 0; n < 50; ++n) {
+      const Vec3d p{u(generator), u(generator), u(generator)};
+      const std::vector<Vec3d> corners{p, p + Vec3d{1, 0.2, 0}, p + Vec3d{0, 0.5, 1}};
+      const improve::SheetTriangle probe = improve::sheet_triangle(corners, {0, 1, 2}, -1);
+      std::set<int64_t> expected, found;
+      for (const auto& [face, t] : there)
+        if (probe.box_meets(t, 0))
+          expected.insert(face);
+      s.any(probe, [&](const improve::SheetTriangle& t) {
+        if (probe.box_meets(t, 0))
+          found.insert(t.face);
+        return false;
+      });
+      CHECK(found == expected);
+    }
+  };
+  for (int64_t face = 0; face < 300; ++face)
+    put(sheets, face);
+  for (int64_t face = 0; face < 300; face += 7) // moved
+    put(sheets, face);
+  for (int64_t face = 0; face < 300; face += 11) {
+    sheets.erase(face);
+    there.erase(face);
+  }
+  CHECK(sheets.knows(11));
+  CHECK_FALSE(sheets.knows(300));
+  check(sheets);
+  improve::Sheets later(0.7);
+  put(later, 5);
+  put(later, 900);
+  later.erase(6);
+  there.erase(6);
+  sheets.merge(later);
+  check(sheets);
+  sheets.compact();
+  CHECK(sheets.records() == sheets.alive());
+  check(sheets);
+}
+
+namespace {
+
+const Vec3d centre[] = {{3.1, 4.6, 4.4}, {6.6, 4.55, 4.45}};
+
+// Spheres that overlap: either is the target of the points nearer to its centre.
+struct Overlapping : improve::Target {
+  bool project(Vec3d& p, double reach) const override {
+    double distance;
+    Vec3d normal;
+    probe(p, distance, normal);
+    p += -distance * normal;
+    return std::abs(distance) <= reach;
+  }
+  bool probe(Vec3d p, double& distance, Vec3d& normal) const override {
+    const Vec3d c = norm2(p - centre[0]) < norm2(p - centre[1]) ? centre[0] : centre[1];
+    distance = norm(p - c) - 1.9;
+    normal = (p - c) / norm(p - c);
+    return true;
+  }
+  double spacing() const override { return 0.5; }
+};
+
+} // namespace
+
+TEST_CASE("two sheets that are drawn through each other stop before they cross") {
+  const Field balls = [](Vec3d p) {
+    return std::exp(-0.8 * (std::min(norm2(p - centre[0]), norm2(p - centre[1])) - 1.6 * 1.6));
+  };
+  const TetMesh mesh = lattice_mesh(balls, {0, 0, 0}, 0.5, 20, 1);
+  REQUIRE(find_crossings(mesh.point, mesh.tri, 1).pairs == 0);
+  improve::DynamicMesh m = improve::build(mesh, 180, 1);
+  const Overlapping target;
+  improve::Schedule schedule(m, &target, 100, 1);
+  CHECK(schedule.settle(1, {180, 1e3, 2, 0}).moves > 50);
+  const TetMesh moved = improve::extract(m);
+  CHECK(find_crossings(moved.point, moved.tri, 1).pairs == 0);
+  double volume[2] = {};
+  for (const TetMesh* x : {&mesh, &moved})
+    for (const Tet& t : x->tet)
+      volume[x == &moved] += tet_volume(x->point[size_t(t[0])], x->point[size_t(t[1])], x->point[size_t(t[2])],
+                                        x->point[size_t(t[3])]);
+  CHECK(volume[1] > 1.2 * volume[0]);
+}
