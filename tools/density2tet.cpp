@@ -87,6 +87,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.counts["surface_cells"] = summary.surface_cells;
   run.counts["split_cells"] = summary.split_cells;
   run.counts["restored_points"] = summary.restored_points;
+  run.counts["relaxed_points"] = summary.relaxed_points;
   run.counts["face_points"] = summary.face_points;
   run.counts["edge_points"] = summary.edge_points;
   run.counts["molecule_volumes"] = summary.molecule_volumes;

@@ -67,8 +67,11 @@ struct Complex {
   int32_t piece_dual(int32_t leaf, const SplitCell& s, const Patch& p) const {
     return split[static_cast<size_t>(leaf)] + 1 + (p.piece < 0 ? s.pieces : p.piece);
   }
-  /// Puts moved grid points back where the lattice has them, and places all dual vertices anew.
-  void restore(const std::vector<int32_t>& grid_vertex_ids, int threads);
+  /// Puts moved grid points back where the lattice has them and the dual vertices around them where they belong.
+  /// Returns the leaves with one of these corners.
+  std::vector<int32_t> restore(const std::vector<int32_t>& grid_vertex_ids, int threads);
+  /// Leaves with a flagged corner, ascending. flag: [grid vertices]
+  std::vector<int32_t> leaves_at(const std::vector<uint8_t>& flag, int threads) const;
   bool moved(int32_t vertex) const { return vertex < grid_vertices && moved_[static_cast<size_t>(vertex)]; }
   /// Surface cells within a leaf: first_cell[leaf] up to here.
   int32_t end_cell(int32_t leaf) const;
@@ -80,7 +83,8 @@ private:
   void number_grid_vertices(int threads);
   void keep_distance(int threads);
   bool estimate_distance(int32_t v, Vec3d foot, double& d, Vec3d& inwards) const;
-  void place_duals(int threads);
+  void number_pieces(int threads);
+  void place(int32_t leaf);
   Vec3d mean_crossing(int32_t leaf) const;
   Vec3d moved_crossing(int32_t a, int32_t b) const;
   Vec3d onto_surface(int32_t leaf, Vec3d x) const;

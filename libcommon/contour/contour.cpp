@@ -64,22 +64,20 @@ TetMesh assemble(const Elements& elements, const Components& parts, const Option
 }
 
 /// Moved grid points that elements without positive volume hang on: themselves, or through the dual vertex of a
-/// cell with such a corner; or all that are moved.
-std::vector<int32_t> spoiling_vertices(const Complex& complex, const Elements& elements, bool all) {
+/// cell with such a corner; all that are moved where that is none, since a ring may hang on a face point, and that
+/// on grid points further on.
+std::vector<int32_t> spoiling_vertices(const Complex& complex, const std::vector<int32_t>& spoiled, bool all) {
   std::vector<int32_t> spoiling;
   const auto add = [&](int32_t v) {
     if (complex.moved(v))
       spoiling.push_back(v);
   };
-  for (int32_t v : elements.spoiled) {
+  for (int32_t v : spoiled) {
     add(v);
     const int32_t leaf = complex.leaf_of(v);
     for (int c = 0; leaf >= 0 && c < 8; ++c)
       add(complex.grid_vertex[at(int64_t{8} * leaf + c)]);
   }
-  if (elements.spoiled.empty())
-    return spoiling;
-  // A ring may hang on a face point, and that on grid points further on.
   const bool none = spoiling.empty();
   for (int32_t v = 0; (all || none) && v < complex.grid_vertices; ++v)
     add(v);
@@ -88,6 +86,19 @@ std::vector<int32_t> spoiling_vertices(const Complex& complex, const Elements& e
   if (spoiling.empty())
     fail(Status::failed, "contour: an element of unmoved boxes has no volume");
   return spoiling;
+}
+
+/// Validity is proven for cells that are boxes: where a moved grid point spoils it, it goes back. Returns how many
+/// did.
+int64_t restore_spoiling(Complex& complex, std::vector<int32_t> spoiled, int threads) {
+  constexpr int most_rounds = 8; // then all go back: time must be bounded
+  int64_t restored = 0;
+  for (int round = 0; !spoiled.empty(); ++round) {
+    const std::vector<int32_t> spoiling = spoiling_vertices(complex, spoiled, round == most_rounds);
+    restored += static_cast<int64_t>(spoiling.size());
+    spoiled = spoiled_at(complex, complex.restore(spoiling, threads), threads);
+  }
+  return restored;
 }
 
 void refuse_surface_at_wall(const Complex& complex) {
@@ -129,17 +140,11 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   const bool on_inside = refine_options.inside || options.drop_below > 0,
              on_outside = with_outside || options.fill_cavities;
   Elements elements = make_elements(complex, on_inside, on_outside, threads);
-  // Validity is proven for cells that are boxes. Where a moved grid point spoils it, it goes back.
-  constexpr int most_rounds = 8; // then all go back: time must be bounded
-  for (int round = 0;; ++round) {
-    const std::vector<int32_t> spoiling = spoiling_vertices(complex, elements, round == most_rounds);
-    if (spoiling.empty())
-      break;
-    complex.restore(spoiling, threads);
-    summary.restored_points += static_cast<int64_t>(spoiling.size());
+  summary.restored_points = restore_spoiling(complex, elements.spoiled, threads);
+  if (summary.restored_points > 0)
     elements = make_elements(complex, on_inside, on_outside, threads);
-  }
-  relax(elements, threads);
+  on_phase("relaxation");
+  summary.relaxed_points = relax(elements, threads);
   on_phase("regions");
   RegionOptions region_options;
   region_options.fill_cavities = options.fill_cavities;

@@ -20,7 +20,8 @@ struct Options {
 };
 
 struct Summary {
-  int64_t leaves = 0, surface_cells = 0, split_cells = 0, restored_points = 0, face_points = 0, edge_points = 0;
+  int64_t leaves = 0, surface_cells = 0, split_cells = 0, restored_points = 0, relaxed_points = 0, face_points = 0,
+          edge_points = 0;
   std::vector<double> molecule_volumes, cavity_volumes; ///< Å³ of each part, in the order of the octree's curve
   int64_t dropped_parts = 0, filled_cavities = 0;
 };

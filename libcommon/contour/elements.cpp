@@ -4,6 +4,8 @@
 #include "contour/detail/face_pass.hpp"
 #include "contour/detail/ring_pass.hpp"
 #include "par/par.hpp"
+#include <algorithm>
+#include <utility>
 
 namespace molmesh::contour {
 
@@ -67,24 +69,21 @@ void join(std::vector<Batch>& batches, Elements& out, std::vector<Link>& links, 
   });
 }
 
-} // namespace
+/// Faces of the leaves that leaf(0 … n - 1) names, into out and links; wall as in join.
+template <class Leaf>
+void add_faces(const Complex& complex, int64_t n, Leaf leaf, const bool wanted[2], Elements& out,
+               std::vector<Link>& links, std::vector<int32_t>& wall, int threads) {
+  std::vector<Batch> batches(at((n + batch_size - 1) / batch_size));
+  par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t b) {
+    for (int64_t i = b * batch_size; i < std::min(n, (b + 1) * batch_size); ++i)
+      detail::make_faces(complex, leaf(i), wanted, batches[at(b)]);
+  });
+  join(batches, out, links, wall, threads);
+}
 
-Elements make_elements(const Complex& complex, bool inside, bool outside, int threads) {
-  const bool wanted[2] = {outside, inside};
-  Elements out;
-  out.position = complex.position;
-  std::vector<Link> links;
-  std::vector<int32_t> wall;
-  {
-    const int64_t leaves = complex.tree.size();
-    std::vector<Batch> batches(at((leaves + batch_size - 1) / batch_size));
-    par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t b) {
-      for (int64_t i = b * batch_size; i < std::min(leaves, (b + 1) * batch_size); ++i)
-        detail::make_faces(complex, static_cast<int32_t>(i), wanted, batches[at(b)]);
-    });
-    join(batches, out, links, wall, threads);
-  }
-  out.face_points = static_cast<int64_t>(wall.size());
+/// Rings of all the edges in links.
+void add_rings(const Complex& complex, std::vector<Link>& links, const bool wanted[2], Elements& out,
+               std::vector<int32_t>& wall, int threads) {
   par::sort(links, threads);
   std::vector<int64_t> first; // link of each sign-change edge
   for (size_t i = 0; i < links.size(); ++i)
@@ -92,18 +91,67 @@ Elements make_elements(const Complex& complex, bool inside, bool outside, int th
       first.push_back(static_cast<int64_t>(i));
   const auto edges = static_cast<int64_t>(first.size());
   first.push_back(static_cast<int64_t>(links.size()));
-  {
-    std::vector<Batch> batches(at((edges + batch_size - 1) / batch_size));
-    const detail::RingVertices vertices{complex, out.position, wall};
-    par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t b) {
-      for (int64_t e = b * batch_size; e < std::min(edges, (b + 1) * batch_size); ++e)
-        detail::make_ring(vertices, &links[at(first[at(e)])], links.data() + first[at(e + 1)], wanted,
-                          batches[at(b)]);
-    });
-    std::vector<Link> none;
-    join(batches, out, none, wall, threads);
-  }
+  std::vector<Batch> batches(at((edges + batch_size - 1) / batch_size));
+  const detail::RingVertices vertices{complex, out.position, wall};
+  par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t b) {
+    for (int64_t e = b * batch_size; e < std::min(edges, (b + 1) * batch_size); ++e)
+      detail::make_ring(vertices, &links[at(first[at(e)])], links.data() + first[at(e + 1)], wanted,
+                        batches[at(b)]);
+  });
+  std::vector<Link> none;
+  join(batches, out, none, wall, threads);
+}
+
+void sort_unique(std::vector<int32_t>& v) {
+  std::sort(v.begin(), v.end());
+  v.erase(std::unique(v.begin(), v.end()), v.end());
+}
+
+} // namespace
+
+std::vector<int32_t> spoiled_at(const Complex& complex, const std::vector<int32_t>& leaves, int threads) {
+  // An edge of a leaf, halves and those on its faces included, has its ends among the corners of the leaves around;
+  // all faces at it belong to leaves with such a corner.
+  const auto corners = [&](const std::vector<int32_t>& of) {
+    std::vector<uint8_t> flag(at(complex.grid_vertices), 0);
+    for (int32_t leaf : of)
+      for (int c = 0; c < 8; ++c)
+        flag[at(complex.grid_vertex[at(int64_t{8} * leaf + c)])] = 1;
+    return flag;
+  };
+  const std::vector<uint8_t> ends = corners(complex.leaves_at(corners(leaves), threads));
+  const std::vector<int32_t> near = complex.leaves_at(ends, threads);
+  const bool none[2] = {false, false};
+  Elements out;
+  out.position = complex.position;
+  std::vector<Link> links;
+  std::vector<int32_t> wall;
+  add_faces(
+      complex, static_cast<int64_t>(near.size()), [&](int64_t i) { return near[at(i)]; }, none, out, links, wall,
+      threads);
+  const auto partial = [&](const Link& l) {
+    const auto end = [&](int32_t v) { return v >= complex.grid_vertices || ends[at(v)]; };
+    return !(end(l.inside) && end(l.outside)); // a split cell's centre: all its faces are its own
+  };
+  links.erase(std::remove_if(links.begin(), links.end(), partial), links.end());
+  add_rings(complex, links, none, out, wall, threads);
+  sort_unique(out.spoiled);
+  return std::move(out.spoiled);
+}
+
+Elements make_elements(const Complex& complex, bool inside, bool outside, int threads) {
+  const bool wanted[2] = {outside, inside};
+  Elements out;
+  out.position = complex.position;
+  std::vector<Link> links;
+  std::vector<int32_t> wall;
+  add_faces(
+      complex, complex.tree.size(), [](int64_t i) { return static_cast<int32_t>(i); }, wanted, out, links, wall,
+      threads);
+  out.face_points = static_cast<int64_t>(wall.size());
+  add_rings(complex, links, wanted, out, wall, threads);
   out.edge_points = static_cast<int64_t>(wall.size()) - out.face_points;
+  sort_unique(out.spoiled);
   return out;
 }
 

@@ -29,6 +29,10 @@ struct Elements {
   int64_t face_points = 0, edge_points = 0;
 };
 
+/// `spoiled`, sorted, once each, of the elements that hang on these leaves' dual vertices or corners and of some
+/// around them: what is left to look at after Complex::restore.
+std::vector<int32_t> spoiled_at(const Complex& complex, const std::vector<int32_t>& leaves, int threads);
+
 /// inside, outside: sides to make elements on. The order follows the octree's curve, whatever the threads.
 Elements make_elements(const Complex& complex, bool inside, bool outside, int threads);
 

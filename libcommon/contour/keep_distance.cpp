@@ -110,15 +110,17 @@ void Complex::keep_distance(int threads) {
   });
 }
 
-void Complex::restore(const std::vector<int32_t>& ids, int threads) {
+std::vector<int32_t> Complex::restore(const std::vector<int32_t>& ids, int threads) {
+  std::vector<uint8_t> flag(at(grid_vertices), 0);
   for (int32_t v : ids) {
     position[at(v)] = lattice.position(point[at(v)]);
     distance[at(v)] = estimate_[at(v)];
     moved_[at(v)] = 0;
+    flag[at(v)] = 1;
   }
-  position.resize(at(grid_vertices + tree.size()));
-  value.resize(at(grid_vertices + tree.size()));
-  place_duals(threads);
+  std::vector<int32_t> leaves = leaves_at(flag, threads);
+  par::for_n(static_cast<int64_t>(leaves.size()), threads, 64, [&](int64_t i) { place(leaves[at(i)]); });
+  return leaves;
 }
 
 } // namespace molmesh::contour

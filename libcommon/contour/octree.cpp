@@ -13,6 +13,14 @@ void sort_unique(std::vector<uint64_t>& keys, int threads) {
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
 }
 
+/// std::popcount is a call into a table where the processor's own instruction may not be assumed.
+int popcount(uint64_t x) {
+  x -= x >> 1 & 0x5555555555555555u;
+  x = (x & 0x3333333333333333u) + (x >> 2 & 0x3333333333333333u);
+  x = (x + (x >> 4)) & 0x0F0F0F0F0F0F0F0Fu;
+  return static_cast<int>(x * 0x0101010101010101u >> 56);
+}
+
 uint64_t mix(uint64_t key) {
   key *= 0x9E3779B97F4A7C15u;
   return key ^ key >> 32;
@@ -131,6 +139,9 @@ Octree::Octree(Vec3i cells, int top_level, const Refine& refine, int threads) : 
 }
 
 void Octree::index_leaves() {
+  corner_.resize(key.size());
+  for (size_t i = 0; i < key.size(); ++i)
+    corner_[i] = morton_point(key[i]);
   for (int32_t i = 0; i < size(); ++i) {
     const uint64_t k = key[static_cast<size_t>(i)];
     if (level[static_cast<size_t>(i)] >= 3) {
@@ -138,9 +149,12 @@ void Octree::index_leaves() {
       continue;
     }
     if (block_.empty() || block_.back().key != k >> 9)
-      block_.push_back({k >> 9, i, {}});
+      block_.push_back({k >> 9, i, {}, {}});
     block_.back().start[k >> 6 & 7] |= uint64_t{1} << (k & 63);
   }
+  for (Block& b : block_)
+    for (size_t w = 1; w < 8; ++w)
+      b.rank[w] = static_cast<uint16_t>(b.rank[w - 1] + std::popcount(b.start[w - 1]));
   uint64_t capacity = 16;
   while (capacity < 2 * block_.size())
     capacity *= 2;
@@ -163,19 +177,12 @@ int32_t Octree::find(Vec3i p) const {
     if (block.key != k >> 9)
       continue;
     const unsigned word = k >> 6 & 7;
-    int rank = std::popcount(block.start[word] & (~uint64_t{0} >> (63 - (k & 63))));
-    for (unsigned w = 0; w < word; ++w)
-      rank += std::popcount(block.start[w]);
-    return block.first + rank - 1;
+    return block.first + block.rank[word] + popcount(block.start[word] & (~uint64_t{0} >> (63 - (k & 63)))) - 1;
   }
   const auto after = std::upper_bound(large_.begin(), large_.end(), k, [this](uint64_t x, int32_t leaf) {
     return x < key[static_cast<size_t>(leaf)];
   });
   return *(after - 1);
-}
-
-Vec3i Octree::corner(int32_t leaf) const {
-  return morton_point(key[static_cast<size_t>(leaf)]);
 }
 
 } // namespace molmesh::contour

@@ -21,7 +21,7 @@ public:
   int32_t size() const { return static_cast<int32_t>(key.size()); }
   /// The leaf that holds fine cell p, or -1 beyond the domain.
   int32_t find(Vec3i p) const;
-  Vec3i corner(int32_t leaf) const; ///< lower corner, lattice point
+  Vec3i corner(int32_t leaf) const { return corner_[static_cast<size_t>(leaf)]; } ///< lower corner, lattice point
   int32_t extent(int32_t leaf) const { return 1 << level[static_cast<size_t>(leaf)]; } ///< fine cells along an edge
 
   std::vector<uint64_t> key;  ///< ascending; Morton code of the lower corner
@@ -32,9 +32,11 @@ private:
     uint64_t key;
     int32_t first;                 ///< first leaf
     std::array<uint64_t, 8> start; ///< bit m: a leaf starts at Morton position m within the block
+    std::array<uint16_t, 8> rank;  ///< leaves that start in the words before
   };
   void index_leaves();
   Vec3i cells_;
+  std::vector<Vec3i> corner_; ///< [leaves]
   std::vector<Block> block_;
   std::vector<int32_t> slot_; ///< open addressing into block_, -1 free
   uint64_t mask_ = 0;

@@ -10,7 +10,7 @@ namespace molmesh::contour {
 using detail::at;
 namespace {
 
-constexpr double least_angle = 15; // degrees; 157° counts alike
+constexpr double least_angle = 13; // degrees; 160° counts alike
 constexpr int most_rounds = 8;
 
 struct Candidate {

@@ -4,7 +4,7 @@
 
 namespace molmesh::contour {
 
-/// Moves vertices of elements with dihedral angles under 15° or over 157°. Surface and walls stay, so that inside
+/// Moves vertices of elements with dihedral angles under 13° or over 160°. Surface and walls stay, so that inside
 /// and outside alike come out the same alone and together. No vertex's worst element gets worse; the same result
 /// for any number of threads. Returns how often a vertex moved.
 int64_t relax(Elements& elements, int threads);
