@@ -64,11 +64,11 @@ struct Stage {
   const Guard& guard;
 };
 const Stage stages[] = {
-    {0.35, 0, 1, true, kept},    {0.6, 0, 1, true, kept},     {0.8, 1, 1, true, kept},
-    {0.9, 1, 2, true, kept},     {1, 1, 2, false, kept},      {1, 1, 8, true, kept},
-    {0.8, 1, 8, true, released}, {1, 1, 8, false, released},  {0.5, 1, 32, true, lifted},
-    {1, 1, 32, true, released},  {0.55, 1, 32, true, lifted}, {1, 1, 32, false, released},
-    {0.55, 1, 32, true, lifted},
+    {0.35, 0, 1, true, kept},     {0.6, 0, 1, true, kept},      {0.8, 1, 1, true, kept},
+    {0.9, 1, 2, true, kept},      {1, 1, 2, false, kept},       {1, 1, 8, true, kept},
+    {0.8, 1, 8, true, released},  {1, 1, 8, false, released},   {0.5, 1, 32, true, lifted},
+    {1, 1, 32, true, released},   {0.97, 1, 32, true, lifted},  {1, 1, 32, false, released},
+    {0.97, 1, 32, true, lifted},
 };
 constexpr size_t refresh_offset = 4;
 
@@ -187,7 +187,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     if (density) {
       if (size_t(round) + 1 == refresh_offset)
         isosurface->set_offset(isosurface->offset() + chord_offset(m, *isosurface, options.threads));
-      result.counts += schedule.settle(std::min(pass.goal, schedule.worst()), kept);
+      result.counts += schedule.settle(size_t(round) < refresh_offset ? pass.goal : goal, kept);
     }
     if (done == 0 && size_t(round) + 1 >= std::size(stages))
       break;
