@@ -171,6 +171,8 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     pass.worst_first = stage.worst_first;
     pass.guard = stage.guard;
     pass.yield = round == 0 ? 0.25f : 1.f; // clusters far smaller than the grid have to go as a whole
+    if (stage.guard.lift > 0)
+      schedule.find_crowded(true);
     int64_t done = 0;
     if (flow) {
       done = flow(m, isosurface.get(), pass);

@@ -49,13 +49,13 @@ bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass
 
 Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads)
     : m_(mesh), target_(target), cell_(cell), threads_(threads), sheets_(target ? target->spacing() : 1) {
-  find_crowded();
+  find_crowded(false);
 }
 
-// Sheets are looked at only where another one is within a spacing.
-void Schedule::find_crowded() {
-  if (!target_)
+void Schedule::find_crowded(bool everywhere) {
+  if (!target_ || watching_)
     return;
+  watching_ = everywhere;
   Sheets all(2 * target_->spacing());
   for (size_t e = 0; e < m_.element.size(); ++e)
     for (size_t f = 0; f < 4; ++f) {
@@ -68,11 +68,11 @@ void Schedule::find_crowded() {
   std::vector<uint8_t> crowded(triangle.size());
   par::for_n(static_cast<int64_t>(triangle.size()), threads_, [&](int64_t t) {
     SheetTriangle wide = triangle[size_t(t)];
-    const auto apart = static_cast<float>(0.6 * target_->spacing());
+    const auto apart = static_cast<float>(target_->spacing());
     wide.low = wide.low - Vec3f{apart, apart, apart};
     wide.high = wide.high + Vec3f{apart, apart, apart};
-    crowded[size_t(t)] = all.any(wide, [&](const SheetTriangle& other) {
-      return dot(wide.normal, other.normal) < 0 && wide.box_meets(other, 0);
+    crowded[size_t(t)] = everywhere || all.any(wide, [&](const SheetTriangle& other) {
+      return dot(wide.normal, other.normal) < 0.3f && wide.box_meets(other, 0);
     });
   });
   for (Vertex& v : m_.vertex)

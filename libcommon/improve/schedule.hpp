@@ -27,6 +27,9 @@ public:
   Counts run(const Pass& pass);
   /// Puts surface vertices on the target where no element falls under `floor`.
   Counts settle(float floor, const Guard& guard);
+  /// Where the mesh ends in a surface, it is kept from crossing itself; at first only near opposed sheets. This
+  /// looks anew, or everywhere from now on.
+  void find_crowded(bool everywhere);
   float worst() const;
   int64_t below(float goal) const;
 
@@ -34,7 +37,6 @@ private:
   using Work = std::function<void(Editor&, std::vector<int32_t>&)>;
   Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
                    const Work& work);
-  void find_crowded();
   void set_owners(int shift, double cell);
   int32_t part_of(const Element& e) const;
 
@@ -42,6 +44,7 @@ private:
   const Target* target_;
   double cell_;
   int threads_;
+  bool watching_ = false;
   int passes_ = 0, settles_ = 0;
   int32_t time_ = 0, since_ = 0; ///< sweeps so far; when this kind of pass began
   Pass last_;
