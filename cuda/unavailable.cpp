@@ -1,4 +1,5 @@
 // unavailable.cpp — what --mode cuda answers in a build without CUDA.
+#include "cuda/contour/contour.hpp"
 #include "cuda/density/density.hpp"
 #include "cuda/improve/improve.hpp"
 #include "cuda/par/device.hpp"
@@ -16,6 +17,12 @@ std::string device_name() {
 }
 
 density::Band compute_density(const Hierarchy&, const density::Options&, density::Counts&, DeviceReport&) {
+  require_device();
+  return {};
+}
+
+TetMesh contour_mesh(const BlockGrid&, const contour::Options&, contour::Summary&,
+                     const std::function<void(const std::string&)>&, DeviceReport&) {
   require_device();
   return {};
 }

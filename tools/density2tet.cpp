@@ -2,6 +2,9 @@
 #include "cli/file.hpp"
 #include "cli/run.hpp"
 #include "contour/contour.hpp"
+#include "cuda/contour/contour.hpp"
+#include "cuda/par/device.hpp"
+#include "cuda/report.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
 #include <algorithm>
@@ -12,6 +15,7 @@ using namespace molmesh;
 namespace {
 
 struct Options : cli::Common {
+  Options() { require_device = cuda::require_device; }
   std::string region = "interior", box = "auto", cavities = "keep";
   double adapt = contour::Options{}.adapt, drop_below = 0;
 };
@@ -76,7 +80,12 @@ Status run_tool(const Options& o, cli::Run& run) {
   contour::Summary summary;
   TetMesh mesh;
   try {
-    mesh = contour::contour(grid, options, summary, [&](const std::string& phase) { run.phase(phase); });
+    const auto phase = [&](const std::string& p) { run.phase(p); };
+    cuda::DeviceReport device;
+    mesh = o.on_device() ? cuda::contour_mesh(grid, options, summary, phase, device)
+                         : contour::contour(grid, options, summary, phase);
+    if (o.on_device())
+      run.counts["device"] = cuda::json(device);
   } catch (const Error& e) {
     fail(e.status, (e.status == Status::usage ? "" : input.name() + ": ") + e.what());
   }

@@ -1,6 +1,7 @@
 // complex.cpp — vertices of the complex: who owns which grid point, who the pieces of split cells are.
 #include "contour/complex.hpp"
 #include "contour/detail/at.hpp"
+#include "contour/detail/complex_queries.hpp"
 #include "geom/morton.hpp"
 #include "par/par.hpp"
 #include <algorithm>
@@ -16,36 +17,6 @@ Vec3i corner_step(int c) {
 }
 
 } // namespace
-
-SplitCell::SplitCell(const CellTopology& t) : topology(t) {
-  const auto add = [this](int face, std::initializer_list<int> corners) {
-    Patch p{face, static_cast<int>(corners.size()), {-1, -1, -1, -1}, 0};
-    std::copy(corners.begin(), corners.end(), p.corner);
-    const bool chopped = topology.chop >= 0 && face >= 0 &&
-                         std::find(corners.begin(), corners.end(), topology.chop) != corners.end();
-    p.piece = chopped ? -1 : pieces++;
-    patch.push_back(p);
-  };
-  for (int f = 0; f < 6; ++f) {
-    const int* c = face_corner[f];
-    if (t.diagonal[f] == Diagonal::none) {
-      add(f, {c[0], c[1], c[2], c[3]});
-    } else {
-      const int s = t.diagonal[f] == Diagonal::even ? 0 : 1;
-      add(f, {c[s], c[s + 1], c[(s + 2) % 4]});
-      add(f, {c[(s + 2) % 4], c[(s + 3) % 4], c[s]});
-    }
-  }
-  if (t.chop >= 0) {
-    // The three neighbours, turned so that the cut is counter-clockwise seen from the chopped corner.
-    const int k = t.chop, x = k ^ 1, y = k ^ 2, z = k ^ 4;
-    const bool even = ((k & 1) + (k >> 1 & 1) + (k >> 2)) % 2 == 0;
-    if (even)
-      add(-1, {x, z, y});
-    else
-      add(-1, {x, y, z});
-  }
-}
 
 Complex::Complex(const Lattice& l, const Octree& t, const std::vector<SurfaceCell>& c,
                  const std::vector<SurfaceSample>& surface, int threads)
@@ -158,10 +129,11 @@ std::vector<int32_t> Complex::leaves_at(const std::vector<uint8_t>& grid_vertex_
 }
 
 int32_t Complex::piece_dual(int32_t leaf, const SplitCell& s, int f, int off) const {
-  for (const Patch& p : s.patch)
-    if (p.face == f && (off < 0 || p.corner[1] == off))
-      return piece_dual(leaf, s, p);
-  return -1; // every face has its patches
+  return detail::piece_dual(*this, leaf, s, f, off);
+}
+
+int32_t Complex::piece_dual(int32_t leaf, const SplitCell& s, const Patch& p) const {
+  return detail::piece_dual(*this, leaf, s, p);
 }
 
 } // namespace molmesh::contour

@@ -1,35 +1,15 @@
 // complex.hpp — the octree's leaves as a face-to-face complex of convex cells, with a dual vertex in each.
 // Section 4.1 of Liao et al. 2013. Every mesh is the dual of this complex; see elements.hpp.
 #pragma once
-#include "contour/cube.hpp"
 #include "contour/lattice.hpp"
 #include "contour/octree.hpp"
+#include "contour/split_cell.hpp"
 #include "contour/surface_cells.hpp"
 #include "contour/surface_sample.hpp"
 #include <cstdint>
 #include <vector>
 
 namespace molmesh::contour {
-
-enum class Side : uint8_t { outside, inside, crossed };
-
-/// A boundary polygon of a split cell, counter-clockwise seen from outside the piece of the cell that its apex
-/// closes.
-struct Patch {
-  int face;      ///< cell face it lies on, or -1 for the cut below a chopped corner
-  int n;         ///< 3 or 4 corners
-  int corner[4]; ///< cell corners
-  int piece;     ///< piece of the cell behind it; -1: the chopped corner
-};
-
-/// A fine cell with more than one sheet: one piece (pyramid or tetrahedron) per patch, with the cell's centre as
-/// apex; a chopped corner is one more piece.
-struct SplitCell {
-  CellTopology topology;
-  std::vector<Patch> patch;
-  int pieces = 0; ///< without the chopped corner
-  explicit SplitCell(const CellTopology& t);
-};
 
 /// Everything known per leaf and per vertex of the complex. Vertex ids: grid points first, then one dual vertex per
 /// leaf (dual0 + leaf), then for each split cell its centre and the dual vertices of its pieces.
@@ -64,9 +44,7 @@ struct Complex {
   /// Dual vertex of the piece of a split leaf behind face f; off: the triangle's corner off the diagonal, -1 for a
   /// square.
   int32_t piece_dual(int32_t leaf, const SplitCell& s, int f, int off) const;
-  int32_t piece_dual(int32_t leaf, const SplitCell& s, const Patch& p) const {
-    return split[static_cast<size_t>(leaf)] + 1 + (p.piece < 0 ? s.pieces : p.piece);
-  }
+  int32_t piece_dual(int32_t leaf, const SplitCell& s, const Patch& p) const;
   /// Puts moved grid points back where the lattice has them and the dual vertices around them where they belong.
   /// Returns the leaves with one of these corners.
   std::vector<int32_t> restore(const std::vector<int32_t>& grid_vertex_ids, int threads);
@@ -78,6 +56,10 @@ struct Complex {
   /// Where the surface crosses the edge between two vertices on opposite sides, Å. Coarse edges whose ends have not
   /// moved are searched on the fine grid.
   Vec3d crossing(int32_t a, int32_t b) const;
+  const std::vector<uint8_t>& moved_flags() const { return moved_; }       ///< [grid vertices]
+  const std::vector<int32_t>& nearest_samples() const { return nearest_; } ///< [grid vertices]
+  /// Nearest sample in the leaves round a grid point, -1: none.
+  int32_t nearest_sample(int32_t vertex) const { return nearest_[static_cast<size_t>(vertex)]; }
 
 private:
   void number_grid_vertices(int threads);
@@ -86,7 +68,6 @@ private:
   void number_pieces(int threads);
   void place(int32_t leaf);
   Vec3d mean_crossing(int32_t leaf) const;
-  Vec3d moved_crossing(int32_t a, int32_t b) const;
   Vec3d onto_surface(int32_t leaf, Vec3d x) const;
   void place_split(int32_t leaf);
   std::vector<uint8_t> moved_;

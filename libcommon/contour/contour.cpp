@@ -119,7 +119,7 @@ void refuse_surface_at_wall(const Complex& complex) {
 } // namespace
 
 TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
-                const std::function<void(const std::string&)>& on_phase) {
+                const std::function<void(const std::string&)>& on_phase, const ElementFunction& make) {
   const int threads = options.threads;
   const bool with_outside = options.meshed != Options::interior;
   on_phase("surface cells");
@@ -139,10 +139,10 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   on_phase("elements");
   const bool on_inside = refine_options.inside || options.drop_below > 0,
              on_outside = with_outside || options.fill_cavities;
-  Elements elements = make_elements(complex, on_inside, on_outside, threads);
+  Elements elements = make(complex, on_inside, on_outside, threads);
   summary.restored_points = restore_spoiling(complex, elements.spoiled, threads);
   if (summary.restored_points > 0)
-    elements = make_elements(complex, on_inside, on_outside, threads);
+    elements = make(complex, on_inside, on_outside, threads);
   on_phase("relaxation");
   summary.relaxed_points = relax(elements, threads);
   on_phase("regions");

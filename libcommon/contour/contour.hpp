@@ -1,6 +1,7 @@
 // contour.hpp — density to a conforming tetrahedral mesh of the molecule, its surroundings, or both.
 // Adaptive dual contouring, section 4 of Liao et al. 2013.
 #pragma once
+#include "contour/elements.hpp"
 #include "contour/lattice.hpp"
 #include "density/block_grid.hpp"
 #include "mesh/tet_mesh.hpp"
@@ -26,9 +27,14 @@ struct Summary {
   int64_t dropped_parts = 0, filled_cavities = 0;
 };
 
+/// Makes the elements of a complex: make_elements, or what does the same on a device. Called for one complex, again
+/// after each change of it.
+using ElementFunction = std::function<Elements(const Complex&, bool inside, bool outside, int threads)>;
+
 /// on_phase is called with the name of each phase as it starts. Throws Error(failed) when the grid has no surface
 /// or the surface meets a wall that was not asked to cut it.
 TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
-                const std::function<void(const std::string&)>& on_phase);
+                const std::function<void(const std::string&)>& on_phase,
+                const ElementFunction& make = make_elements);
 
 } // namespace molmesh::contour

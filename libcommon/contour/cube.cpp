@@ -66,15 +66,6 @@ bool same_partition(const std::array<int, 8>& a, const std::array<int, 8>& b) {
 
 } // namespace
 
-Diagonal face_diagonal(double a, double b, double c, double d) {
-  const bool in = a > 0;
-  if ((c > 0) != in || (b > 0) == in || (d > 0) == in)
-    return Diagonal::none;
-  // The saddle of the bilinear function is inside exactly when the inside pair has the larger product.
-  const bool even_joined = in ? a * c > b * d : !(b * d > a * c);
-  return even_joined ? Diagonal::even : Diagonal::odd;
-}
-
 std::array<int, 8> trilinear_components(const double value[8]) {
   // Slices of constant z carry a bilinear function of the four vertical lines. Their joins change only where a line
   // changes sign or where the saddle does: between such heights one slice speaks for all.

@@ -1,6 +1,7 @@
 // cube.hpp — numbering of a cell's corners, edges and faces; its topology under the trilinear function.
 // Section 4.1 of Liao et al. 2013 (ambiguous cells, their reference 51).
 #pragma once
+#include "geom/hd.hpp"
 #include <array>
 #include <cstdint>
 
@@ -10,6 +11,18 @@ namespace molmesh::contour {
 /// Corners of each face, counter-clockwise seen from outside the cell.
 inline constexpr int face_corner[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                           {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+
+/// The same as a function: a device cannot see the table.
+HD constexpr int face_corner_of(int f, int i) {
+  return (f == 0   ? 0x2640
+          : f == 1 ? 0x5731
+          : f == 2 ? 0x4510
+          : f == 3 ? 0x3762
+          : f == 4 ? 0x1320
+                   : 0x6754) >>
+             (4 * i) &
+         7;
+}
 
 /// No diagonal, or the one from face_corner[f][0] to [2] (even), or from [1] to [3] (odd).
 enum class Diagonal : uint8_t { none, even, odd };
@@ -34,7 +47,14 @@ struct CellTopology {
 };
 
 /// Which diagonal a face with these values (in face order, minus the isovalue) needs. The same for both its cells.
-Diagonal face_diagonal(double a, double b, double c, double d);
+HD inline Diagonal face_diagonal(double a, double b, double c, double d) {
+  const bool in = a > 0;
+  if ((c > 0) != in || (b > 0) == in || (d > 0) == in)
+    return Diagonal::none;
+  // The saddle of the bilinear function is inside exactly when the inside pair has the larger product.
+  const bool even_joined = in ? a * c > b * d : !(b * d > a * c);
+  return even_joined ? Diagonal::even : Diagonal::odd;
+}
 
 CellTopology cell_topology(const double value[8]);
 

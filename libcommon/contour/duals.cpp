@@ -1,6 +1,7 @@
-// duals.cpp — where the surface crosses the complex's edges, and the dual vertices that follow.
+// duals.cpp — dual vertices from where the surface crosses the complex's edges (detail/complex_queries.hpp).
 #include "contour/complex.hpp"
 #include "contour/detail/at.hpp"
+#include "contour/detail/complex_queries.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
@@ -8,59 +9,9 @@
 namespace molmesh::contour {
 
 using detail::at;
-namespace {
-
-constexpr double least_share = 0.02; // of an edge between its end and a crossing
-
-} // namespace
-
-/// On a coarse edge whose ends have moved: the distances to the surface say about where, the tangent plane at the
-/// nearer of the ends' nearest samples more exactly.
-Vec3d Complex::moved_crossing(int32_t a, int32_t b) const {
-  const Vec3d pa = position[at(a)], along = position[at(b)] - pa;
-  const double da = distance[at(a)], db = distance[at(b)];
-  double share = da != 0 && db != 0 ? da / (da - db) : 0.5;
-  const Vec3d x = pa + share * along;
-  const SurfaceSample* nearest = nullptr;
-  for (int32_t v : {a, b})
-    if (const int32_t k = nearest_[at(v)]; k >= 0) {
-      const SurfaceSample& s = samples[at(k)];
-      if (!nearest || norm2(lattice.between(s.point) - x) < norm2(lattice.between(nearest->point) - x))
-        nearest = &s;
-    }
-  if (nearest)
-    if (const double slope = dot(along, nearest->normal); std::fabs(slope) > 0.3 * norm(along))
-      share = dot(lattice.between(nearest->point) - pa, nearest->normal) / slope;
-  return pa + std::clamp(share, least_share, 1 - least_share) * along;
-}
 
 Vec3d Complex::crossing(int32_t a, int32_t b) const {
-  Vec3d pa = position[at(a)], pb = position[at(b)];
-  float va = value[at(a)], vb = value[at(b)];
-  if (a < grid_vertices && b < grid_vertices) {
-    Vec3i qa = point[at(a)], qb = point[at(b)];
-    const auto length = [&] {
-      return std::max({std::abs(qa.x - qb.x), std::abs(qa.y - qb.y), std::abs(qa.z - qb.z)});
-    };
-    if (length() > 1 && (moved_[at(a)] || moved_[at(b)]))
-      return moved_crossing(a, b);
-    const bool in = inside(a);
-    while (length() > 1) { // one sign change along the edge: halve
-      const Vec3i middle{(qa.x + qb.x) / 2, (qa.y + qb.y) / 2, (qa.z + qb.z) / 2};
-      const float v = lattice.value(middle);
-      ((v > lattice.isovalue) == in ? qa : qb) = middle;
-      ((v > lattice.isovalue) == in ? va : vb) = v;
-    }
-    if (qa == point[at(a)] && qb == point[at(b)]) {
-      const double da = distance[at(a)], db = distance[at(b)];
-      if (da != 0 && db != 0)
-        return pa + std::clamp(da / (da - db), least_share, 1 - least_share) * (pb - pa);
-    } else {
-      pa = lattice.position(qa);
-      pb = lattice.position(qb);
-    }
-  }
-  return pa + crossing_share(va, vb, lattice.isovalue) * (pb - pa);
+  return detail::crossing(*this, a, b);
 }
 
 /// Mean of the surface's crossings with the leaf's edges (the paper's mass centre).

@@ -92,7 +92,8 @@ void add_rings(const Complex& complex, std::vector<Link>& links, const bool want
   const auto edges = static_cast<int64_t>(first.size());
   first.push_back(static_cast<int64_t>(links.size()));
   std::vector<Batch> batches(at((edges + batch_size - 1) / batch_size));
-  const detail::RingVertices vertices{complex, out.position, wall};
+  const auto own = static_cast<int32_t>(complex.position.size());
+  const detail::RingVertices<Complex> vertices{complex, own, out.position.data() + own, wall.data()};
   par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t b) {
     for (int64_t e = b * batch_size; e < std::min(edges, (b + 1) * batch_size); ++e)
       detail::make_ring(vertices, &links[at(first[at(e)])], links.data() + first[at(e + 1)], wanted,

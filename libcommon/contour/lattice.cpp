@@ -87,7 +87,18 @@ Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls)
     for (int a = 0; a < 3; ++a)
       whole = plan_axis(a, lower[a], upper[a], frame.lower[a], grid_last[a], exact) && whole;
     if (whole || top_level == 0)
-      return;
+      break;
+  }
+  view_.cells = cells;
+  view_.base = base_;
+  view_.isovalue = isovalue;
+  view_.inside_value = static_cast<float>(grid.info.inside_value);
+  view_.index = index_.view();
+  view_.grid = grid.value.data();
+  for (size_t a = 0; a < 3; ++a) {
+    view_.axis[a] = axis_[a].data();
+    for (size_t side = 0; side < 2; ++side)
+      view_.cut[a][side] = cut_[a][side];
   }
 }
 
@@ -148,31 +159,6 @@ bool Lattice::cuts() const {
     if (cuts(a, 0) || cuts(a, 1))
       return true;
   return false;
-}
-
-float Lattice::value(Vec3i p) const {
-  for (int a = 0; a < 3; ++a)
-    for (int side = 0; side < 2; ++side) {
-      const Cut& cut = cut_[static_cast<size_t>(a)][static_cast<size_t>(side)];
-      if (!cut.cuts || p[a] != (side ? cells[a] : 0))
-        continue;
-      // Interpolate along this axis; further cut axes by recursion on the grid planes either side.
-      Vec3i below = base_ + p, above = below;
-      below[a] = cut.plane;
-      above[a] = cut.plane + 1;
-      const auto at = [&](Vec3i q) {
-        for (int b = a + 1; b < 3; ++b)
-          for (int s = 0; s < 2; ++s) {
-            const Cut& other = cut_[static_cast<size_t>(b)][static_cast<size_t>(s)];
-            if (!other.cuts || p[b] != (s ? cells[b] : 0))
-              continue;
-            q[b] = other.share < 0.5 ? other.plane : other.plane + 1;
-          }
-        return static_cast<double>(grid_value(q));
-      };
-      return static_cast<float>((1 - cut.share) * at(below) + cut.share * at(above));
-    }
-  return grid_value(base_ + p);
 }
 
 } // namespace molmesh::contour

@@ -8,8 +8,6 @@
 namespace molmesh::contour {
 namespace {
 
-constexpr double least_share = 0.02;
-
 SurfaceSample sample(const SurfaceCell& cell, double isovalue) {
   const float* v = cell.value;
   Vec3d sum, gradient;
@@ -32,13 +30,6 @@ SurfaceSample sample(const SurfaceCell& cell, double isovalue) {
 }
 
 } // namespace
-
-double crossing_share(double a, double b, double isovalue) {
-  const bool logarithmic = a > 0 && b > 0;
-  const auto f = [&](double v) { return logarithmic ? std::log(v / isovalue) : v - isovalue; };
-  const double fa = f(a), fb = f(b);
-  return std::clamp(fa == fb ? 0.5 : fa / (fa - fb), least_share, 1 - least_share);
-}
 
 std::vector<SurfaceSample> surface_samples(const std::vector<SurfaceCell>& cells, float isovalue, int threads) {
   std::vector<SurfaceSample> samples(cells.size());

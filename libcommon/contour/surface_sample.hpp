@@ -1,6 +1,7 @@
 // surface_sample.hpp — where the surface passes through a fine cell, and which way it faces.
 #pragma once
 #include "contour/surface_cells.hpp"
+#include "geom/log.hpp"
 #include "geom/vec.hpp"
 #include <vector>
 
@@ -17,6 +18,12 @@ std::vector<SurfaceSample> surface_samples(const std::vector<SurfaceCell>& cells
 
 /// Crossing of the surface with the straight line between two neighbouring values, as a share of the way from a to
 /// b: log G is interpolated, since G falls exponentially. Kept away from both ends.
-double crossing_share(double a, double b, double isovalue);
+HD inline double crossing_share(double a, double b, double isovalue) {
+  const bool logarithmic = a > 0 && b > 0;
+  const auto f = [&](double v) { return logarithmic ? portable_log(v / isovalue) : v - isovalue; };
+  const double fa = f(a), fb = f(b), share = fa == fb ? 0.5 : fa / (fa - fb);
+  constexpr double least = 0.02; // of an edge between its end and a crossing
+  return share < least ? least : share > 1 - least ? 1 - least : share;
+}
 
 } // namespace molmesh::contour

@@ -3,6 +3,8 @@
 
 #ifdef __CUDACC__
 #define HD __host__ __device__
+#define HD_CALL __host__ __device__ __noinline__ // large bodies called from several places: nvcc's time
 #else
 #define HD
+#define HD_CALL
 #endif

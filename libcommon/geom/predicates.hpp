@@ -28,7 +28,7 @@ HD inline void add_minor(Expansion<192>& out, TwoTerms f, TwoTerms a, TwoTerms b
     out.add_product(minor.term[i], f.error);
   }
 }
-HD inline int orient3d_exact(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
+HD_CALL inline int orient3d_exact(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
   const ExactDifference u = exact_difference(b, a), v = exact_difference(c, a), w = exact_difference(d, a);
   Expansion<192> det; // 3 minors of at most 16 terms, each times two terms, two doubles a product
   add_minor(det, w.x, u.y, v.z, u.z, v.y);

@@ -1,11 +1,12 @@
 // at.hpp — signed indices into standard containers.
 #pragma once
+#include "geom/hd.hpp"
 #include <cstddef>
 #include <cstdint>
 
 namespace molmesh::contour::detail {
 
-constexpr size_t at(int64_t i) {
+HD constexpr size_t at(int64_t i) {
   return static_cast<size_t>(i);
 }
 

@@ -1,5 +1,6 @@
 // batch.hpp — what one run of leaves, or of edges, makes before all runs are joined.
 #pragma once
+#include "error.hpp"
 #include "geom/vec.hpp"
 #include "mesh/tet_mesh.hpp"
 #include <array>
@@ -16,7 +17,7 @@ inline constexpr int32_t no_vertex = std::numeric_limits<int32_t>::min();
 struct Link {
   int32_t inside, outside;
   int32_t from, via, to;
-  bool same_edge(const Link& o) const { return inside == o.inside && outside == o.outside; }
+  HD bool same_edge(const Link& o) const { return inside == o.inside && outside == o.outside; }
   bool operator<(const Link& o) const {
     return inside != o.inside ? inside < o.inside : outside != o.outside ? outside < o.outside : from < o.from;
   }
@@ -38,6 +39,7 @@ struct Batch {
     point_wall.push_back(wall);
     return -static_cast<int32_t>(point.size());
   }
+  [[noreturn]] void broken_ring() { fail(Status::failed, "contour: a sign-change edge without a ring"); }
   /// behind, front: a vertex of the complex on either side of a surface triangle; equal on a wall.
   void add_triangle(Tri t, int32_t behind, int32_t front, int32_t label) {
     tri.push_back(t);

@@ -1,19 +1,169 @@
-// ring_pass.hpp — the elements round one sign-change edge.
+// ring_pass.hpp — the elements round one sign-change edge: pyramids over the ring of dual vertices, split by the
+// better diagonal or round a crossing point. Host and device.
 #pragma once
-#include "contour/complex.hpp"
+#include "contour/detail/at.hpp"
 #include "contour/detail/batch.hpp"
+#include "contour/detail/complex_queries.hpp"
+#include "contour/detail/face_pass.hpp"
+#include "geom/predicates.hpp"
+#include "geom/tet_measures.hpp"
 
 namespace molmesh::contour::detail {
 
 /// What a ring needs to know of vertices: those of the complex and the face and wall points after them.
+template <class C>
 struct RingVertices {
-  const Complex& complex;
-  const std::vector<Vec3d>& position;
-  const std::vector<int32_t>& wall; ///< per vertex after the complex's own: Boundary of a wall point, 0 otherwise
+  const C& complex;
+  int32_t complex_vertices;
+  const Vec3d* more;   ///< positions after the complex's own
+  const int32_t* wall; ///< of those: Boundary of a wall point, 0 otherwise
+
+  HD Vec3d position(int32_t v) const {
+    return v < complex_vertices ? complex.position[at(v)] : more[v - complex_vertices];
+  }
+  HD int32_t wall_of(int32_t v) const { return v < complex_vertices ? 0 : wall[v - complex_vertices]; }
 };
+
+/// Rings seldom have more than six vertices, and never more than two for each of the twelve cells and pieces that
+/// can meet at an edge.
+struct Ring {
+  static constexpr int most = 32;
+  int32_t vertex[most];
+  int n = 0;
+  bool closed = true, has_via = false, broken = false;
+  HD void add(int32_t v) {
+    broken = broken || n == most;
+    if (!broken)
+      vertex[n++] = v;
+  }
+};
+
+HD inline void trace(const Link* begin, const Link* end, Ring& ring) {
+  const auto coming_from = [&](int32_t v) {
+    const Link* l = begin;
+    while (l < end && l->from != v)
+      ++l;
+    return l;
+  };
+  const auto is_reached = [&](int32_t v) {
+    const Link* l = begin;
+    while (l < end && l->to != v)
+      ++l;
+    return l < end;
+  };
+  const Link* start = begin;
+  for (const Link* l = begin; l < end; ++l)
+    if (!is_reached(l->from))
+      start = l;
+  const Link* link = start;
+  for (const Link* l = begin; l < end && link; ++l) {
+    ring.add(link->from);
+    if (link->via != no_vertex) {
+      ring.add(link->via);
+      ring.has_via = true;
+    }
+    const int32_t to = link->to;
+    link = coming_from(to);
+    if (link == end) {
+      ring.add(to);
+      link = nullptr;
+    }
+  }
+  ring.closed = link == start;
+  ring.broken = ring.broken || (!ring.closed && link);
+}
+
+HD inline double least_sine(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
+  const DihedralTrig t = dihedral_trig(a, b, c, d);
+  double least = t.sine[0];
+  for (int e = 1; e < 6; ++e)
+    least = lesser(least, t.sine[e]);
+  return six_volume(a, b, c, d) > 0 ? least : -1;
+}
 
 /// links [begin, end): all links of one edge. The ring is closed, or at a wall an open chain from wall point to
 /// wall point.
-void make_ring(const RingVertices& v, const Link* begin, const Link* end, const bool wanted[2], Batch& out);
+template <class C, class Out>
+HD void make_ring(const RingVertices<C>& v, const Link* begin, const Link* end, const bool wanted[2], Out& out) {
+  Ring ring;
+  trace(begin, end, ring);
+  if (ring.broken)
+    return out.broken_ring();
+  const int32_t a = begin->inside, b = begin->outside;
+  const int k = ring.n;
+  const auto p = [&](int i) { return ring.vertex[i % k]; };
+  const auto x = [&](int32_t i) { return v.position(i); };
+
+  // Quality of a split into triangles without a new point: the worst of the tetrahedra on both sides.
+  const auto triangle_quality = [&](Tri t) {
+    return lesser(least_sine(x(a), x(t[0]), x(t[1]), x(t[2])), least_sine(x(b), x(t[0]), x(t[2]), x(t[1])));
+  };
+  Tri split[2] = {};
+  int triangles = 0;
+  double best = 0;
+  if (ring.closed && !ring.has_via && k == 3) {
+    split[0] = {p(0), p(1), p(2)};
+    best = triangle_quality(split[0]);
+    triangles = best > 0 ? 1 : 0;
+  } else if (ring.closed && !ring.has_via && k == 4) {
+    for (int s = 0; s < 2; ++s) {
+      const Tri first{p(s), p(s + 1), p(s + 2)}, second{p(s + 2), p(s + 3), p(s)};
+      const double quality = lesser(triangle_quality(first), triangle_quality(second));
+      if (quality <= best)
+        continue;
+      best = quality;
+      split[0] = first;
+      split[1] = second;
+      triangles = 2;
+    }
+  }
+  const Vec3d m = crossing(v.complex, a, b);
+  double with_point = 1;
+  if (triangles > 0 && best < 0.3)
+    for (int i = 0; i < (ring.closed ? k : k - 1); ++i)
+      with_point = lesser(
+          with_point, lesser(least_sine(x(a), m, x(p(i)), x(p(i + 1))), least_sine(m, x(b), x(p(i)), x(p(i + 1)))));
+  if (triangles > 0 && (best >= 0.3 || best >= with_point)) {
+    for (int t = 0; t < triangles; ++t) {
+      const Tri& q = split[t];
+      if (wanted[1])
+        out.tet.push_back({a, q[0], q[1], q[2]});
+      if (wanted[0])
+        out.tet.push_back({b, q[0], q[2], q[1]});
+      out.add_triangle(q, a, b, surface);
+    }
+    return;
+  }
+  const int32_t middle = out.add_point(m, 0);
+  bool positive = true;
+  for (int i = 0; i < (ring.closed ? k : k - 1); ++i)
+    positive =
+        positive && orient3d(x(a), m, x(p(i)), x(p(i + 1))) > 0 && orient3d(m, x(b), x(p(i)), x(p(i + 1))) > 0;
+  if (!positive) {
+    out.spoiled.push_back(a);
+    out.spoiled.push_back(b);
+    for (int i = 0; i < k; ++i)
+      if (p(i) < v.complex_vertices)
+        out.spoiled.push_back(p(i));
+  }
+  for (int i = 0; i < (ring.closed ? k : k - 1); ++i) {
+    if (wanted[1])
+      out.tet.push_back({a, middle, p(i), p(i + 1)});
+    if (wanted[0])
+      out.tet.push_back({b, middle, p(i + 1), p(i)});
+    out.add_triangle({middle, p(i), p(i + 1)}, a, b, surface);
+  }
+  if (ring.closed)
+    return;
+  const int32_t first = p(0), last = p(k - 1);
+  if (wanted[1]) {
+    out.add_triangle({a, middle, last}, a, a, v.wall_of(last));
+    out.add_triangle({middle, a, first}, a, a, v.wall_of(first));
+  }
+  if (wanted[0]) {
+    out.add_triangle({middle, b, last}, b, b, v.wall_of(last));
+    out.add_triangle({b, middle, first}, b, b, v.wall_of(first));
+  }
+}
 
 } // namespace molmesh::contour::detail

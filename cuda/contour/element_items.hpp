@@ -1,0 +1,182 @@
+// element_items.hpp — faces and rings made twice: counted, and written where the counts' sums say. No appends, and
+// the order of the leaves and edges whatever the threads.
+#pragma once
+#include "contour/detail/face_pass.hpp"
+#include "contour/detail/ring_pass.hpp"
+#include "cuda/contour/complex_view.hpp"
+
+namespace molmesh::cuda {
+
+using contour::detail::Link;
+using Sides = std::array<int32_t, 2>;
+
+/// Takes what a vector's push_back takes: counts, and writes where there is a place.
+template <class T>
+struct Sink {
+  T* to;
+  int32_t n;
+  HD void push_back(const T& v) {
+    if (to)
+      to[n] = v;
+    ++n;
+  }
+};
+
+/// contour::detail::Batch for one item.
+struct ItemOut {
+  Sink<Tet> tet;
+  Sink<Tri> tri;
+  Sides* tri_sides;
+  int32_t* boundary;
+  Sink<Link> link;
+  Sink<Vec3d> point;
+  int32_t* wall;
+  Sink<int32_t> spoiled;
+  int32_t number; ///< of the item's first new point
+  int32_t broken;
+
+  HD int32_t add_point(Vec3d p, int32_t at_wall) {
+    if (wall)
+      wall[point.n] = at_wall;
+    point.push_back(p);
+    return number + point.n - 1;
+  }
+  HD void add_triangle(Tri t, int32_t behind, int32_t front, int32_t label) {
+    if (tri.to) {
+      tri_sides[tri.n] = {behind, front};
+      boundary[tri.n] = label;
+    }
+    tri.push_back(t);
+  }
+  HD void broken_ring() { ++broken; }
+};
+
+/// Per item, then scanned: one more slot each for the total.
+struct ItemCounts {
+  int32_t *tet, *tri, *link, *point, *spoiled, *broken;
+};
+/// Where a run of items writes; null: nowhere.
+struct ItemPlaces {
+  Tet* tet;
+  Tri* tri;
+  Sides* tri_sides;
+  int32_t* boundary;
+  Link* link;
+  Vec3d* point;
+  int32_t* wall;
+  int32_t* spoiled;
+  int32_t number; ///< of the run's first new point
+};
+
+/// Make: make(item, out). order: items by their work, so that neighbours in a warp have about as much to do.
+/// Counts, or with places and scanned counts writes: one kernel, since its body is large.
+template <class Make>
+struct RunElements {
+  Make make;
+  int64_t first;
+  const uint32_t* order;
+  ItemCounts count;
+  ItemPlaces to;
+  HD void operator()(int64_t n) const {
+    const int64_t i = order[n];
+    ItemOut out{};
+    out.number = int32_t{1} << 30; // no number of an old vertex, and not negative
+    if (to.tet)
+      out = {{to.tet + count.tet[i], 0},   {to.tri + count.tri[i], 0},
+             to.tri_sides + count.tri[i],  to.boundary + count.tri[i],
+             {to.link + count.link[i], 0}, {to.point + count.point[i], 0},
+             to.wall + count.point[i],     {to.spoiled + count.spoiled[i], 0},
+             to.number + count.point[i],   0};
+    make(first + i, out);
+    if (to.tet)
+      return;
+    count.tet[i] = out.tet.n;
+    count.tri[i] = out.tri.n;
+    count.link[i] = out.link.n;
+    count.point[i] = out.point.n;
+    count.spoiled[i] = out.spoiled.n;
+    count.broken[i] = out.broken;
+  }
+};
+
+struct MakeFaces {
+  ComplexView c;
+  bool wanted[2];
+  HD void operator()(int64_t leaf, ItemOut& out) const {
+    contour::detail::make_faces(c, int32_t(leaf), wanted, out);
+  }
+  /// Leaves of one level, and surface cells apart: similar work (§4.2).
+  HD uint32_t work(int64_t leaf) const {
+    return uint32_t(c.tree.level[leaf]) * 4 + uint32_t(c.side[leaf] == contour::Side::crossed) * 2 +
+           uint32_t(c.is_split(int32_t(leaf)));
+  }
+};
+
+/// Links of edge e: [first[e], first[e + 1]).
+struct MakeRings {
+  ComplexView c;
+  bool wanted[2];
+  int32_t complex_vertices;
+  const Vec3d* more;
+  const int32_t* wall;
+  const Link* link;
+  const int64_t* first;
+  HD void operator()(int64_t e, ItemOut& out) const {
+    const contour::detail::RingVertices<ComplexView> v{c, complex_vertices, more, wall};
+    contour::detail::make_ring(v, link + first[e], link + first[e + 1], wanted, out);
+  }
+  HD uint32_t work(int64_t e) const { return uint32_t(first[e + 1] - first[e]); }
+};
+
+template <class Make>
+struct WorkKeys {
+  Make make;
+  int64_t first;
+  uint32_t *key, *order;
+  HD void operator()(int64_t i) const {
+    key[i] = ~make.work(first + i); // most first
+    order[i] = uint32_t(i);
+  }
+};
+
+/// Links in order: by where they come from, then, keeping that, by edge.
+struct LinkFrom {
+  const Link* link;
+  uint32_t *key, *index;
+  HD void operator()(int64_t i) const {
+    key[i] = uint32_t(link[i].from);
+    index[i] = uint32_t(i);
+  }
+};
+struct LinkEdge {
+  const Link* link;
+  const uint32_t* index;
+  uint64_t* key;
+  HD void operator()(int64_t i) const {
+    const Link& l = link[index[i]];
+    key[i] = uint64_t(uint32_t(l.inside)) << 32 | uint32_t(l.outside);
+  }
+};
+template <class T>
+struct Gather {
+  const T* from;
+  const uint32_t* index;
+  T* to;
+  HD void operator()(int64_t i) const { to[i] = from[index[i]]; }
+};
+struct FirstLink {
+  const Link* link;
+  int64_t *first, *index;
+  HD void operator()(int64_t i) const {
+    first[i] = i == 0 || !link[i].same_edge(link[i - 1]);
+    index[i] = i;
+  }
+};
+template <class T>
+struct CopyItems {
+  const T* from;
+  T* to;
+  HD void operator()(int64_t i) const { to[i] = from[i]; }
+};
+
+} // namespace molmesh::cuda

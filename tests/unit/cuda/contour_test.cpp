@@ -1,0 +1,130 @@
+// contour_test.cpp — the device's elements, run by the host: the same, one by one, as contour::make_elements makes.
+#include "contour/contour.hpp"
+#include "cuda/contour/elements.hpp"
+#include "cuda/par/host.hpp"
+#include "geom/log.hpp"
+#include "unit/contour/sample_grid.hpp"
+#include <catch2/catch.hpp>
+#include <random>
+
+using namespace molmesh;
+using contour::Options;
+
+namespace {
+
+double atom(Vec3d x) {
+  return std::exp(-0.3 * (norm2(x) - 9));
+}
+
+BlockGrid cube_grid(double half, double h, const std::function<double(Vec3d)>& f) {
+  const int n = static_cast<int>(std::ceil(half / h));
+  return test::sample_grid({-n, -n, -n}, {2 * n + 1, 2 * n + 1, 2 * n + 1}, h, 2, f);
+}
+
+struct Seen {
+  int64_t calls = 0, differ = 0, runs = 0, face_points = 0, edge_points = 0, spoiled = 0, most_used = 0;
+};
+
+/// The whole of contour(), each of its calls for elements answered by both.
+Seen compare(const BlockGrid& grid, const Options& options, int threads = 1,
+             int64_t budget = std::numeric_limits<int64_t>::max()) {
+  cuda::HostBackend backend(threads, budget);
+  cuda::ElementMaker<cuda::HostBackend> maker(backend);
+  Seen seen;
+  contour::Summary summary;
+  contour::contour(
+      grid, options, summary, [](const std::string&) {},
+      [&](const contour::Complex& c, bool inside, bool outside, int) {
+        const contour::Elements host = contour::make_elements(c, inside, outside, 1),
+                                device = maker(c, inside, outside);
+        ++seen.calls;
+        seen.differ += device.tet != host.tet;
+        seen.differ += device.tri != host.tri;
+        seen.differ += device.tri_sides != host.tri_sides;
+        seen.differ += device.boundary != host.boundary;
+        seen.differ += device.position != host.position;
+        seen.differ += device.spoiled != host.spoiled;
+        seen.differ += device.face_points != host.face_points;
+        seen.differ += device.edge_points != host.edge_points;
+        seen.face_points += host.face_points;
+        seen.edge_points += host.edge_points;
+        seen.spoiled += static_cast<int64_t>(host.spoiled.size());
+        return host;
+      });
+  seen.runs = maker.runs();
+  seen.most_used = backend.most_used();
+  return seen;
+}
+
+} // namespace
+
+TEST_CASE("device elements: the host's, one by one, on random densities with ambiguous cells and ties") {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> u(0, 2);
+  Seen sum;
+  for (int trial = 0; trial < 24; ++trial) {
+    const int n = 4 + trial % 4;
+    const bool ties = trial % 4 == 0, smooth = trial % 3 == 1;
+    std::vector<Vec3d> centre;
+    for (int i = 0; i < 8; ++i)
+      centre.push_back({u(random) * 3 - 3, u(random) * 3 - 3, u(random) * 3 - 3});
+    const BlockGrid grid = test::sample_grid({-n, -n, -n}, {2 * n + 1, 2 * n + 1, 2 * n + 1}, 1, 3, [&](Vec3d x) {
+      if (std::max({std::fabs(x.x), std::fabs(x.y), std::fabs(x.z)}) > n - 1.5)
+        return 0.1;
+      if (!smooth)
+        return ties ? std::floor(2 * u(random)) / 2 + 0.5 : u(random);
+      double sum_of = 0;
+      for (const Vec3d& c : centre)
+        sum_of += std::exp(0.3 - 0.5 * norm2(x - c));
+      return sum_of;
+    });
+    for (auto meshed : {Options::interior, Options::exterior, Options::both})
+      for (double adapt : {0.0, 0.3}) {
+        CAPTURE(trial, int(meshed), adapt);
+        Options options;
+        options.meshed = meshed;
+        options.adapt = adapt;
+        const Seen s = compare(grid, options);
+        CHECK(s.differ == 0);
+        sum.calls += s.calls;
+        sum.face_points += s.face_points;
+        sum.edge_points += s.edge_points;
+        sum.spoiled += s.spoiled;
+      }
+  }
+  CHECK(sum.calls > 144); // points went back here and there
+  CHECK(sum.face_points > 1000);
+  CHECK(sum.edge_points > 1000);
+  CHECK(sum.spoiled > 0);
+}
+
+TEST_CASE("device elements: the host's on a molecule, in a cut box, at any number of threads and in many runs") {
+  const BlockGrid grid = cube_grid(8, 0.4, [](Vec3d x) { return atom(x) + atom(x - Vec3d{2, 2.5, 1}); });
+  Options options;
+  options.meshed = Options::both;
+  for (double adapt : {0.25, 0.0}) {
+    options.adapt = adapt;
+    const Seen one = compare(grid, options);
+    CHECK(one.differ == 0);
+    CHECK(one.runs == 2 * one.calls); // faces, rings
+    const Seen many = compare(grid, options, 3, one.most_used / 4 * 3);
+    CHECK(many.differ == 0);
+    CHECK(many.runs > one.runs);
+    CHECK(many.most_used <= one.most_used / 4 * 3);
+  }
+  options.box.kind = contour::BoxRequest::corners;
+  options.box.lower = {-1.1, -9, -9};
+  options.box.upper = {9, 1.77, 9};
+  CHECK(compare(grid, options).differ == 0);
+}
+
+TEST_CASE("the portable logarithm is within two units of the last place of the library's") {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> u(-30, 30);
+  for (int i = 0; i < 200000; ++i) {
+    const double x = i % 2 ? std::exp(u(random)) : 1 + 1e-3 * u(random), exact = std::log(x);
+    if (!(std::fabs(portable_log(x) - exact) <= 4.5e-16 * std::fabs(exact) + 1e-16))
+      FAIL("log of " << x);
+  }
+  CHECK(portable_log(1) == 0);
+}
