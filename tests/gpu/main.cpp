@@ -32,7 +32,8 @@ void tell(const std::string& what, const std::string& fault) {
 void parity(const std::string& name, const Hierarchy& h, const density::Options& o, bool all_stages) {
   const int threads = par::default_threads();
   gpu::Timed t;
-  const BlockGrid host = gpu::run_density(h, o, false, threads, t), device = gpu::run_density(h, o, true, threads, t);
+  const BlockGrid host = gpu::run_density(h, o, false, threads, t),
+                  device = gpu::run_density(h, o, true, threads, t);
   tell(name + ", density", gpu::compare_grids(h, device, host));
   if (!all_stages)
     return;
@@ -40,7 +41,8 @@ void parity(const std::string& name, const Hierarchy& h, const density::Options&
     contour::Options c;
     c.meshed = contour::Options::both;
     c.adapt = adapt;
-    const TetMesh mesh = gpu::run_contour(host, c, false, threads, t), same = gpu::run_contour(host, c, true, threads, t);
+    const TetMesh mesh = gpu::run_contour(host, c, false, threads, t),
+                  same = gpu::run_contour(host, c, true, threads, t);
     tell(name + ", mesh, --adapt " + std::to_string(adapt), gpu::compare_meshes(same, mesh, 1e-9));
     if (adapt == 0)
       continue;
@@ -112,10 +114,13 @@ void time_all(const Hierarchy& h, const density::Options& o, int repeats) {
   contour::Options c;
   c.meshed = contour::Options::both;
   c.adapt = 0;
-  time_stage("density", "cuda", repeats, peaks, [&](gpu::Timed& t) { grid = gpu::run_density(h, o, true, threads, t); });
+  time_stage("density", "cuda", repeats, peaks,
+             [&](gpu::Timed& t) { grid = gpu::run_density(h, o, true, threads, t); });
   time_stage("mesh", "seq", repeats, peaks, [&](gpu::Timed& t) { mesh = gpu::run_contour(grid, c, false, 1, t); });
-  time_stage("mesh", "omp", repeats, peaks, [&](gpu::Timed& t) { mesh = gpu::run_contour(grid, c, false, threads, t); });
-  time_stage("mesh", "cuda", repeats, peaks, [&](gpu::Timed& t) { mesh = gpu::run_contour(grid, c, true, threads, t); });
+  time_stage("mesh", "omp", repeats, peaks,
+             [&](gpu::Timed& t) { mesh = gpu::run_contour(grid, c, false, threads, t); });
+  time_stage("mesh", "cuda", repeats, peaks,
+             [&](gpu::Timed& t) { mesh = gpu::run_contour(grid, c, true, threads, t); });
   std::printf("         %zu tetrahedra, %zu points; %d threads of the host\n", mesh.tet.size(), mesh.point.size(),
               threads);
   time_stage("improve", "cuda", 1, peaks, [&](gpu::Timed& t) { gpu::run_improve(mesh, grid, true, threads, t); });

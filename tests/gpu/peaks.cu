@@ -1,6 +1,6 @@
 // peaks.cu — a copy and chains of multiply-adds, best of a few.
-#include "peaks.hpp"
 #include "cuda/par/device.cuh"
+#include "peaks.hpp"
 #include <algorithm>
 
 namespace molmesh::gpu {

@@ -37,11 +37,10 @@ BlockGrid run_density(const Hierarchy& h, const density::Options& o, bool device
       band = cuda::compute_density(h, o, counts, time.device);
     } else {
       cuda::HostBackend backend(threads);
-      band = density::compute(h, o, counts,
-                              [&](const density::Field& f, const GridFrame& frame, const density::SearchOptions& s,
-                                  density::SearchCounts& c) {
-                                return cuda::Search<cuda::HostBackend>(backend, f, frame, s).run(c);
-                              });
+      band = density::compute(
+          h, o, counts,
+          [&](const density::Field& f, const GridFrame& frame, const density::SearchOptions& s,
+              density::SearchCounts& c) { return cuda::Search<cuda::HostBackend>(backend, f, frame, s).run(c); });
       time.device.kernels = backend.times();
     }
   }
