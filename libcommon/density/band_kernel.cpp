@@ -22,6 +22,13 @@ using U = hn::CappedTag<uint64_t, 8>;
 constexpr U u{};
 constexpr int32_t lanes = static_cast<int32_t>(HWY_MIN(8, HWY_LANES(uint64_t)));
 
+void round_values_simd(float* v, int bits) {
+  const hn::Rebind<uint32_t, F> i;
+  const auto half = hn::Set(i, uint32_t{1} << (bits - 1)), mask = hn::Set(i, ~uint32_t{0} << bits);
+  for (int32_t s = 0; s < 512; s += float_lanes)
+    hn::StoreU(hn::BitCast(f, hn::And(hn::Add(hn::BitCast(i, hn::LoadU(f, v + s)), half), mask)), f, v + s);
+}
+
 void classify_points_simd(const float* v, float lower, float upper, uint64_t* below, uint64_t* above) {
 #if HWY_TARGET <= HWY_AVX2
   using V = hn::Vec<F>;
@@ -199,12 +206,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace molmesh::density {
 
+HWY_EXPORT(round_values_simd);
 HWY_EXPORT(classify_points_simd);
 HWY_EXPORT(rows_from_words_simd);
 HWY_EXPORT(words_from_rows_simd);
 HWY_EXPORT(band_points_simd);
 HWY_EXPORT(pack_active_simd);
 
+void round_values(float* v, int bits) {
+  HWY_DYNAMIC_DISPATCH(round_values_simd)(v, bits);
+}
 void classify_points(const float* v, float lower, float upper, uint64_t* below, uint64_t* above) {
   HWY_DYNAMIC_DISPATCH(classify_points_simd)(v, lower, upper, below, above);
 }

@@ -18,6 +18,10 @@ struct NodeWords {
   uint64_t word[blocks_a_node][8];
 };
 
+/// Rounds v[512] to nearest with the last `bits` (1 to 20) bits zero, for files that compress: a relative error of
+/// at most 2^(bits - 24).
+void round_values(float* v, int bits);
+
 /// Bit 8·j + k of word i of below and above, of the 512 values of a block: v < lower, v > upper.
 void classify_points(const float* v, float lower, float upper, uint64_t* below, uint64_t* above);
 

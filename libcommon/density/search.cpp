@@ -17,7 +17,10 @@ class Search {
 public:
   Search(const Field& f, const GridFrame& frame, const SearchOptions& o)
       : f_(f), frame_(frame), o_(o), budget_(budget_for(o)), arithmetic_(arithmetic_for(f, o.tolerance)),
-        lower_(float_at_least(o.band_lower)), upper_(-float_at_least(-o.band_upper)) {}
+        lower_(float_at_least(o.band_lower)), upper_(-float_at_least(-o.band_upper)),
+        dropped_bits_(budget_.digits > 0
+                          ? std::clamp(24 + static_cast<int>(std::floor(std::log2(budget_.digits))), 0, 20)
+                          : 0) {}
   Band run(SearchCounts& counts);
 
 private:
@@ -44,6 +47,7 @@ private:
   const Budget budget_;
   const Arithmetic arithmetic_;
   const float lower_, upper_;
+  const int dropped_bits_; ///< of a value's 23 after the leading one
   NodeList nodes_;
   Workspaces workspaces_;
   int bank_ = 0; ///< of arenas, for the slab at work
@@ -68,6 +72,8 @@ int64_t points_in_grid(const GridFrame& frame, Vec3i corner) {
 void Search::evaluate(Vec3i corner, Workspace& w) const {
   const Box box = points_box(frame_, corner, 1);
   w.evaluator.evaluate(f_, w.selection, 0.5 * (box.lo + box.hi), frame_.spacing, w.value);
+  if (dropped_bits_ > 0)
+    round_values(w.value, dropped_bits_);
   ++w.counts.blocks_evaluated;
   w.counts.group_visits += w.selection.units;
   w.counts.atom_visits += w.selection.atoms;
@@ -300,7 +306,7 @@ Band Search::run(SearchCounts& counts) {
 Budget budget_for(const SearchOptions& o) {
   Budget b(o.tolerance);
   if (o.atoms == AtomSearch::all)
-    b.far = b.part = b.block = b.within = 0;
+    b.far = b.part = b.block = b.within = b.digits = 0;
   return b;
 }
 

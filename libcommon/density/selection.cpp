@@ -15,7 +15,7 @@ constexpr double single = 1e-3; ///< more than single precision can do to a boun
 } // namespace
 
 Arithmetic arithmetic_for(const Field& f, double tolerance) {
-  const bool coarse = tolerance >= 2e-5 * std::max(1.0, f.steepest);
+  const bool coarse = tolerance >= 4e-5 * std::max(1.0, f.steepest);
   if (f.plain_above)
     return coarse ? Arithmetic::in_single : Arithmetic::in_double;
   // The smallest term of a group above the innermost level that can matter, as cutoffs see it.

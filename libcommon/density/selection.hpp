@@ -9,12 +9,14 @@
 namespace molmesh::density {
 
 /// Shares of the tolerance ε (field.md §2): far clusters, groups dropped in a part of a node and in a block, atoms
-/// dropped within groups; the rest is for rounding.
+/// dropped within groups, digits of values not kept; the rest is for rounding.
 struct Budget {
-  double far, part, block, within;
+  double far, part, block, within, digits;
   explicit Budget(double tolerance)
-      : far(0.05 * tolerance), part(0.05 * tolerance), block(0.3 * tolerance), within(0.2 * tolerance) {}
-  double total() const { return far + part + block + within; }
+      : far(0.05 * tolerance), part(0.05 * tolerance), block(0.3 * tolerance), within(0.2 * tolerance),
+        digits(0.2 * tolerance) {}
+  /// What a bound on G has to allow for.
+  double total() const { return far + part + block + within + digits; }
 };
 
 enum class Side : uint8_t { outside, inside, mixed };
