@@ -117,21 +117,42 @@ void write_preamble(Bytes& out, const GridFrame& f, const FieldInfo& info) {
       out.number(v);
 }
 
+constexpr Vec3i shifted(Vec3i p, int bits) {
+  return {p.x >> bits, p.y >> bits, p.z >> bits};
+}
+
 /// A leaf (its position in BlockGrid::corner) or an inside tile (leaf < 0).
 struct Entry {
   Vec3i corner;
   int64_t leaf;
+  uint64_t key; ///< the same order by one comparison, where the grid is not too wide for it
 };
 
-constexpr Vec3i shifted(Vec3i p, int bits) {
-  return {p.x >> bits, p.y >> bits, p.z >> bits};
-}
 /// OpenVDB's depth-first order: by root child (4096 points), then lower node (128), then leaf (8).
 bool depth_first(const Entry& a, const Entry& b) {
+  if (a.key != b.key)
+    return a.key < b.key;
   for (const int bits : {12, 7, 3})
     if (const Vec3i p = shifted(a.corner, bits), q = shifted(b.corner, bits); !(p == q))
       return p < q;
   return false;
+}
+
+void set_keys(std::vector<Entry>& entry, const GridFrame& frame) {
+  const Vec3i root = shifted(frame.lower, 12), end = shifted(frame.lower + frame.points, 12);
+  constexpr int root_bits = 12; // and 5 and 4 for the nodes below: 63 in all
+  for (int axis = 0; axis < 3; ++axis)
+    if (end[axis] - root[axis] >= 1 << root_bits)
+      return;
+  for (Entry& e : entry) {
+    const auto append = [&e](Vec3i p, int bits) {
+      for (int axis = 0; axis < 3; ++axis)
+        e.key = e.key << bits | (static_cast<uint32_t>(p[axis]) & ((1u << bits) - 1));
+    };
+    append(shifted(e.corner, 12) - root, root_bits);
+    append(shifted(e.corner, 7), 5);
+    append(shifted(e.corner, 3), 4);
+  }
 }
 
 template <int Log2>
@@ -256,9 +277,10 @@ void write(std::ostream& out, const GridFrame& frame, const FieldInfo& info, con
   std::vector<Entry> entry;
   entry.reserve(static_cast<size_t>(n) + inside.size());
   for (int64_t b = 0; b < n; ++b)
-    entry.push_back({corner(b), b});
+    entry.push_back({corner(b), b, 0});
   for (const Vec3i& c : inside)
-    entry.push_back({c, -1});
+    entry.push_back({c, -1, 0});
+  set_keys(entry, frame);
   par::sort(entry, threads, depth_first);
   Bytes head;
   write_preamble(head, frame, info);
