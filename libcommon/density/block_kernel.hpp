@@ -13,8 +13,8 @@ struct BlockShape {
   float slope, curvature;
 };
 
-/// Factors of every row along x [8], and of y times z [64]. Each unit has a row for each atom and one for what
-/// multiplies its power. Holds a row more than there are.
+/// Factors of every row along x [8], and of y times z [64]. Each unit has a row for each atom and, unless units are
+/// direct, one for what multiplies its power. Holds a row more than there are.
 struct BlockRows {
   std::vector<float> x, yz;
 };

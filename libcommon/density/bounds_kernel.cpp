@@ -142,10 +142,16 @@ bool take_units_simd(const NearUnits& from, const int32_t* list, int32_t n, cons
       const V ax = hn::LoadU(f, &from.atom_x[a]), ay = hn::LoadU(f, &from.atom_y[a]),
               az = hn::LoadU(f, &from.atom_z[a]);
       const V weight = hn::Sub(middle(ax, ay, az, hn::LoadU(f, &from.atom_peak[a])), log2_largest);
-      const V x = hn::Mul(hn::Sub(ax, cx), sx), y = hn::Mul(hn::Sub(ay, cy), sy), z = hn::Mul(hn::Sub(az, cz), sz);
-      const V swing = hn::Mul(hn::Set(f, 3.5f), hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z))));
+      V x = hn::Mul(hn::Sub(ax, cx), sx), y = hn::Mul(hn::Sub(ay, cy), sy), z = hn::Mul(hn::Sub(az, cz), sz);
+      V swing = hn::Mul(hn::Set(f, 3.5f), hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z))));
       // Unused slots have a peak of -1e30: never kept.
       const auto keep = hn::And(hn::Ge(hn::Add(weight, swing), least), hn::Gt(weight, hn::Set(f, -1e29f)));
+      if (to.direct) {
+        x = hn::Mul(hn::Sub(ax, middle.x), sx);
+        y = hn::Mul(hn::Sub(ay, middle.y), sy);
+        z = hn::Mul(hn::Sub(az, middle.z), sz);
+        swing = hn::MulAdd(hn::Set(f, 3.5f), hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z))), weight);
+      }
       widest = hn::Max(widest, hn::IfThenElseZero(keep, swing));
       hn::StoreU(hn::Compress(x, keep), f, &to.atom_x[kept]);
       hn::StoreU(hn::Compress(y, keep), f, &to.atom_y[kept]);
@@ -159,6 +165,7 @@ bool take_units_simd(const NearUnits& from, const int32_t* list, int32_t n, cons
   for (std::vector<float>* v : {&to.exponent, &to.log2_term, &to.x, &to.y, &to.z})
     std::fill_n(v->begin() + n, 16, 0.0f);
   const V twice = hn::Set(f, 2 * decay);
+  const float bend = decay * (b.half[0] * b.half[0] + b.half[1] * b.half[1] + b.half[2] * b.half[2]);
   for (int32_t u = 0; u < n; u += lanes) {
     V away = hn::Zero(f);
     int axis = 0;
@@ -167,7 +174,10 @@ bool take_units_simd(const NearUnits& from, const int32_t* list, int32_t n, cons
       away = hn::MulAdd(hn::Set(f, b.half[axis]), hn::Abs(hn::Sub(center, hn::Set(f, b.middle[axis]))), away);
       ++axis;
     }
-    widest = hn::Max(widest, hn::Mul(hn::Mul(away, twice), hn::LoadU(f, to.exponent.data() + u)));
+    away = to.direct ? hn::MulAdd(away, twice, hn::Set(f, bend))
+                     : hn::Mul(hn::Mul(away, twice), hn::LoadU(f, to.exponent.data() + u));
+    const auto used = hn::Lt(hn::Iota(f, static_cast<float>(u)), hn::Set(f, static_cast<float>(n)));
+    widest = hn::Max(widest, hn::IfThenElseZero(used, away));
   }
   return hn::GetLane(hn::MaxOfLanes(f, widest)) <= log2_range;
 }
@@ -187,9 +197,9 @@ void unit_middles_simd(const BlockUnits& u, const LocalBox& b, float decay, Unit
     }
     const float total = hn::GetLane(hn::SumOfLanes(f, w)), per = 3.5f / (2 * decay * total);
     to.log2_sum[s] = total;
-    to.x[s] = u.x[s] + per / b.half[0] * hn::GetLane(hn::SumOfLanes(f, wx));
-    to.y[s] = u.y[s] + per / b.half[1] * hn::GetLane(hn::SumOfLanes(f, wy));
-    to.z[s] = u.z[s] + per / b.half[2] * hn::GetLane(hn::SumOfLanes(f, wz));
+    to.x[s] = (u.direct ? b.middle[0] : u.x[s]) + per / b.half[0] * hn::GetLane(hn::SumOfLanes(f, wx));
+    to.y[s] = (u.direct ? b.middle[1] : u.y[s]) + per / b.half[1] * hn::GetLane(hn::SumOfLanes(f, wy));
+    to.z[s] = (u.direct ? b.middle[2] : u.z[s]) + per / b.half[2] * hn::GetLane(hn::SumOfLanes(f, wz));
   }
   std::fill_n(to.log2_sum.begin() + u.n, 16, 1.0f);
   for (int32_t n = 0; n < u.n; n += lanes)

@@ -49,9 +49,11 @@ float sum_up_to(const float* v, int32_t n, float limit);
 /// The units of a block (field.md §4): S(x) = 2^log2_term · 2^(-decay·(2δ·(m - c) + δ²)) · T(x), δ = x - m, m the
 /// block's middle, c = (x, y, z) the unit's atom of the largest term there, Å, relative to the node's middle.
 /// Atoms of unit u: begin[u] … begin[u + 1]; their terms of T at a point are 2^(constant + x·i + y·j + z·k) with
-/// i, j, k = -3.5 … 3.5. Arrays hold 16 more elements than there are units or atoms.
+/// i, j, k = -3.5 … 3.5. Direct: the atoms' terms hold the middle factor of S too, but for its curvature, which is
+/// the same for all. Arrays hold 16 more elements than there are units or atoms.
 struct BlockUnits {
   int32_t n = 0;
+  bool direct = false;
   std::vector<int32_t> begin{0}; ///< [n + 1]
   std::vector<float> exponent, log2_term, x, y, z;
   std::vector<float> atom_x, atom_y, atom_z, atom_constant;
@@ -61,7 +63,7 @@ struct BlockUnits {
 constexpr float log2_range = 115;
 
 /// The n units `list` of `from`, into arrays that hold enough. Atoms of a unit whose terms of T together stay below
-/// `within` are left out. False when single precision does not hold.
+/// `within` are left out. to.direct is the caller's wish. False when single precision does not hold.
 bool take_units(const NearUnits& from, const int32_t* list, int32_t n, const LocalBox& block, float decay,
                 float within, BlockUnits& to);
 

@@ -209,6 +209,7 @@ void Search::finish(NodeState& s, const NodeBits* const* below, const NodeBits* 
   words_from_rows(w.rows, w.active);
   words_from_rows(*above[13], w.above);
   bool entered = false;
+  s.band.reserve(static_cast<size_t>(std::popcount(s.known)) + 4);
   for (int b = 0; b < blocks_a_node; ++b) {
     const uint64_t *const active = w.active.word[b], bit = uint64_t{1} << b;
     if (std::all_of(active, active + 8, [](uint64_t v) { return v == 0; })) {

@@ -37,6 +37,8 @@ Selection::Selection(const Field& f, const Budget& budget, double lower, double 
   double gentlest = infinity;
   for (const double p : f.level[0].exponent)
     gentlest = std::min(gentlest, p);
+  for (const double c2 : f.cutoff2)
+    reach_ = std::max(reach_, std::sqrt(c2));
   scaled_ = !f.plain_above || gentlest * 100 < -std::log2(budget.block / 1e3);
 }
 
@@ -193,6 +195,10 @@ void Selection::drop(double budget) {
 bool Selection::take_single() {
   BlockUnits& u = block_units;
   const auto n = static_cast<int32_t>(kept_.size());
+  // Where a block is small beside an atom's reach, its terms need no reference of their own.
+  const double half = std::sqrt(double{box.half[0]} * box.half[0] + double{box.half[1]} * box.half[1] +
+                                double{box.half[2]} * box.half[2]);
+  u.direct = log2e * f_.decay * half * (2 * (reach_ + half) + half) < 0.8 * log2_range;
   const size_t room = kept_.size() + 17, atom_room = near_.atom_x.size() + 32;
   if (u.x.size() < room) {
     u.begin.resize(2 * room);

@@ -84,6 +84,7 @@ private:
   const double lower_, upper_, within_;
   const double slack_;     ///< what single precision can do to an upper bound of G, relative
   const Arithmetic least_; ///< what was asked for
+  double reach_ = 0;       ///< Å, the largest cutoff
   bool scaled_;            ///< upper bounds need more range than single precision has
   Vec3d node_middle_;
   LocalClusters local_;                           ///< of the node

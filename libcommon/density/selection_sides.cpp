@@ -96,7 +96,9 @@ bool Selection::surely_inside(Vec3d middle, Vec3d half) {
     const BlockUnits& u = block_units;
     sum_of_powers(u.n, u.exponent.data(), u.log2_term.data(), u.x.data(), u.y.data(), u.z.data(), box, decay, &sum,
                   gradient);
-    if (3 * sum * std::exp(-bend) <= upper_)
+    const float slope = std::abs(gradient[0]) * box.half[0] + std::abs(gradient[1]) * box.half[1] +
+                        std::abs(gradient[2]) * box.half[2];
+    if (3 * sum * std::exp(-bend - 0.7 * slope / sum) <= upper_)
       return false;
   }
   if (arithmetic == Arithmetic::in_single) {
