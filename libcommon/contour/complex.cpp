@@ -136,4 +136,16 @@ int32_t Complex::piece_dual(int32_t leaf, const SplitCell& s, const Patch& p) co
   return detail::piece_dual(*this, leaf, s, p);
 }
 
+std::vector<uint8_t> Complex::lattice_classes() const {
+  std::vector<uint8_t> of(position.size(), 0);
+  std::fill(of.begin(), of.begin() + grid_vertices, uint8_t{1});
+  for (int32_t leaf = 0; leaf < tree.size(); ++leaf) {
+    const bool crossed = side[at(leaf)] == Side::crossed;
+    of[at(dual(leaf))] = crossed ? uint8_t{0} : static_cast<uint8_t>(2 + tree.level[at(leaf)]);
+    for (int c = 0; crossed && c < 8; ++c)
+      of[at(grid_vertex[at(int64_t{8} * leaf + c)])] = 0;
+  }
+  return of;
+}
+
 } // namespace molmesh::contour

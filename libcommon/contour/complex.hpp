@@ -53,6 +53,8 @@ struct Complex {
   bool moved(int32_t vertex) const { return vertex < grid_vertices && moved_[static_cast<size_t>(vertex)]; }
   /// Surface cells within a leaf: first_cell[leaf] up to here.
   int32_t end_cell(int32_t leaf) const;
+  /// [vertices] 1: a grid point of no surface cell; 2 + level: a dual vertex of no surface cell; 0: any other.
+  std::vector<uint8_t> lattice_classes() const;
   /// Where the surface crosses the edge between two vertices on opposite sides, Å. Coarse edges whose ends have not
   /// moved are searched on the fine grid.
   Vec3d crossing(int32_t a, int32_t b) const;

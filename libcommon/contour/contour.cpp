@@ -90,7 +90,8 @@ std::vector<int32_t> spoiling_vertices(const Complex& complex, const std::vector
 
 /// Validity is proven for cells that are boxes: where a moved grid point spoils it, it goes back. Returns how many
 /// did.
-int64_t restore_spoiling(Complex& complex, std::vector<int32_t> spoiled, int threads) {
+int64_t restore_spoiling(Complex& complex, int threads) {
+  std::vector<int32_t> spoiled = find_spoiled(complex, threads);
   constexpr int most_rounds = 8; // then all go back: time must be bounded
   int64_t restored = 0;
   for (int round = 0; !spoiled.empty(); ++round) {
@@ -139,12 +140,10 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   on_phase("elements");
   const bool on_inside = refine_options.inside || options.drop_below > 0,
              on_outside = with_outside || options.fill_cavities;
+  summary.restored_points = restore_spoiling(complex, threads);
   Elements elements = make(complex, on_inside, on_outside, threads);
-  summary.restored_points = restore_spoiling(complex, elements.spoiled, threads);
-  if (summary.restored_points > 0)
-    elements = make(complex, on_inside, on_outside, threads);
   on_phase("relaxation");
-  summary.relaxed_points = relax(elements, threads);
+  summary.relaxed_points = relax(elements, complex.lattice_classes(), threads);
   on_phase("regions");
   RegionOptions region_options;
   region_options.fill_cavities = options.fill_cavities;

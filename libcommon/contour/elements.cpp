@@ -108,36 +108,55 @@ void sort_unique(std::vector<int32_t>& v) {
   v.erase(std::unique(v.begin(), v.end()), v.end());
 }
 
-} // namespace
+/// [grid vertices] flags the corners of the leaves.
+std::vector<uint8_t> corners(const Complex& complex, const std::vector<int32_t>& leaves) {
+  std::vector<uint8_t> flag(at(complex.grid_vertices), 0);
+  for (int32_t leaf : leaves)
+    for (int c = 0; c < 8; ++c)
+      flag[at(complex.grid_vertex[at(int64_t{8} * leaf + c)])] = 1;
+  return flag;
+}
 
-std::vector<int32_t> spoiled_at(const Complex& complex, const std::vector<int32_t>& leaves, int threads) {
-  // An edge of a leaf, halves and those on its faces included, has its ends among the corners of the leaves around;
-  // all faces at it belong to leaves with such a corner.
-  const auto corners = [&](const std::vector<int32_t>& of) {
-    std::vector<uint8_t> flag(at(complex.grid_vertices), 0);
-    for (int32_t leaf : of)
-      for (int c = 0; c < 8; ++c)
-        flag[at(complex.grid_vertex[at(int64_t{8} * leaf + c)])] = 1;
-    return flag;
-  };
-  const std::vector<uint8_t> ends = corners(complex.leaves_at(corners(leaves), threads));
-  const std::vector<int32_t> near = complex.leaves_at(ends, threads);
+/// Of the leaves' faces, and of the rings round edges with both ends flagged (all edges without flags): rings of
+/// others may be incomplete.
+std::vector<int32_t> spoiled_of(const Complex& complex, const std::vector<int32_t>& leaves,
+                                const std::vector<uint8_t>* ends, int threads) {
   const bool none[2] = {false, false};
   Elements out;
   out.position = complex.position;
   std::vector<Link> links;
   std::vector<int32_t> wall;
   add_faces(
-      complex, static_cast<int64_t>(near.size()), [&](int64_t i) { return near[at(i)]; }, none, out, links, wall,
-      threads);
-  const auto partial = [&](const Link& l) {
-    const auto end = [&](int32_t v) { return v >= complex.grid_vertices || ends[at(v)]; };
-    return !(end(l.inside) && end(l.outside)); // a split cell's centre: all its faces are its own
-  };
-  links.erase(std::remove_if(links.begin(), links.end(), partial), links.end());
+      complex, static_cast<int64_t>(leaves.size()), [&](int64_t i) { return leaves[at(i)]; }, none, out, links,
+      wall, threads);
+  if (ends) {
+    const auto partial = [&](const Link& l) { // all faces at a split cell's centre are that cell's
+      const auto end = [&](int32_t v) { return v >= complex.grid_vertices || (*ends)[at(v)]; };
+      return !(end(l.inside) && end(l.outside));
+    };
+    links.erase(std::remove_if(links.begin(), links.end(), partial), links.end());
+  }
   add_rings(complex, links, none, out, wall, threads);
   sort_unique(out.spoiled);
   return std::move(out.spoiled);
+}
+
+} // namespace
+
+std::vector<int32_t> find_spoiled(const Complex& complex, int threads) {
+  // Every face that a surface cell has part in belongs to a leaf with a corner in common.
+  std::vector<int32_t> crossed;
+  for (int32_t leaf = 0; leaf < complex.tree.size(); ++leaf)
+    if (complex.side[at(leaf)] == Side::crossed)
+      crossed.push_back(leaf);
+  return spoiled_of(complex, complex.leaves_at(corners(complex, crossed), threads), nullptr, threads);
+}
+
+std::vector<int32_t> spoiled_at(const Complex& complex, const std::vector<int32_t>& leaves, int threads) {
+  // An edge of a leaf, halves and those on its faces included, has its ends among the corners of the leaves around;
+  // all faces at it belong to leaves with such a corner.
+  const std::vector<uint8_t> ends = corners(complex, complex.leaves_at(corners(complex, leaves), threads));
+  return spoiled_of(complex, complex.leaves_at(ends, threads), &ends, threads);
 }
 
 Elements make_elements(const Complex& complex, bool inside, bool outside, int threads) {

@@ -23,14 +23,16 @@ struct Elements {
       tri_sides;                 ///< [tris] vertices of the complex behind and in front; equal on a wall
   std::vector<int32_t> boundary; ///< [tris] Boundary
   std::vector<Vec3d> position;   ///< all vertices: those of the complex, then face, wall and edge points
-  /// Vertices of the complex that elements without positive volume, on either side, hang on: where grid points have
-  /// moved the cells are no boxes.
+  /// Vertices of the complex that elements without positive volume, on either side, hang on, ascending: where grid
+  /// points have moved the cells are no boxes.
   std::vector<int32_t> spoiled;
   int64_t face_points = 0, edge_points = 0;
 };
 
-/// `spoiled`, sorted, once each, of the elements that hang on these leaves' dual vertices or corners and of some
-/// around them: what is left to look at after Complex::restore.
+/// What Elements::spoiled would be, without making elements.
+std::vector<int32_t> find_spoiled(const Complex& complex, int threads);
+/// The same of the elements that hang on these leaves' dual vertices or corners and of some around them: what is
+/// left to look at after Complex::restore.
 std::vector<int32_t> spoiled_at(const Complex& complex, const std::vector<int32_t>& leaves, int threads);
 
 /// inside, outside: sides to make elements on. The order follows the octree's curve, whatever the threads.

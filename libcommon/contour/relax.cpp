@@ -24,10 +24,14 @@ struct Candidate {
 
 class Relaxation {
 public:
-  Relaxation(Elements& elements, int threads) : e_(elements), threads_(threads) {
+  Relaxation(Elements& elements, const std::vector<uint8_t>& lattice_class, int threads)
+      : e_(elements), threads_(threads) {
     const auto n = static_cast<int64_t>(e_.tet.size());
     quality_.resize(at(n));
-    par::for_n(n, threads_, [&](int64_t t) { quality_[at(t)] = quality(e_.tet[at(t)]); });
+    par::for_n(n, threads_, [&](int64_t t) {
+      const Tet& v = e_.tet[at(t)];
+      quality_[at(t)] = of_lattice(v, lattice_class) ? 1 : quality(v);
+    });
     find_candidates();
   }
 
@@ -46,6 +50,15 @@ public:
   }
 
 private:
+  /// An edge of the lattice with the middles of two boxes of one size.
+  static bool of_lattice(const Tet& t, const std::vector<uint8_t>& lattice_class) {
+    const auto known = static_cast<int32_t>(lattice_class.size());
+    if (std::any_of(t.begin(), t.end(), [&](int32_t v) { return v >= known; }))
+      return false;
+    const auto of = [&](size_t i) { return lattice_class[at(t[i])]; };
+    return of(0) == 1 && of(1) == 1 && of(2) >= 2 && of(2) == of(3);
+  }
+
   float quality(const Tet& t) const {
     return improve::tet_quality(e_.position[at(t[0])], e_.position[at(t[1])], e_.position[at(t[2])],
                                 e_.position[at(t[3])]);
@@ -176,8 +189,8 @@ private:
 
 } // namespace
 
-int64_t relax(Elements& elements, int threads) {
-  Relaxation relaxation(elements, threads);
+int64_t relax(Elements& elements, const std::vector<uint8_t>& lattice_class, int threads) {
+  Relaxation relaxation(elements, lattice_class, threads);
   int64_t moved = 0;
   for (int round = 0; round < most_rounds; ++round) {
     const int64_t now = relaxation.round();
