@@ -1,14 +1,18 @@
 // tetsmooth.cpp — tetrahedral mesh (.vtu) to a better one: every element good enough to solve on.
 #include "cli/file.hpp"
+#include "cli/limits.hpp"
 #include "cli/run.hpp"
 #include "cuda/improve/improve.hpp"
 #include "cuda/par/device.hpp"
 #include "cuda/report.hpp"
+#include "formats/hier/hier.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "improve/improve.hpp"
 #include "mesh/carry.hpp"
 #include "mesh/partition.hpp"
+#include "mesh/worst.hpp"
+#include "molecule/nearest.hpp"
 #include <optional>
 #include <sstream>
 
@@ -18,7 +22,7 @@ namespace {
 
 struct Options : cli::Common {
   Options() { require_device = cuda::require_device; }
-  std::string density;
+  std::string density, hier;
   int iterations = 15, parts = 8;
   double min_dihedral = 0, max_dihedral = 180; // degrees asked for
 };
@@ -26,16 +30,14 @@ struct Options : cli::Common {
 void describe(CLI::App& app, Options& o) {
   app.add_option("--density", o.density, "density grid (.vdb): surface points are kept on its isosurface")
       ->type_name("FILE");
+  app.add_option("--hier", o.hier,
+                 "molecular hierarchy (.hier): names what is nearest to elements that miss the quality")
+      ->type_name("FILE");
   app.add_option("--iterations", o.iterations, "rounds at most; 0 leaves the mesh as it is")
       ->check(CLI::Range(0, 1000));
   app.add_option("--parts", o.parts, "METIS parts that the elements are numbered by in the output")
       ->check(CLI::Range(1, 1000000));
-  app.add_option("--min-dihedral", o.min_dihedral, "quality asked for: status 5 when an angle is smaller")
-      ->type_name("°")
-      ->check(CLI::Range(0., 70.5));
-  app.add_option("--max-dihedral", o.max_dihedral, "quality asked for: status 5 when an angle is larger")
-      ->type_name("°")
-      ->check(CLI::Range(70.6, 180.));
+  cli::add_dihedral_limits(app, o.min_dihedral, o.max_dihedral);
 }
 
 std::string text(const improve::Angles& a) {
@@ -49,6 +51,26 @@ nlohmann::ordered_json json(const improve::Angles& a) {
   return {{"min_dihedral", a.min}, {"max_dihedral", a.max}, {"below_25", a.below_25}, {"above_140", a.above_140}};
 }
 
+nlohmann::ordered_json json(const improve::Fidelity& f) {
+  return {{"points", f.points},       {"points_off", f.points_off},
+          {"triangles", f.triangles}, {"centroids_off", f.centroids_off},
+          {"turned_45", f.turned},    {"area", f.area},
+          {"volume", f.volume},       {"volume_missing", f.missing}};
+}
+
+std::string text(const WorstTet& t, const std::optional<Hierarchy>& h) {
+  std::ostringstream s;
+  s.precision(4);
+  s << "element " << t.tet << " has " << t.min << "° to " << t.max << "°, at ";
+  s.precision(6);
+  s << t.centre.x << ' ' << t.centre.y << ' ' << t.centre.z;
+  if (h) {
+    const int64_t atom = nearest_atom(*h, t.centre);
+    s << ", nearest to " << groups_of(*h, atom) << ' ' << h->names[h->atom[size_t(atom)].name];
+  }
+  return s.str();
+}
+
 Status run_tool(const Options& o, cli::Run& run) {
   const int threads = o.resolved_threads();
   run.phase("read");
@@ -56,6 +78,11 @@ Status run_tool(const Options& o, cli::Run& run) {
   if (!o.density.empty()) {
     cli::InputFile file(o.density);
     grid = formats::read_vdb(file.stream(), file.name());
+  }
+  std::optional<Hierarchy> hierarchy;
+  if (!o.hier.empty()) {
+    cli::InputFile file(o.hier);
+    hierarchy = formats::read_hier(file.stream(), file.name());
   }
   cli::InputFile input(o.input);
   TetMesh mesh = formats::read_vtu(input.stream(), input.name(), nullptr, formats::CellArrays::keep);
@@ -86,14 +113,14 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.counts["elements"] = mesh.tet.size();
   run.counts["points"] = mesh.point.size();
   run.counts["rounds"] = result.rounds;
-  run.counts["moves"] = c.moves;
-  run.counts["edge_removals"] = c.edge_removals;
-  run.counts["surface_flips"] = c.surface_flips;
-  run.counts["face_swaps"] = c.face_swaps;
-  run.counts["contractions"] = c.contractions;
-  run.counts["splits"] = c.splits;
+  run.counts.update({{"moves", c.moves},
+                     {"edge_removals", c.edge_removals},
+                     {"surface_flips", c.surface_flips},
+                     {"face_swaps", c.face_swaps},
+                     {"contractions", c.contractions},
+                     {"splits", c.splits}});
   if (grid)
-    run.counts["points_off_surface"] = result.off_surface;
+    run.counts["surface"] = json(result.fidelity);
   run.counts["quality_before"] = json(result.before);
   run.counts["quality_after"] = json(result.after);
 
@@ -114,6 +141,8 @@ Status run_tool(const Options& o, cli::Run& run) {
   if (result.after.min >= o.min_dihedral && result.after.max <= o.max_dihedral)
     return Status::good;
   run.note("below the quality asked for: dihedral angles " + text(result.after));
+  for (const WorstTet& t : worst_tets(mesh, {o.min_dihedral, o.max_dihedral}, 10, threads))
+    run.note(text(t, hierarchy));
   return Status::below_quality;
 }
 

@@ -1,6 +1,7 @@
 // tetstat.cpp — validity and quality of a tetrahedral mesh (.vtu), for people or as JSON.
 #include "formats/tetstat/tetstat.hpp"
 #include "cli/file.hpp"
+#include "cli/limits.hpp"
 #include "cli/run.hpp"
 #include <optional>
 #include <ostream>
@@ -20,12 +21,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_flag("--crossings", o.crossings, "also look for surface triangles that cross (exact; interior meshes)");
   app.add_option("--compare", o.compare, "a mesh to compare with: --compare BEFORE AFTER; the status is AFTER's")
       ->type_name("FILE");
-  app.add_option("--min-dihedral", o.min_dihedral, "quality asked for: status 5 when an angle is smaller")
-      ->type_name("°")
-      ->check(CLI::Range(0., 70.5));
-  app.add_option("--max-dihedral", o.max_dihedral, "quality asked for: status 5 when an angle is larger")
-      ->type_name("°")
-      ->check(CLI::Range(70.6, 180.));
+  cli::add_dihedral_limits(app, o.min_dihedral, o.max_dihedral);
 }
 
 formats::MeshReport report(const std::string& path, const Options& o, cli::Run& run) {

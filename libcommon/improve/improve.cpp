@@ -1,7 +1,6 @@
 // improve.cpp — the order of passes: settle on the surface, raise the goal by steps, release the guard at the very
 // end.
 #include "improve/improve.hpp"
-#include "improve/isosurface.hpp"
 #include "improve/reference_surface.hpp"
 #include "improve/schedule.hpp"
 #include "par/par.hpp"
@@ -64,68 +63,13 @@ struct Stage {
   const Guard& guard;
 };
 const Stage stages[] = {
-    {0.35, 0, 1, true, kept},     {0.6, 0, 1, true, kept},      {0.8, 1, 1, true, kept},
-    {0.9, 1, 2, true, kept},      {1, 1, 2, false, kept},       {1, 1, 8, true, kept},
-    {0.8, 1, 8, true, released},  {1, 1, 8, false, released},   {0.5, 1, 32, true, lifted},
-    {1, 1, 32, true, released},   {0.97, 1, 32, true, lifted},  {1, 1, 32, false, released},
+    {0.35, 0, 1, true, kept},    {0.6, 0, 1, true, kept},     {0.8, 1, 1, true, kept},
+    {0.9, 1, 2, true, kept},     {1, 1, 2, false, kept},      {1, 1, 8, true, kept},
+    {0.8, 1, 8, true, released}, {1, 1, 8, false, released},  {0.5, 1, 32, true, lifted},
+    {1, 1, 32, true, released},  {0.97, 1, 32, true, lifted}, {1, 1, 32, false, released},
     {0.97, 1, 32, true, lifted},
 };
 constexpr size_t refresh_offset = 4;
-
-// Chords enclose less than the surface they hang on: how far their points must lie outside it (Å) to make up for
-// that, at most 0.016 spacings (I8 allows 0.02). The distance is integrated by the three-point rule, exact where it
-// is quadratic.
-double chord_offset(const DynamicMesh& m, const Isosurface& surface, int threads) {
-  struct Sum {
-    double volume = 0, area = 0;
-  };
-  const Sum s = par::reduce(
-      static_cast<int64_t>(m.element.size()), threads, Sum{},
-      [&](int64_t t) {
-        Sum sum;
-        const Element& e = m.element[size_t(t)];
-        for (size_t f = 0; e.alive() && f < 4; ++f) {
-          if (e.label[f] == 0 || !m.labels[e.label[f]].curved())
-            continue;
-          if (e.n[f] >= 0 && m.element[size_t(e.n[f])].region < e.region)
-            continue; // counted from its other side
-          std::array<Vec3d, 3> p;
-          for (size_t i = 0; i < 3; ++i)
-            p[i] = m.point[size_t(e.v[size_t(outward_face[f][i])])];
-          const double area = norm(cross(p[1] - p[0], p[2] - p[0])) / 2;
-          for (size_t i = 0; i < 3; ++i) {
-            double distance;
-            Vec3d normal;
-            if (!surface.probe((p[0] + p[1] + p[2]) / 6. + 0.5 * p[i], distance, normal))
-              continue;
-            sum.volume -= distance * area / 3;
-            sum.area += area / 3;
-          }
-        }
-        return sum;
-      },
-      [](Sum a, const Sum& b) {
-        a.volume += b.volume;
-        a.area += b.area;
-        return a;
-      });
-  const double most = 0.016 * surface.spacing(), more = s.area > 0 ? s.volume / s.area : 0;
-  return std::clamp(surface.offset() + more, -most, most) - surface.offset();
-}
-
-int64_t off_surface(const DynamicMesh& m, const Isosurface& surface, int threads) {
-  return par::reduce(
-      static_cast<int64_t>(m.point.size()), threads, int64_t{0},
-      [&](int64_t v) {
-        if (m.incident[size_t(v)] < 0 || m.vertex[size_t(v)].kind != Kind::surface)
-          return int64_t{0};
-        double distance;
-        Vec3d normal;
-        const bool known = surface.probe(m.point[size_t(v)], distance, normal);
-        return int64_t{!known || std::abs(distance + surface.offset()) > 0.02 * surface.spacing()};
-      },
-      [](int64_t a, int64_t b) { return a + b; });
-}
 
 } // namespace
 
@@ -156,7 +100,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
 
   const auto settle = [&] {
     result.counts += schedule.settle(1, kept);
-    isosurface->set_offset(chord_offset(m, *isosurface, options.threads));
+    isosurface->set_offset(isosurface->offset() + chord_offset(m, *isosurface, options.threads));
     result.counts += schedule.settle(1, kept);
   };
 
@@ -197,9 +141,11 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   if (density && result.rounds == 0)
     settle();
   if (density)
-    result.off_surface = off_surface(m, *isosurface, options.threads);
+    result.fidelity = measure_fidelity(m, *isosurface, options.threads);
   if (result.counts.total() == 0 || schedule.worst() < at_first) { // the file that came in, in its own order
     result.counts = {};
+    if (density)
+      result.fidelity = measure_fidelity(build(mesh, 180, options.threads), *isosurface, options.threads);
     return result;
   }
   begin("result");

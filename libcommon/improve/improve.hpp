@@ -1,6 +1,7 @@
 // improve.hpp — quality improvement of a tetrahedral mesh: §5 of the paper and design §10.
 #pragma once
 #include "density/block_grid.hpp"
+#include "improve/fidelity.hpp"
 #include "improve/schedule.hpp"
 #include "mesh/tet_mesh.hpp"
 #include <functional>
@@ -24,10 +25,9 @@ struct Result {
   Counts counts;
   int rounds = 0;
   Angles before, after;
-  int64_t off_surface = 0; ///< surface points that could not reach the isosurface (with a density)
+  Fidelity fidelity; ///< after (with a density)
 };
 
-class Isosurface;
 /// Moves many points at once where no element below the pass' goal becomes worse: what a device does before each
 /// round of operations. The isosurface is null without a density. Returns how many moves were done; changed
 /// elements have their new quality and count as never tried.

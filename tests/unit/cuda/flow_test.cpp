@@ -154,7 +154,7 @@ TEST_CASE("improvement with the device's flow keeps what improvement keeps, at a
     CHECK(r.after.min >= 15);
     CHECK(r.after.max <= 155);
     CHECK(r.after.min >= r.before.min);
-    CHECK(r.off_surface == 0);
+    CHECK(r.fidelity.points_off == 0);
     CHECK_NOTHROW(improve::build(mesh, 180, 1));
     result.push_back(std::move(mesh));
   }

@@ -93,12 +93,23 @@ TEST_CASE("improvement keeps regions, walls and topology, and puts the surface o
   const improve::Result r = improve::improve(mesh, with_density ? &grid : nullptr, {});
   const Measure after = measure(mesh, with_density ? &grid : nullptr);
   CHECK_NOTHROW(improve::build(mesh, 180, 1)); // still a valid mesh
-  CHECK(after.min >= 15);
-  CHECK(after.max <= 155);
+  CHECK(after.min >= 25);
+  CHECK(after.max <= 140);
   CHECK(r.after.min == Approx(after.min).epsilon(1e-6));
   CHECK(r.after.max == Approx(after.max).epsilon(1e-6));
   CHECK(after.euler == 2);
   CHECK(after.off <= 0.02);
+  if (with_density) {
+    const improve::Fidelity& f = r.fidelity;
+    CHECK(f.points > 300);
+    CHECK(f.points_off == 0);
+    CHECK(f.centroids_off == 0);
+    CHECK(f.turned == 0);
+    CHECK(f.area == Approx(after.area.at(surface)));
+    // Three atoms alone are more curved than I8 has in mind: half a percent is for molecules.
+    CHECK(std::abs(f.missing) < 0.0075 * before.volume.at(before.volume.count(1) ? 1 : 2));
+    CHECK(f.volume == Approx(after.volume.begin()->second));
+  }
   double total = 0, total_before = 0;
   for (const auto& [region, v] : before.volume) {
     REQUIRE(after.volume.count(region) == 1);

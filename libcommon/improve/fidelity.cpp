@@ -1,0 +1,108 @@
+// fidelity.cpp — sums over surface triangles and points.
+#include "improve/fidelity.hpp"
+#include "geom/tet_measures.hpp"
+#include "par/par.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace molmesh::improve {
+namespace {
+
+// Whether a curved face is counted from this side: the lower region's.
+bool counts_here(const DynamicMesh& m, const Element& e, size_t face) {
+  return e.label[face] != 0 && m.labels[e.label[face]].curved() &&
+         (e.n[face] < 0 || e.region < m.element[size_t(e.n[face])].region);
+}
+
+void add_triangle(const DynamicMesh& m, const Isosurface& surface, const Element& e, size_t face, Fidelity& sum) {
+  const auto t = outward_triangle(e.v, face);
+  const Vec3d a = m.point[size_t(t[0])], b = m.point[size_t(t[1])], c = m.point[size_t(t[2])];
+  const Vec3d n = tri_normal(a, b, c), centre = (a + b + c) / 3.;
+  const double area = norm(n) / 2;
+  ++sum.triangles;
+  sum.area += area;
+  double distance;
+  Vec3d normal;
+  // Exterior meshes alone see the molecule from outside.
+  const double side = m.labels[e.label[face]].reversed ? -1 : 1;
+  if (!surface.probe(centre, distance, normal)) {
+    ++sum.centroids_off;
+    ++sum.turned;
+  } else {
+    sum.centroids_off += std::abs(distance + surface.offset()) > 0.25 * surface.spacing();
+    sum.turned += side * dot(n, normal) < std::sqrt(0.5) * norm(n);
+  }
+  for (const Vec3d& p : {a, b, c}) // the three-point rule, exact where the distance is quadratic
+    if (surface.probe(0.5 * centre + 0.5 * p, distance, normal))
+      sum.missing -= (distance + surface.offset()) * area / 3;
+}
+
+Fidelity add(Fidelity a, const Fidelity& b) {
+  a.points += b.points;
+  a.triangles += b.triangles;
+  a.points_off += b.points_off;
+  a.centroids_off += b.centroids_off;
+  a.turned += b.turned;
+  a.volume += b.volume;
+  a.missing += b.missing;
+  a.area += b.area;
+  return a;
+}
+
+Fidelity measure_triangles(const DynamicMesh& m, const Isosurface& surface, int threads) {
+  return par::reduce(
+      static_cast<int64_t>(m.element.size()), threads, Fidelity{},
+      [&](int64_t t) {
+        Fidelity sum;
+        const Element& e = m.element[size_t(t)];
+        if (e.alive())
+          for (size_t f = 0; f < 4; ++f)
+            if (counts_here(m, e, f))
+              add_triangle(m, surface, e, f, sum);
+        return sum;
+      },
+      add);
+}
+
+} // namespace
+
+Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int threads) {
+  Fidelity sum = measure_triangles(m, surface, threads);
+  int32_t lowest = INT32_MAX; // the molecule, or what an exterior mesh has
+  for (const Element& e : m.element)
+    if (e.alive())
+      lowest = std::min(lowest, e.region);
+  sum = add(sum, par::reduce(
+                     static_cast<int64_t>(m.element.size()), threads, Fidelity{},
+                     [&](int64_t t) {
+                       Fidelity one;
+                       const Element& e = m.element[size_t(t)];
+                       if (e.alive() && e.region == lowest)
+                         one.volume = tet_volume(m.point[size_t(e.v[0])], m.point[size_t(e.v[1])],
+                                                 m.point[size_t(e.v[2])], m.point[size_t(e.v[3])]);
+                       return one;
+                     },
+                     add));
+  return add(sum, par::reduce(
+                      static_cast<int64_t>(m.point.size()), threads, Fidelity{},
+                      [&](int64_t v) {
+                        Fidelity one;
+                        if (m.incident[size_t(v)] < 0 || m.vertex[size_t(v)].kind != Kind::surface)
+                          return one;
+                        one.points = 1;
+                        double distance;
+                        Vec3d normal;
+                        one.points_off = !surface.probe(m.point[size_t(v)], distance, normal) ||
+                                         std::abs(distance + surface.offset()) > 0.02 * surface.spacing();
+                        return one;
+                      },
+                      add));
+}
+
+double chord_offset(const DynamicMesh& m, const Isosurface& surface, int threads) {
+  const Fidelity f = measure_triangles(m, surface, threads);
+  const double most = 0.0185 * surface.spacing(), now = surface.offset();
+  return f.area > 0 ? std::clamp(now + f.missing / f.area, -most, most) - now : 0;
+}
+
+} // namespace molmesh::improve
