@@ -74,7 +74,13 @@ held "$driver" small
 echo "== compute-sanitizer, random small cases"
 if command -v compute-sanitizer >/dev/null; then
   for tool in memcheck racecheck initcheck synccheck; do
-    held timeout 900 compute-sanitizer --tool "$tool" --error-exitcode 1 --print-limit 5 "$driver" small | grep -vE '^ok '
+    if timeout 1800 compute-sanitizer --tool "$tool" --error-exitcode 1 --print-limit 5 "$driver" small >"$work/$tool" 2>&1; then
+      echo "ok     $tool"
+    else
+      status=1
+      echo "FAILED $tool"
+      tail -n 40 "$work/$tool"
+    fi
   done
 else
   echo "not installed: not run"
