@@ -24,8 +24,11 @@ struct Error : std::runtime_error {
 [[noreturn]] inline void fail(Status status, const std::string& line) {
   throw Error(status, line);
 }
-/// Input that is unreadable or invalid: status 3.
-[[noreturn]] inline void fail_input(const std::string& line) {
+/// Input that is unreadable or invalid: status 3. What the input itself put into the message stays on the line.
+[[noreturn]] inline void fail_input(std::string line) {
+  for (char& c : line)
+    if (c == '\n' || c == '\r')
+      c = '?';
   fail(Status::bad_input, line);
 }
 

@@ -6,7 +6,9 @@
 #include "formats/vtu/names.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "label/mesh_labels.hpp"
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <sstream>
 
 using namespace molmesh;
@@ -26,9 +28,11 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--decay", o.decay, "decay rate of an atom's term, as hier2density had it")
       ->type_name("Å⁻²")
       ->check(CLI::PositiveNumber);
-  app.add_option("--boundary", o.boundary,
-                 "NAME=SELECTION: triangles of the molecular surface that belong to these atoms (gemmi's selection "
-                 "syntax, or around SELECTION Å) are a boundary of their own in the array `patch`; later ones win")
+  app.add_option(
+         "--boundary", o.boundary,
+         "NAME=SELECTION: triangles of the molecular surface that belong to these atoms (gemmi's selection "
+         "syntax, or around SELECTION Å) are a boundary of their own in the array `patch`; later ones win, a name "
+         "given again adds to it")
       ->type_name("BOUNDARY")
       ->allow_extra_args(false);
 }
@@ -43,10 +47,12 @@ std::vector<label::NamedBoundary> select(const Options& o, const Hierarchy& h) {
     if (name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") !=
         std::string::npos)
       fail(Status::usage, "--boundary: found the name '" + name + "', expected letters, digits, _ and -");
-    for (const label::NamedBoundary& b : boundary)
-      if (b.name == name)
-        fail(Status::usage, "--boundary: found the name '" + name + "' twice");
-    boundary.push_back({name, formats::select_atoms(h, text.substr(equals + 1), "--boundary " + name)});
+    const std::vector<uint8_t> atom = formats::select_atoms(h, text.substr(equals + 1), "--boundary " + name);
+    const auto same = std::find_if(boundary.begin(), boundary.end(), [&](const auto& b) { return b.name == name; });
+    if (same == boundary.end())
+      boundary.push_back({name, atom});
+    else // one boundary of several selections
+      std::transform(atom.begin(), atom.end(), same->atom.begin(), same->atom.begin(), std::bit_or<>());
   }
   return boundary;
 }

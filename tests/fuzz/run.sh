@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# run.sh SECONDS [READER…]: builds the libFuzzer targets with clang in build-fuzz, then runs each for SECONDS, as many
+# at a time as there are cores. What it finds stays in build-fuzz/found; a finding is status 1.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+seconds=$1
+shift
+readers=("$@")
+[ ${#readers[@]} -gt 0 ] || readers=(hier vtu vdb pdb mmcif mmjson pqr rules)
+cmake -S . -B build-fuzz -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_COMPILER=clang++ -DMOLMESH_FUZZ=ON \
+  -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O1 -gline-tables-only' \
+  -DMOLMESH_TESTS=OFF -DMOLMESH_OPENMP=OFF >/dev/null &&
+  cmake --build build-fuzz --target "${readers[@]/#/fuzz_}" || exit 1
+
+fuzz() { # fuzz READER: its seeds are the samples of its format and what an earlier run kept
+  local reader=$1 seeds=() folder
+  for folder in "tests/fuzz/corpus/$reader" "formats/$reader/samples/passed" "formats/$reader/samples/failed"; do
+    [ -d "$folder" ] && seeds+=("$folder")
+  done
+  mkdir -p "build-fuzz/corpus/$reader" build-fuzz/found
+  if "build-fuzz/bin/fuzz_$reader" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=2048 -print_final_stats=1 \
+    -artifact_prefix="build-fuzz/found/$reader-" "build-fuzz/corpus/$reader" "${seeds[@]}" >"build-fuzz/$reader.log" 2>&1; then
+    echo "$reader: $(sed -n 's/^stat::number_of_executed_units: *//p' "build-fuzz/$reader.log") inputs"
+  else
+    echo "$reader: FOUND"
+    tail -n 40 "build-fuzz/$reader.log"
+    return 1
+  fi
+}
+export -f fuzz
+export seconds
+printf '%s\n' "${readers[@]}" | xargs -P "$(nproc)" -I{} bash -c 'fuzz {}'

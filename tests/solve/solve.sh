@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# solve.sh BIN SOURCE ion|harmonic|diffusion — structure to solution: the whole chain, judged by FreeFEM. Status 77: skipped.
+set -eu
+bin=$(realpath "$1") SOURCE=$(realpath "$2") what=$3
+export PATH="$bin:$PATH" OMP_NUM_THREADS=2
+
+command -v FreeFem++ >/dev/null || { echo "SKIPPED: no FreeFem++ (Debian: freefem++ libfreefem++)"; exit 77; }
+# Debian's own search path names a folder of an older version.
+plugin=$(find /usr/lib /usr/local/lib -name msh3.so -not -path '*/mpi/*' 2>/dev/null | head -n 1)
+[ -n "$plugin" ] || { echo "SKIPPED: FreeFEM without its plugin msh3 (Debian: libfreefem++)"; exit 77; }
+export FF_LOADPATH=${plugin%/*}
+solve() { local script=$1; shift; FreeFem++ -nw -v 0 "$SOURCE/tests/solve/$script.edp" "$@"; }
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+# mesh NAME REGION SPACING TETSMOOTH [DENSITY2TET]: NAME.hier to NAME.vtu
+mesh() {
+  hier2density -q --spacing "$3" "$1.hier" -o "$1.vdb"
+  density2tet -q --region "$2" ${5:-} "$1.vdb" -o "$1.tet.vtu"
+  tetsmooth -q $4 --density "$1.vdb" "$1.tet.vtu" -o "$1.vtu"
+}
+
+case $what in
+ion) # Born's energy within 1 %
+  pdb2hier -q --levels none "$SOURCE/tests/data/ion.pqr" -o ion.hier
+  mesh ion both 0.25 "" "--box 10"
+  tetconvert -q ion.vtu -o ion.mesh
+  solve born ion.mesh 1 3
+  ;;
+harmonic) # a harmonic polynomial to 1e-10; with one tetrahedron missing it must not be found
+  pdb2hier -q "$SOURCE/tests/data/1tii.pdb" -o 1tii.hier
+  for region in interior exterior both; do
+    mesh 1tii $region 3 "--iterations 2"
+    tetconvert -q 1tii.vtu -o 1tii.mesh
+    inner=0
+    [ $region != both ] || inner=1
+    echo "$region:"
+    solve harmonic 1tii.mesh $inner 0 1e-10
+    if solve harmonic 1tii.mesh $inner 1 1e-6 >missing 2>&1; then
+      echo "a missing tetrahedron was not noticed: $(cat missing)"
+      exit 1
+    fi
+    grep -q '^error' missing || { cat missing; exit 1; } # not for another reason
+  done
+  ;;
+diffusion) # a rate that converges with the mesh
+  structure=$SOURCE/../shared/data/pqr/misc__mache.pqr.gz
+  [ -f "$structure" ] || { echo "SKIPPED: no $structure"; exit 77; }
+  pdb2hier -q "$structure" -o ache.hier
+  site=()
+  for residue in 72 74 124 286 341; do site+=(--boundary "active_site=//*/$residue"); done # the gorge's mouth
+  for spacing in 4 3 2; do
+    mesh ache exterior $spacing "--iterations 2" "--box 3 --cavities fill"
+    tetlabel -q ache.vtu ache.hier "${site[@]}" -o labels.vtu
+    tetconvert -q labels.vtu -o ache.mesh
+    echo -n "$spacing Å: "
+    solve diffusion ache.mesh 8 | tee -a rates
+  done
+  # Each within 5 % of the one before, and the last step smaller than the first, or under 1 %.
+  awk '/^rate/ { r[++n] = $2 } END {
+    for (i = 2; i <= n; i++) { d[i] = r[i] / r[i-1] - 1; if (d[i] < 0) d[i] = -d[i] }
+    exit !(n == 3 && d[2] < 0.05 && d[3] < 0.05 && (d[3] < d[2] || d[3] < 0.01)) }' rates
+  ;;
+esac
