@@ -1,6 +1,7 @@
 // vdb_fuzz.cpp — a .vdb is refused with one line, or is a grid that writes back to itself.
 #include "error.hpp"
 #include "formats/vdb/vdb.hpp"
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
@@ -17,9 +18,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     std::stringstream written;
     formats::write_vdb(written, grid);
     const BlockGrid back = formats::read_vdb(written, "back");
+    const auto same = [](float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; };
     if (back.corner != grid.corner || back.inside != grid.inside || back.active != grid.active ||
         !(back.frame.points == grid.frame.points) ||
-        std::memcmp(grid.value.data(), back.value.data(), grid.value.size() * sizeof(float)) != 0)
+        !std::equal(grid.value.begin(), grid.value.end(), back.value.begin(), back.value.end(), same))
       std::abort();
   } catch (const Error& e) {
     if (std::string(e.what()).find('\n') != std::string::npos)
