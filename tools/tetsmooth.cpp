@@ -89,7 +89,6 @@ Status run_tool(const Options& o, cli::Run& run) {
   const CarriedArrays arrays(mesh);
   run.counts["elements_before"] = mesh.tet.size();
   run.counts["points_before"] = mesh.point.size();
-
   improve::Options options;
   options.iterations = o.iterations;
   options.threads = threads;
@@ -123,10 +122,8 @@ Status run_tool(const Options& o, cli::Run& run) {
     run.counts["surface"] = json(result.fidelity);
   run.counts["quality_before"] = json(result.before);
   run.counts["quality_after"] = json(result.after);
-
   run.phase("partition");
   mesh.part = partition(mesh, o.parts, threads);
-  run.phase("carry");
   arrays.put_into(mesh, threads);
   if (!arrays.empty())
     run.note("carried from the nearest element before: " + arrays.names());
@@ -135,7 +132,6 @@ Status run_tool(const Options& o, cli::Run& run) {
   cli::OutputFile output(o.output);
   formats::write_vtu(output.stream(), mesh);
   output.commit();
-  run.end_phase();
   if (run.verbose)
     run.note("dihedral angles " + text(result.before) + "; now " + text(result.after));
   if (result.after.min >= o.min_dihedral && result.after.max <= o.max_dihedral)
