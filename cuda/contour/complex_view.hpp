@@ -66,14 +66,14 @@ struct ComplexView {
   HD Vec3d crossing(int32_t a, int32_t b) const { return contour::detail::crossing(*this, a, b); }
 };
 
-/// The complex in a Backend's memory. What never changes is uploaded once, the rest by update().
+/// The complex in a Backend's memory.
 template <class Backend>
 class DeviceComplex {
   template <class T>
   using Array = typename Backend::template Array<T>;
 
 public:
-  DeviceComplex(Backend& b, const contour::Complex& c) : b_(b), c_(c) {
+  DeviceComplex(Backend& b, const contour::Complex& c) : b_(b) {
     ComplexView& v = view;
     v.lattice = c.lattice.view();
     const BlockGrid& grid = c.lattice.grid();
@@ -94,21 +94,16 @@ public:
     v.nearest = up(nearest_, c.nearest_samples());
     v.grid_vertices = c.grid_vertices;
     v.dual0 = c.dual0;
-    update();
-  }
-  /// After the complex has moved points back.
-  void update() {
-    ComplexView& v = view;
-    v.split = up(split_, c_.split);
-    v.position = up(position_, c_.position);
-    v.value = up(value_, c_.value);
-    v.distance = up(distance_, c_.distance);
-    v.has_moved = up(moved_, c_.moved_flags());
-    const int32_t first = c_.dual0 + c_.tree.size();
-    std::vector<contour::CellTopology> topology(c_.position.size() - static_cast<size_t>(first));
-    for (int32_t leaf = 0; leaf < c_.tree.size(); ++leaf)
-      if (c_.is_split(leaf))
-        topology[static_cast<size_t>(c_.split[static_cast<size_t>(leaf)] - first)] = c_.topology(leaf);
+    v.split = up(split_, c.split);
+    v.position = up(position_, c.position);
+    v.value = up(value_, c.value);
+    v.distance = up(distance_, c.distance);
+    v.has_moved = up(moved_, c.moved_flags());
+    const int32_t first = c.dual0 + c.tree.size();
+    std::vector<contour::CellTopology> topology(c.position.size() - static_cast<size_t>(first));
+    for (int32_t leaf = 0; leaf < c.tree.size(); ++leaf)
+      if (c.is_split(leaf))
+        topology[static_cast<size_t>(c.split[static_cast<size_t>(leaf)] - first)] = c.topology(leaf);
     v.split_topology = up(topology_, topology);
   }
   int64_t vertices() const { return position_.size(); }
@@ -121,7 +116,6 @@ private:
     return store.data();
   }
   Backend& b_;
-  const contour::Complex& c_;
   Array<float> grid_, value_, distance_;
   Array<Vec3i> key_, point_;
   Array<int64_t> block_;

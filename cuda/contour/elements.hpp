@@ -21,12 +21,9 @@ class ElementMaker {
 public:
   explicit ElementMaker(Backend& b) : b_(b) {}
 
-  /// Always the same complex.
   contour::Elements operator()(const contour::Complex& complex, bool inside, bool outside) {
-    if (complex_)
-      complex_->update();
-    else
-      complex_ = std::make_unique<DeviceComplex<Backend>>(b_, complex);
+    complex_.reset();
+    complex_ = std::make_unique<DeviceComplex<Backend>>(b_, complex);
     contour::Elements out;
     out.position = complex.position;
     MoreVertices more;

@@ -27,8 +27,7 @@ struct Summary {
   int64_t dropped_parts = 0, filled_cavities = 0;
 };
 
-/// Makes the elements of a complex: make_elements, or what does the same on a device. Called for one complex, again
-/// after each change of it.
+/// Makes the elements of a complex: make_elements, or what does the same on a device.
 using ElementFunction = std::function<Elements(const Complex&, bool inside, bool outside, int threads)>;
 
 /// on_phase is called with the name of each phase as it starts. Throws Error(failed) when the grid has no surface
