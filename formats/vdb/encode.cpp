@@ -288,18 +288,25 @@ void write(std::ostream& out, const GridFrame& frame, const FieldInfo& info, con
   out.write(head.str().data(), static_cast<std::streamsize>(head.str().size()));
 
   std::erase_if(entry, [](const Entry& e) { return e.leaf < 0; });
-  constexpr int64_t per_part = 256, parts_at_once = 256;
+  constexpr int64_t per_part = 256, parts_at_once = 64;
   const int64_t parts = (n + per_part - 1) / per_part;
-  for (int64_t first = 0; first < parts && out; first += parts_at_once) {
-    std::vector<Bytes> part(static_cast<size_t>(std::min(parts_at_once, parts - first)));
-    par::for_n(static_cast<int64_t>(part.size()), threads, 1, [&](int64_t p) {
-      const int64_t begin = (first + p) * per_part;
+  std::vector<Bytes> ready, next;
+  for (int64_t first = 0; (first < parts || !ready.empty()) && out; first += parts_at_once) {
+    next.assign(static_cast<size_t>(std::clamp<int64_t>(parts - first, 0, parts_at_once)), {});
+    // One task writes what the last round compressed.
+    par::for_n(static_cast<int64_t>(next.size()) + 1, threads, 1, [&](int64_t task) {
+      if (task == 0) {
+        for (const Bytes& b : ready)
+          out.write(b.str().data(), static_cast<std::streamsize>(b.str().size()));
+        return;
+      }
+      const int64_t begin = (first + task - 1) * per_part;
       for (int64_t i = begin; i < std::min(n, begin + per_part); ++i)
-        with_leaf(entry[static_cast<size_t>(i)].leaf,
-                  [&](const LeafView& leaf) { write_leaf(part[static_cast<size_t>(p)], leaf, inside_value); });
+        with_leaf(entry[static_cast<size_t>(i)].leaf, [&](const LeafView& leaf) {
+          write_leaf(next[static_cast<size_t>(task - 1)], leaf, inside_value);
+        });
     });
-    for (const Bytes& b : part)
-      out.write(b.str().data(), static_cast<std::streamsize>(b.str().size()));
+    ready.swap(next);
   }
 }
 
