@@ -30,7 +30,7 @@ public:
   std::vector<LargeArray<float>> release() { return std::move(chunk_); }
 
 private:
-  static constexpr size_t size = size_t{1} << 21; // 8 MiB: large pages
+  static constexpr size_t size = size_t{1} << 21; // 8 MiB
   std::vector<LargeArray<float>> chunk_;
   size_t current_ = 0, used_ = 0;
 };
