@@ -151,6 +151,8 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   const Components parts = find_components(complex, elements, region_options);
   on_phase("assembly");
   TetMesh mesh = assemble(elements, parts, options);
+  if (mesh.tet.empty())
+    fail(Status::failed, "the region asked for has no part in the box: nothing to mesh");
   mesh.isovalue = grid.info.isovalue;
   mesh.source = grid.info.source;
 

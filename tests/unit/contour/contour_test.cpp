@@ -329,6 +329,19 @@ TEST_CASE("boxes: exact walls, a cut through the molecule, few elements far away
     CHECK(v.high == options.box.upper);
     CHECK(region_volume(v, molecule) > 20);
   }
+  SECTION("a box that misses the surface") {
+    options.box.lower = {100, -9, -9};
+    options.box.upper = {120, 9, 9};
+    CHECK_THROWS_WITH(mesh_of(grid, options), Catch::Contains("expected a box that meets the surface"));
+    options.box.lower = {-9, -9, -120};
+    options.box.upper = {9, 9, -100};
+    CHECK_THROWS_AS(mesh_of(grid, options), Error);
+    options.box.lower = {-1, -1, -1}; // within the molecule
+    options.box.upper = {1.5, 1, 1.2};
+    CHECK(region_volume(checked(mesh_of(grid, options)), molecule) == Approx(2.5 * 2 * 2.2));
+    options.meshed = Options::exterior;
+    CHECK_THROWS_WITH(mesh_of(grid, options), Catch::Contains("nothing to mesh"));
+  }
   SECTION("a far box") {
     options.box.kind = contour::BoxRequest::factor;
     options.box.scale = 3;
