@@ -70,10 +70,10 @@ Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls)
     }
   }
   for (int a = 0; a < 3; ++a)
-    if (const double low = frame.position(first)[a], high = frame.position(last)[a];
+    if (const double low = frame.position(frame.lower)[a], high = frame.position(grid_last)[a];
         !(lower[a] < high && upper[a] > low))
       fail(Status::usage, "--box: found " + std::to_string(lower[a]) + " to " + std::to_string(upper[a]) +
-                              " Å along " + "xyz"[a] + ", expected a box that meets the surface, from " +
+                              " Å along " + "xyz"[a] + ", expected a box that meets the grid, from " +
                               std::to_string(low) + " to " + std::to_string(high));
   const double h = frame.spacing;
   double least = 1e300;

@@ -329,10 +329,10 @@ TEST_CASE("boxes: exact walls, a cut through the molecule, few elements far away
     CHECK(v.high == options.box.upper);
     CHECK(region_volume(v, molecule) > 20);
   }
-  SECTION("a box that misses the surface") {
+  SECTION("a box that misses the grid") {
     options.box.lower = {100, -9, -9};
     options.box.upper = {120, 9, 9};
-    CHECK_THROWS_WITH(mesh_of(grid, options), Catch::Contains("expected a box that meets the surface"));
+    CHECK_THROWS_WITH(mesh_of(grid, options), Catch::Contains("expected a box that meets the grid"));
     options.box.lower = {-9, -9, -120};
     options.box.upper = {9, 9, -100};
     CHECK_THROWS_AS(mesh_of(grid, options), Error);
