@@ -1,6 +1,7 @@
 // split_cell.hpp — a fine cell with more than one sheet of the surface, in pieces. Host and device.
 #pragma once
 #include "contour/cube.hpp"
+#include <cstddef>
 
 namespace molmesh::contour {
 
