@@ -6,10 +6,9 @@ Needs VTK's Python module (Debian: python3-vtk9) and a display (`xvfb-run -a doc
 """
 import sys
 import numpy as np
+import panels
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-
-PANEL, HEIGHT = 440, 420
 
 
 def atoms(path, level, name):
@@ -23,24 +22,6 @@ def atoms(path, level, name):
             positions.append([float(x) for x in field[3:6]])
             inside.append(within)
     return np.array(positions), np.array(inside)
-
-
-def surface(path):
-    """The triangles with boundary = 1."""
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(path)
-    only = vtk.vtkThreshold()
-    only.SetInputConnection(reader.GetOutputPort())
-    only.SetInputArrayToProcess(0, 0, 0, vtk.vtkDataObject.FIELD_ASSOCIATION_CELLS, "boundary")
-    only.SetLowerThreshold(1)
-    only.SetUpperThreshold(1)
-    triangles = vtk.vtkDataSetSurfaceFilter()
-    triangles.SetInputConnection(only.GetOutputPort())
-    normals = vtk.vtkPolyDataNormals()
-    normals.SetInputConnection(triangles.GetOutputPort())
-    normals.SplittingOff()
-    normals.Update()
-    return normals.GetOutput()
 
 
 def paint(mesh, positions, inside):
@@ -57,48 +38,15 @@ def paint(mesh, positions, inside):
     array = numpy_to_vtk(colours, deep=True)
     array.SetName("colour")
     mesh.GetPointData().SetScalars(array)
+    return mesh
 
 
 def main():
     if len(sys.argv) < 6 or len(sys.argv) % 2 != 0:
         sys.exit(__doc__)
     image, level, name = sys.argv[1:4]
-    panels = list(zip(sys.argv[4::2], sys.argv[5::2]))
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetSize(PANEL * len(panels), HEIGHT)
-    window.SetMultiSamples(8)
-    camera = None
-    for k, (path, hier) in enumerate(panels):
-        mesh = surface(path)
-        paint(mesh, *atoms(hier, level, name))
-        mapper = vtk.vtkPolyDataMapper()
-        mapper.SetInputData(mesh)
-        shown = vtk.vtkActor()
-        shown.SetMapper(mapper)
-        shown.GetProperty().SetSpecular(0.15)
-        shown.GetProperty().SetAmbient(0.1)
-        renderer = vtk.vtkRenderer()
-        renderer.SetBackground(1, 1, 1)
-        renderer.SetViewport(k / len(panels), 0, (k + 1) / len(panels), 1)
-        renderer.AddActor(shown)
-        if camera is None:  # the same view for all
-            renderer.ResetCamera()
-            camera = renderer.GetActiveCamera()
-            camera.Elevation(-65)
-            camera.Roll(20)
-            renderer.ResetCamera()
-            camera.Zoom(1.45)
-        renderer.SetActiveCamera(camera)
-        renderer.ResetCameraClippingRange()
-        window.AddRenderer(renderer)
-    window.Render()
-    grab = vtk.vtkWindowToImageFilter()
-    grab.SetInput(window)
-    writer = vtk.vtkPNGWriter()
-    writer.SetFileName(image)
-    writer.SetInputConnection(grab.GetOutputPort())
-    writer.Write()
+    meshes = [paint(panels.surface(path), *atoms(hier, level, name)) for path, hier in zip(sys.argv[4::2], sys.argv[5::2])]
+    panels.draw(meshes, image, ambient=0.1)
 
 
 main()
