@@ -34,15 +34,7 @@ public:
   }
 
   density::Band run(density::SearchCounts& counts) {
-    density::Band band;
-    band.frame = frame_.grid;
-    band.info.isovalue = o_.isovalue;
-    band.info.decay = field_.decay;
-    band.info.band_lower = o_.band_lower;
-    band.info.band_upper = o_.band_upper;
-    band.info.tolerance = o_.tolerance;
-    band.info.inside_value = static_cast<float>(std::max(2 * o_.isovalue, o_.band_upper));
-    band.info.atoms = field_.atoms();
+    density::Band band = density::empty_band(field_, frame_.grid, o_);
     find_nodes();
     std::optional<SlabResult> before;
     std::vector<SlabRange> todo = plan();

@@ -18,6 +18,7 @@
 #include "geom/hd.hpp"
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace molmesh::cuda {
@@ -56,6 +57,36 @@ struct OutOfRoom : Error {
   OutOfRoom(int64_t asked, int64_t room)
       : Error(Status::failed, "not enough memory on the device: " + std::to_string((asked >> 20) + 1) +
                                   " MiB more were needed, " + std::to_string(room >> 20) + " MiB are free") {}
+};
+
+/// n elements of a backend's memory. Owner: void* take(bytes), give_back(pointer, bytes) noexcept.
+template <class Owner, class T>
+class OwnedArray {
+public:
+  OwnedArray() = default;
+  OwnedArray(Owner& owner, int64_t n) : owner_(&owner), n_(n), data_(static_cast<T*>(owner.take(bytes()))) {}
+  OwnedArray(OwnedArray&& o) noexcept { swap(o); }
+  OwnedArray& operator=(OwnedArray&& o) noexcept {
+    OwnedArray(std::move(o)).swap(*this);
+    return *this;
+  }
+  ~OwnedArray() {
+    if (owner_)
+      owner_->give_back(data_, bytes());
+  }
+  T* data() const { return data_; }
+  int64_t size() const { return n_; }
+
+private:
+  int64_t bytes() const { return n_ * static_cast<int64_t>(sizeof(T)); }
+  void swap(OwnedArray& o) noexcept {
+    std::swap(owner_, o.owner_);
+    std::swap(n_, o.n_);
+    std::swap(data_, o.data_);
+  }
+  Owner* owner_ = nullptr;
+  int64_t n_ = 0;
+  T* data_ = nullptr;
 };
 
 /// Adds to the entry of that name, made when new.

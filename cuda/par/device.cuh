@@ -100,33 +100,7 @@ public:
   DeviceBackend& operator=(const DeviceBackend&) = delete;
 
   template <class T>
-  class Array {
-  public:
-    Array() = default;
-    Array(DeviceBackend& owner, int64_t n) : owner_(&owner), n_(n) { data_ = static_cast<T*>(owner.take(bytes())); }
-    Array(Array&& o) noexcept { swap(o); }
-    Array& operator=(Array&& o) noexcept {
-      Array(std::move(o)).swap(*this);
-      return *this;
-    }
-    ~Array() {
-      if (owner_)
-        owner_->give_back(data_, bytes());
-    }
-    T* data() const { return data_; }
-    int64_t size() const { return n_; }
-
-  private:
-    int64_t bytes() const { return n_ * static_cast<int64_t>(sizeof(T)); }
-    void swap(Array& o) noexcept {
-      std::swap(owner_, o.owner_);
-      std::swap(n_, o.n_);
-      std::swap(data_, o.data_);
-    }
-    DeviceBackend* owner_ = nullptr;
-    int64_t n_ = 0;
-    T* data_ = nullptr;
-  };
+  using Array = OwnedArray<DeviceBackend, T>;
 
   /// A copy on its way to page-locked memory.
   template <class T>
@@ -261,6 +235,8 @@ public:
   }
 
 private:
+  template <class, class>
+  friend class cuda::OwnedArray;
   struct Launch {
     const char* name;
     detail::Event begin, end;

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cstring>
 #include <limits>
-#include <memory>
+#include <new>
 #include <numeric>
 
 namespace molmesh::cuda {
@@ -20,36 +20,7 @@ public:
   HostBackend& operator=(const HostBackend&) = delete;
 
   template <class T>
-  class Array {
-  public:
-    Array() = default;
-    Array(HostBackend& owner, int64_t n) : owner_(&owner), n_(n) {
-      owner.take(bytes());
-      data_.reset(new T[static_cast<size_t>(n)]);
-    }
-    Array(Array&& o) noexcept { swap(o); }
-    Array& operator=(Array&& o) noexcept {
-      Array(std::move(o)).swap(*this);
-      return *this;
-    }
-    ~Array() {
-      if (owner_)
-        owner_->used_ -= bytes();
-    }
-    T* data() const { return data_.get(); }
-    int64_t size() const { return n_; }
-
-  private:
-    int64_t bytes() const { return n_ * static_cast<int64_t>(sizeof(T)); }
-    void swap(Array& o) noexcept {
-      std::swap(owner_, o.owner_);
-      std::swap(n_, o.n_);
-      std::swap(data_, o.data_);
-    }
-    HostBackend* owner_ = nullptr;
-    int64_t n_ = 0;
-    std::unique_ptr<T[]> data_;
-  };
+  using Array = OwnedArray<HostBackend, T>;
 
   template <class T>
   class Pending {
@@ -134,11 +105,19 @@ public:
   std::vector<KernelTime> times() { return times_; }
 
 private:
-  void take(int64_t bytes) {
+  template <class, class>
+  friend class cuda::OwnedArray;
+  void* take(int64_t bytes) {
     if (bytes > room())
       throw OutOfRoom(bytes, room());
+    void* p = ::operator new(static_cast<size_t>(bytes));
     used_ += bytes;
     most_ = std::max(most_, used_);
+    return p;
+  }
+  void give_back(void* p, int64_t bytes) noexcept {
+    used_ -= bytes;
+    ::operator delete(p);
   }
   template <class F>
   void timed(const char* name, const Work& work, F&& f) {

@@ -59,6 +59,19 @@ void for_each_element(const Groups& surfaces, const Groups& volumes, Write write
       write(++number, 3, tag, c);
 }
 
+/// The points of a triangle (dimension 2) or a tetrahedron, and the end of its line.
+void put_corners(TextOut& out, const TetMesh& m, int dimension, size_t c) {
+  const auto put_all = [&](const auto& cell) {
+    for (const int32_t p : cell)
+      out << ' ' << p + 1;
+  };
+  if (dimension == 2)
+    put_all(m.tri[c]);
+  else
+    put_all(m.tet[c]);
+  out << '\n';
+}
+
 void write_mesh_2_2(TextOut& out, const TetMesh& m, const Groups& surfaces, const Groups& volumes) {
   out << "$Nodes\n" << m.point.size() << '\n';
   for (size_t p = 0; p < m.point.size(); ++p) {
@@ -69,13 +82,7 @@ void write_mesh_2_2(TextOut& out, const TetMesh& m, const Groups& surfaces, cons
   out << "$EndNodes\n$Elements\n" << m.tri.size() + m.tet.size() << '\n';
   for_each_element(surfaces, volumes, [&](size_t number, int dimension, int32_t tag, size_t c) {
     out << number << (dimension == 2 ? " 2 2 " : " 4 2 ") << tag << ' ' << tag;
-    if (dimension == 2)
-      for (const int32_t p : m.tri[c])
-        out << ' ' << p + 1;
-    else
-      for (const int32_t p : m.tet[c])
-        out << ' ' << p + 1;
-    out << '\n';
+    put_corners(out, m, dimension, c);
   });
   out << "$EndElements" << '\n';
 }
@@ -115,13 +122,7 @@ void write_mesh_4_1(TextOut& out, const TetMesh& m, const Groups& surfaces, cons
       open_tag = tag;
     }
     out << number;
-    if (dimension == 2)
-      for (const int32_t p : m.tri[c])
-        out << ' ' << p + 1;
-    else
-      for (const int32_t p : m.tet[c])
-        out << ' ' << p + 1;
-    out << '\n';
+    put_corners(out, m, dimension, c);
   });
   out << "$EndElements" << '\n';
 }

@@ -10,13 +10,6 @@
 namespace molmesh::contour {
 
 using detail::at;
-namespace {
-
-Vec3i corner_step(int c) {
-  return {c & 1, c >> 1 & 1, c >> 2};
-}
-
-} // namespace
 
 Complex::Complex(const Lattice& l, const Octree& t, const std::vector<SurfaceCell>& c,
                  const std::vector<SurfaceSample>& surface, int threads)

@@ -2,6 +2,7 @@
 #include "contour/components.hpp"
 #include "contour/detail/at.hpp"
 #include "geom/tet_measures.hpp"
+#include "par/par.hpp"
 #include <algorithm>
 #include <numeric>
 
@@ -78,8 +79,7 @@ void assign_regions(Components& found, const Elements& elements, const RegionOpt
     if (elements.boundary[t] == surface)
       next_to.push_back(
           {found.of_vertex[at(elements.tri_sides[t][0])], found.of_vertex[at(elements.tri_sides[t][1])]});
-  std::sort(next_to.begin(), next_to.end());
-  next_to.erase(std::unique(next_to.begin(), next_to.end()), next_to.end());
+  par::sort_unique(next_to, 1);
   for (size_t i = 0; i < dropped.size(); ++i)
     if (dropped[i])
       found.component[i].region = cavity;

@@ -81,8 +81,7 @@ std::vector<int32_t> spoiling_vertices(const Complex& complex, const std::vector
   const bool none = spoiling.empty();
   for (int32_t v = 0; (all || none) && v < complex.grid_vertices; ++v)
     add(v);
-  std::sort(spoiling.begin(), spoiling.end());
-  spoiling.erase(std::unique(spoiling.begin(), spoiling.end()), spoiling.end());
+  par::sort_unique(spoiling, 1);
   if (spoiling.empty())
     fail(Status::failed, "contour: an element of unmoved boxes has no volume");
   return spoiling;

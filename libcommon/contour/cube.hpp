@@ -2,17 +2,19 @@
 // Section 4.1 of Liao et al. 2013 (ambiguous cells, their reference 51).
 #pragma once
 #include "geom/hd.hpp"
+#include "geom/vec.hpp"
 #include <array>
 #include <cstdint>
 
 namespace molmesh::contour {
 
-/// Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2 & 1). Faces: 0..5 = -x, +x, -y, +y, -z, +z.
-/// Corners of each face, counter-clockwise seen from outside the cell.
-inline constexpr int face_corner[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                          {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+/// Corner c of a cell lies here, from its lower corner.
+constexpr Vec3i corner_step(int c) {
+  return {c & 1, c >> 1 & 1, c >> 2 & 1};
+}
 
-/// The same as a function: a device cannot see the table.
+/// Corner i of face f, counter-clockwise seen from outside the cell. Faces: 0..5 = -x, +x, -y, +y, -z, +z.
+/// A function: a device cannot see the table below.
 HD constexpr int face_corner_of(int f, int i) {
   return (f == 0   ? 0x2640
           : f == 1 ? 0x5731
@@ -23,6 +25,19 @@ HD constexpr int face_corner_of(int f, int i) {
              (4 * i) &
          7;
 }
+
+/// The same as a table.
+struct FaceCorners {
+  int corner[6][4];
+  constexpr const int* operator[](int f) const { return corner[f]; }
+};
+inline constexpr FaceCorners face_corner = [] {
+  FaceCorners table{};
+  for (int f = 0; f < 6; ++f)
+    for (int i = 0; i < 4; ++i)
+      table.corner[f][i] = face_corner_of(f, i);
+  return table;
+}();
 
 /// No diagonal, or the one from face_corner[f][0] to [2] (even), or from [1] to [3] (odd).
 enum class Diagonal : uint8_t { none, even, odd };

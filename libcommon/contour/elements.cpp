@@ -103,11 +103,6 @@ void add_rings(const Complex& complex, std::vector<Link>& links, const bool want
   join(batches, out, none, wall, threads);
 }
 
-void sort_unique(std::vector<int32_t>& v) {
-  std::sort(v.begin(), v.end());
-  v.erase(std::unique(v.begin(), v.end()), v.end());
-}
-
 /// [grid vertices] flags the corners of the leaves.
 std::vector<uint8_t> corners(const Complex& complex, const std::vector<int32_t>& leaves) {
   std::vector<uint8_t> flag(at(complex.grid_vertices), 0);
@@ -137,7 +132,7 @@ std::vector<int32_t> spoiled_of(const Complex& complex, const std::vector<int32_
     links.erase(std::remove_if(links.begin(), links.end(), partial), links.end());
   }
   add_rings(complex, links, none, out, wall, threads);
-  sort_unique(out.spoiled);
+  par::sort_unique(out.spoiled, threads);
   return std::move(out.spoiled);
 }
 
@@ -171,7 +166,7 @@ Elements make_elements(const Complex& complex, bool inside, bool outside, int th
   out.face_points = static_cast<int64_t>(wall.size());
   add_rings(complex, links, wanted, out, wall, threads);
   out.edge_points = static_cast<int64_t>(wall.size()) - out.face_points;
-  sort_unique(out.spoiled);
+  par::sort_unique(out.spoiled, threads);
   return out;
 }
 

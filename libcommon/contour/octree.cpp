@@ -8,11 +8,6 @@
 namespace molmesh::contour {
 namespace {
 
-void sort_unique(std::vector<uint64_t>& keys, int threads) {
-  par::sort(keys, threads);
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-}
-
 /// std::popcount is a call into a table where the processor's own instruction may not be assumed.
 int popcount(uint64_t x) {
   x -= x >> 1 & 0x5555555555555555u;
@@ -99,9 +94,9 @@ Octree::Octree(Vec3i cells, int top_level, const Refine& refine, int threads) : 
         for (p[c] = 0; p[c] < n[c]; ++p[c])
           here.push_back(morton(p));
     }
-    sort_unique(here, threads);
+    par::sort_unique(here, threads);
     refine(l, here);
-    sort_unique(here, threads);
+    par::sort_unique(here, threads);
     if (l < top_level)
       append_parents_of_neighbours(here, nodes_per_axis(l + 1), refined[static_cast<size_t>(l) + 1]);
   }

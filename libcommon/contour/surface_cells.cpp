@@ -1,5 +1,6 @@
 // surface_cells.cpp — one pass over the blocks; walls that cut the grid get a pass of their own.
 #include "contour/surface_cells.hpp"
+#include "contour/cube.hpp"
 #include "error.hpp"
 #include "geom/morton.hpp"
 #include "par/par.hpp"
@@ -34,10 +35,6 @@ bool crossed(const float value[8], float isovalue) {
   return inside != 0 && inside != 8;
 }
 
-Vec3i corner_of(Vec3i p, int c) {
-  return p + Vec3i{c & 1, c >> 1 & 1, c >> 2};
-}
-
 } // namespace
 
 std::vector<SurfaceCell> surface_cells(const Lattice& lattice, int threads) {
@@ -70,7 +67,7 @@ std::vector<SurfaceCell> surface_cells(const Lattice& lattice, int threads) {
           if (!within(q) || on_cut(q))
             continue;
           for (int c = 0; c < 8; ++c)
-            if (!is_active(grid, lattice.index(), corner_of(p, c)))
+            if (!is_active(grid, lattice.index(), p + corner_step(c)))
               fail_input(
                   "the density at index " + std::to_string(p.x) + " " + std::to_string(p.y) + " " +
                   std::to_string(p.z) +
@@ -101,7 +98,7 @@ std::vector<SurfaceCell> surface_cells(const Lattice& lattice, int threads) {
             SurfaceCell cell;
             cell.key = morton(p);
             for (int k = 0; k < 8; ++k)
-              cell.value[k] = lattice.value(corner_of(p, k));
+              cell.value[k] = lattice.value(p + corner_step(k));
             if (crossed(cell.value, lattice.isovalue))
               all.push_back(cell);
           }

@@ -95,8 +95,7 @@ void add_needed(const SlabState& before, SlabState& slab, const SlabState& after
                    [&](Vec3i c) { return c.x == slab.x; });
   if (needed.empty())
     return;
-  std::sort(needed.begin(), needed.end());
-  needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
+  par::sort_unique(needed, 1);
   for (const Vec3i& c : needed)
     slab.node.emplace_back().corner = c;
   std::sort(slab.node.begin(), slab.node.end(),

@@ -261,15 +261,7 @@ void Search::finish_slab(const SlabState& before, SlabState& slab, const SlabSta
 
 /// Slab by slab of nodes along x, so that only two slabs hold the values of all their points.
 Band Search::run(SearchCounts& counts) {
-  Band band;
-  band.frame = frame_;
-  band.info.isovalue = o_.isovalue;
-  band.info.decay = f_.decay;
-  band.info.band_lower = o_.band_lower;
-  band.info.band_upper = o_.band_upper;
-  band.info.tolerance = o_.tolerance;
-  band.info.inside_value = static_cast<float>(std::max(2 * o_.isovalue, o_.band_upper));
-  band.info.atoms = f_.atoms();
+  Band band = empty_band(f_, frame_, o_);
   nodes_ = o_.atoms == AtomSearch::kdtree ? nodes_by_tree(f_, frame_, o_.full, o_.threads)
                                           : nodes_by_halving(f_, frame_, o_.full, o_.threads);
   band.block.reserve(blocks_a_node * nodes_.node.size()); // address space; pages come when they are used
@@ -303,6 +295,19 @@ Band Search::run(SearchCounts& counts) {
 }
 
 } // namespace
+
+Band empty_band(const Field& f, const GridFrame& frame, const SearchOptions& o) {
+  Band band;
+  band.frame = frame;
+  band.info.isovalue = o.isovalue;
+  band.info.decay = f.decay;
+  band.info.band_lower = o.band_lower;
+  band.info.band_upper = o.band_upper;
+  band.info.tolerance = o.tolerance;
+  band.info.inside_value = static_cast<float>(std::max(2 * o.isovalue, o.band_upper));
+  band.info.atoms = f.atoms();
+  return band;
+}
 
 Budget budget_for(const SearchOptions& o) {
   Budget b(o.tolerance);

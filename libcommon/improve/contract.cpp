@@ -1,5 +1,6 @@
 // contract.cpp — an edge shrinks to one of its ends; surfaces and walls keep their shape and topology.
 #include "improve/editor.hpp"
+#include "par/par.hpp"
 #include <algorithm>
 
 namespace molmesh::improve {
@@ -24,8 +25,7 @@ bool Editor::surface_link_holds(int32_t a, int32_t b, const Ring& r) {
             out.push_back(e.v[k]);
       }
     }
-    std::sort(out.begin(), out.end());
-    out.erase(std::unique(out.begin(), out.end()), out.end());
+    par::sort_unique(out, 1);
   };
   for (const int32_t t : star_)
     for (const int32_t v : m_.element[size_t(t)].v)

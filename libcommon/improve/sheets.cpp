@@ -26,83 +26,30 @@ SheetTriangle sheet_triangle(const std::vector<Vec3d>& point, std::array<int32_t
   return t;
 }
 
-int64_t Sheets::find(int64_t face) const {
-  if (face_table_.empty())
-    return -1;
-  const size_t mask = face_table_.size() - 1;
-  for (size_t i = size_t(mix(uint64_t(face))) & mask; face_table_[i].face >= 0; i = (i + 1) & mask)
-    if (face_table_[i].face == face)
-      return static_cast<int64_t>(i);
-  return -1;
-}
-
-Sheets::Known& Sheets::known(int64_t face) {
-  const auto place = [&](int64_t f) {
-    const size_t mask = face_table_.size() - 1;
-    size_t i = size_t(mix(uint64_t(f))) & mask;
-    while (face_table_[i].face >= 0 && face_table_[i].face != f)
-      i = (i + 1) & mask;
-    return i;
-  };
-  if (2 * (faces_ + 1) > face_table_.size()) {
-    std::vector<Known> old(std::max<size_t>(64, 4 * face_table_.size()));
-    old.swap(face_table_);
-    for (const Known& k : old)
-      if (k.face >= 0)
-        face_table_[place(k.face)] = k;
-  }
-  Known& k = face_table_[place(face)];
-  if (k.face < 0)
-    ++faces_;
-  k.face = face;
-  return k;
-}
-
-void Sheets::put(uint64_t key, int32_t triangle) {
-  const auto place = [&](uint64_t k) {
-    const size_t mask = cell_table_.size() - 1;
-    size_t i = size_t(k) & mask;
-    while (cell_table_[i].chain >= 0 && cell_table_[i].key != k)
-      i = (i + 1) & mask;
-    return i;
-  };
-  if (2 * (cells_ + 1) > cell_table_.size()) {
-    std::vector<Cell> old(std::max<size_t>(64, 4 * cell_table_.size()));
-    old.swap(cell_table_);
-    for (const Cell& c : old)
-      if (c.chain >= 0)
-        cell_table_[place(c.key)] = c;
-  }
-  Cell& c = cell_table_[place(key)];
-  if (c.chain < 0)
-    ++cells_;
-  c.key = key;
-  link_.push_back({triangle, c.chain});
-  c.chain = static_cast<int32_t>(link_.size() - 1);
-}
-
 void Sheets::insert(const SheetTriangle& t) {
   erase(t.face);
   const auto id = static_cast<int32_t>(triangle_.size());
   triangle_.push_back(t);
-  known(t.face).triangle = id;
+  face_[uint64_t(t.face)] = id;
   ++alive_;
-  for_cells(t, [&](uint64_t key) { put(key, id); });
+  for_cells(t, [&](uint64_t key) {
+    int32_t& chain = chain_[key];
+    link_.push_back({id, chain});
+    chain = static_cast<int32_t>(link_.size() - 1);
+  });
 }
 
 void Sheets::erase(int64_t face) {
-  Known& k = known(face);
-  if (k.triangle < 0)
+  int32_t& triangle = face_[uint64_t(face)];
+  if (triangle < 0)
     return;
-  triangle_[size_t(k.triangle)].v[0] = -1;
-  k.triangle = -1;
+  triangle_[size_t(triangle)].v[0] = -1;
+  triangle = -1;
   --alive_;
 }
 
 void Sheets::merge(const Sheets& later) {
-  for (const Known& k : later.face_table_)
-    if (k.face >= 0)
-      erase(k.face);
+  later.face_.for_each_key([&](uint64_t face) { erase(int64_t(face)); });
   for (const SheetTriangle& t : later.triangle_)
     if (t.v[0] >= 0)
       insert(t);

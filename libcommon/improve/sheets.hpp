@@ -2,6 +2,7 @@
 // Nothing on the other side keeps such a triangle from crossing another sheet of the surface.
 #pragma once
 #include "geom/vec.hpp"
+#include "improve/open_table.hpp"
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -30,7 +31,7 @@ public:
   void insert(const SheetTriangle& t);
   void erase(int64_t face);
   /// Whether that face was ever inserted or erased here.
-  bool knows(int64_t face) const { return find(face) >= 0; }
+  bool knows(int64_t face) const { return face_.find(uint64_t(face)) != nullptr; }
   /// Takes over what `later` knows.
   void merge(const Sheets& later);
   /// Drops what is no longer there.
@@ -44,29 +45,17 @@ public:
   bool any(const SheetTriangle& t, F&& f) const;
 
 private:
-  struct Cell {
-    uint64_t key = 0;
-    int32_t chain = -1;
-  };
   struct Link {
     int32_t triangle, next;
   };
-  struct Known {
-    int64_t face = -1;
-    int32_t triangle = -1; ///< -1: gone
-  };
   template <class F>
   void for_cells(const SheetTriangle& t, F&& f) const;
-  static uint64_t mix(uint64_t h) { return (h ^ h >> 29) * 0xBF58476D1CE4E5B9u >> 7; }
-  int64_t find(int64_t face) const;
-  Known& known(int64_t face);
-  void put(uint64_t key, int32_t triangle);
 
   double cell_;
   std::vector<SheetTriangle> triangle_;
-  size_t alive_ = 0, cells_ = 0, faces_ = 0;
-  std::vector<Cell> cell_table_;  ///< open addressing, a power of two; cells of one key share a chain
-  std::vector<Known> face_table_; ///< as well
+  size_t alive_ = 0;
+  OpenTable chain_; ///< of a cell: its first link, -1: none; cells of one key share a chain
+  OpenTable face_;  ///< of a face: its triangle, -1: gone
   std::vector<Link> link_;
 };
 
@@ -80,8 +69,8 @@ void Sheets::for_cells(const SheetTriangle& t, F&& f) const {
   for (int64_t i = low[0]; i <= high[0]; ++i)
     for (int64_t j = low[1]; j <= high[1]; ++j)
       for (int64_t k = low[2]; k <= high[2]; ++k)
-        f(mix(uint64_t(i) * 0x9E3779B97F4A7C15u + uint64_t(j) * 0xC2B2AE3D27D4EB4Fu +
-              uint64_t(k) * 0x165667B19E3779F9u));
+        f(uint64_t(i) * 0x9E3779B97F4A7C15u + uint64_t(j) * 0xC2B2AE3D27D4EB4Fu +
+          uint64_t(k) * 0x165667B19E3779F9u);
 }
 
 template <class F>
@@ -89,15 +78,11 @@ bool Sheets::any(const SheetTriangle& t, F&& f) const {
   bool found = false;
   if (alive_ > 0)
     for_cells(t, [&](uint64_t key) {
-      const size_t mask = cell_table_.size() - 1;
-      for (size_t i = size_t(key) & mask; !found && cell_table_[i].chain >= 0; i = (i + 1) & mask)
-        if (cell_table_[i].key == key) {
-          for (int32_t c = cell_table_[i].chain; c >= 0 && !found; c = link_[size_t(c)].next) {
-            const SheetTriangle& other = triangle_[size_t(link_[size_t(c)].triangle)];
-            found = other.v[0] >= 0 && f(other);
-          }
-          break;
-        }
+      const int32_t* first = chain_.find(key);
+      for (int32_t c = first ? *first : -1; c >= 0 && !found; c = link_[size_t(c)].next) {
+        const SheetTriangle& other = triangle_[size_t(link_[size_t(c)].triangle)];
+        found = other.v[0] >= 0 && f(other);
+      }
     });
   return found;
 }

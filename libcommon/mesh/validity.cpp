@@ -142,8 +142,7 @@ private:
     for (int32_t r : m_.region)
       if (names.empty() || r != names.back())
         names.push_back(r);
-    std::sort(names.begin(), names.end());
-    names.erase(std::unique(names.begin(), names.end()), names.end());
+    par::sort_unique(names, 1);
     const auto index = [&](int32_t region) {
       return static_cast<int32_t>(std::lower_bound(names.begin(), names.end(), region) - names.begin());
     };

@@ -99,4 +99,11 @@ void sort(std::vector<T>& v, int threads) {
   sort(v, threads, [](const T& a, const T& b) { return a < b; });
 }
 
+/// Ascending, each once.
+template <class T>
+void sort_unique(std::vector<T>& v, int threads) {
+  sort(v, threads);
+  v.erase(std::unique(v.begin(), v.end()), v.end());
+}
+
 } // namespace molmesh::par

@@ -12,6 +12,8 @@
 
 using namespace molmesh;
 using contour::Options;
+using test::atom;
+using test::cube_grid;
 
 namespace {
 
@@ -37,16 +39,6 @@ double region_volume(const Validity& v, int32_t region) {
     if (r.region == region)
       return r.volume;
   return 0;
-}
-
-/// G of one atom of radius 3 Å, κ = 0.3.
-double atom(Vec3d x) {
-  return std::exp(-0.3 * (norm2(x) - 9));
-}
-
-BlockGrid cube_grid(double half, double h, const std::function<double(Vec3d)>& f) {
-  const int n = static_cast<int>(std::ceil(half / h));
-  return test::sample_grid({-n, -n, -n}, {2 * n + 1, 2 * n + 1, 2 * n + 1}, h, 2, f);
 }
 
 /// Euler number of the trilinear isosurface without a mesh: twice that of its inside, which is the alternating sum
@@ -244,23 +236,8 @@ TEST_CASE("dust is dropped on request only") {
 
 TEST_CASE("random densities: always valid, ties with the isovalue among them") {
   std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> u(0, 2);
   for (int trial = 0; trial < 36; ++trial) {
-    const int n = 4 + trial % 4;
-    const bool ties = trial % 4 == 0, smooth = trial % 3 == 1;
-    std::vector<Vec3d> centre;
-    for (int i = 0; i < 8; ++i)
-      centre.push_back({u(random) * 3 - 3, u(random) * 3 - 3, u(random) * 3 - 3});
-    const BlockGrid grid = test::sample_grid({-n, -n, -n}, {2 * n + 1, 2 * n + 1, 2 * n + 1}, 1, 3, [&](Vec3d x) {
-      if (std::max({std::fabs(x.x), std::fabs(x.y), std::fabs(x.z)}) > n - 1.5)
-        return 0.1;
-      if (!smooth)
-        return ties ? std::floor(2 * u(random)) / 2 + 0.5 : u(random);
-      double sum = 0;
-      for (const Vec3d& c : centre)
-        sum += std::exp(0.3 - 0.5 * norm2(x - c));
-      return sum;
-    });
+    const BlockGrid grid = test::random_grid(random, trial);
     for (auto meshed : {Options::interior, Options::exterior, Options::both})
       for (double adapt : {0.0, 0.3}) {
         CAPTURE(trial, int(meshed), adapt);

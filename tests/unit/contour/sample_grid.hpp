@@ -1,9 +1,12 @@
 // sample_grid.hpp — density grids of any function, made the slow and obvious way.
 #pragma once
 #include "density/block_grid.hpp"
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
+#include <random>
+#include <vector>
 
 namespace molmesh::test {
 
@@ -78,6 +81,38 @@ inline BlockGrid sample_grid(Vec3i lower, Vec3i points, double spacing, double i
     }
   }
   return grid;
+}
+
+/// G of one atom of radius 3 Å, κ = 0.3.
+inline double atom(Vec3d x) {
+  return std::exp(-0.3 * (norm2(x) - 9));
+}
+
+/// The cube of points from about -half to half on each axis.
+inline BlockGrid cube_grid(double half, double h, const std::function<double(Vec3d)>& f) {
+  const int n = static_cast<int>(std::ceil(half / h));
+  return sample_grid({-n, -n, -n}, {2 * n + 1, 2 * n + 1, 2 * n + 1}, h, 2, f);
+}
+
+/// A small grid of rough or smooth noise, rough with values exactly at the isovalue among them or without, by turns
+/// of `trial`; the rim is outside.
+inline BlockGrid random_grid(std::mt19937_64& random, int trial) {
+  std::uniform_real_distribution<double> u(0, 2);
+  const int n = 4 + trial % 4;
+  const bool ties = trial % 4 == 0, smooth = trial % 3 == 1;
+  std::vector<Vec3d> centre;
+  for (int i = 0; i < 8; ++i)
+    centre.push_back({u(random) * 3 - 3, u(random) * 3 - 3, u(random) * 3 - 3});
+  return sample_grid({-n, -n, -n}, {2 * n + 1, 2 * n + 1, 2 * n + 1}, 1, 3, [&](Vec3d x) {
+    if (std::max({std::fabs(x.x), std::fabs(x.y), std::fabs(x.z)}) > n - 1.5)
+      return 0.1;
+    if (!smooth)
+      return ties ? std::floor(2 * u(random)) / 2 + 0.5 : u(random);
+    double sum = 0;
+    for (const Vec3d& c : centre)
+      sum += std::exp(0.3 - 0.5 * norm2(x - c));
+    return sum;
+  });
 }
 
 } // namespace molmesh::test

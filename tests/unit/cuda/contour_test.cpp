@@ -9,17 +9,10 @@
 
 using namespace molmesh;
 using contour::Options;
+using test::atom;
+using test::cube_grid;
 
 namespace {
-
-double atom(Vec3d x) {
-  return std::exp(-0.3 * (norm2(x) - 9));
-}
-
-BlockGrid cube_grid(double half, double h, const std::function<double(Vec3d)>& f) {
-  const int n = static_cast<int>(std::ceil(half / h));
-  return test::sample_grid({-n, -n, -n}, {2 * n + 1, 2 * n + 1, 2 * n + 1}, h, 2, f);
-}
 
 struct Seen {
   int64_t calls = 0, differ = 0, runs = 0, face_points = 0, edge_points = 0, spoiled = 0, most_used = 0;
@@ -69,24 +62,9 @@ Seen compare(const BlockGrid& grid, const Options& options, int threads = 1,
 
 TEST_CASE("device elements: the host's, one by one, on random densities with ambiguous cells and ties") {
   std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> u(0, 2);
   Seen sum;
   for (int trial = 0; trial < 24; ++trial) {
-    const int n = 4 + trial % 4;
-    const bool ties = trial % 4 == 0, smooth = trial % 3 == 1;
-    std::vector<Vec3d> centre;
-    for (int i = 0; i < 8; ++i)
-      centre.push_back({u(random) * 3 - 3, u(random) * 3 - 3, u(random) * 3 - 3});
-    const BlockGrid grid = test::sample_grid({-n, -n, -n}, {2 * n + 1, 2 * n + 1, 2 * n + 1}, 1, 3, [&](Vec3d x) {
-      if (std::max({std::fabs(x.x), std::fabs(x.y), std::fabs(x.z)}) > n - 1.5)
-        return 0.1;
-      if (!smooth)
-        return ties ? std::floor(2 * u(random)) / 2 + 0.5 : u(random);
-      double sum_of = 0;
-      for (const Vec3d& c : centre)
-        sum_of += std::exp(0.3 - 0.5 * norm2(x - c));
-      return sum_of;
-    });
+    const BlockGrid grid = test::random_grid(random, trial);
     for (auto meshed : {Options::interior, Options::exterior, Options::both})
       for (double adapt : {0.0, 0.3}) {
         CAPTURE(trial, int(meshed), adapt);

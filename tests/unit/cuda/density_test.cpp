@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 using namespace molmesh;
+using test::check_equal;
 
 namespace {
 
@@ -62,13 +63,6 @@ void check_same(const BlockGrid& a, const BlockGrid& b) {
   CHECK(other_value == 0);
   CHECK(other_side == 0);
   CHECK(differ * 10000 <= active); // limits that G meets within ε; check_complete looks at each
-}
-
-void check_equal(const BlockGrid& a, const BlockGrid& b) {
-  CHECK(a.corner == b.corner);
-  CHECK(a.value == b.value);
-  CHECK(a.active == b.active);
-  CHECK(a.inside == b.inside);
 }
 
 } // namespace

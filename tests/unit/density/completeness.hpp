@@ -74,4 +74,12 @@ inline void check_complete(const Hierarchy& h, const BlockGrid& g) {
   CHECK(wrong_value == 0);
 }
 
+/// The same contents to the last bit (I4).
+inline void check_equal(const BlockGrid& a, const BlockGrid& b) {
+  CHECK(a.corner == b.corner);
+  CHECK(a.value == b.value);
+  CHECK(a.active == b.active);
+  CHECK(a.inside == b.inside);
+}
+
 } // namespace molmesh::test

@@ -8,19 +8,13 @@
 #include <hwy/targets.h>
 
 using namespace molmesh;
+using test::check_equal;
 
 namespace {
 
 BlockGrid compute(const Hierarchy& h, const density::Options& o) {
   density::Counts counts;
   return density::to_block_grid(density::compute(h, o, counts), 1);
-}
-
-void check_equal(const BlockGrid& a, const BlockGrid& b) {
-  CHECK(a.corner == b.corner);
-  CHECK(a.value == b.value);
-  CHECK(a.active == b.active);
-  CHECK(a.inside == b.inside);
 }
 
 } // namespace

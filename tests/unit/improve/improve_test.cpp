@@ -10,14 +10,6 @@ using namespace molmesh::test;
 
 namespace {
 
-// G = Σ exp(-0.3 (|x - c|² - r²)): three atoms that overlap, no ambiguous cells at h = 0.5 Å.
-double three_atoms(Vec3d p) {
-  const Vec3d centre[] = {{4.1, 4.2, 4.3}, {5.6, 4.9, 4.0}, {5.2, 6.1, 5.5}};
-  double sum = 1e-30;
-  for (const Vec3d& c : centre)
-    sum += std::exp(-0.3 * (norm2(p - c) - 1.7 * 1.7));
-  return sum;
-}
 constexpr double h = 0.5;
 constexpr int n = 20;
 

@@ -1,0 +1,61 @@
+// open_table.hpp — 64-bit keys to small numbers, by open addressing; entries stay.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace molmesh::improve {
+
+class OpenTable {
+public:
+  /// The key's number; null when it was never asked for with [].
+  const int32_t* find(uint64_t key) const {
+    if (slot_.empty())
+      return nullptr;
+    const Slot& s = slot_[place(key)];
+    return s.used ? &s.number : nullptr;
+  }
+  /// -1 at first. Valid until the next call.
+  int32_t& operator[](uint64_t key) {
+    if (2 * (used_ + 1) > slot_.size()) {
+      std::vector<Slot> old(std::max<size_t>(64, 4 * slot_.size()));
+      old.swap(slot_);
+      for (const Slot& s : old)
+        if (s.used)
+          slot_[place(s.key)] = s;
+    }
+    Slot& s = slot_[place(key)];
+    if (!s.used) {
+      s = {key, -1, true};
+      ++used_;
+    }
+    return s.number;
+  }
+  /// f(key) for every key, in no order.
+  template <class F>
+  void for_each_key(F&& f) const {
+    for (const Slot& s : slot_)
+      if (s.used)
+        f(s.key);
+  }
+
+private:
+  struct Slot {
+    uint64_t key = 0;
+    int32_t number = -1;
+    bool used = false;
+  };
+  /// Where the key is or would go.
+  size_t place(uint64_t key) const {
+    const size_t mask = slot_.size() - 1;
+    size_t i = size_t((key ^ key >> 29) * 0xBF58476D1CE4E5B9u >> 7) & mask;
+    while (slot_[i].used && slot_[i].key != key)
+      i = (i + 1) & mask;
+    return i;
+  }
+  std::vector<Slot> slot_; ///< a power of two
+  size_t used_ = 0;
+};
+
+} // namespace molmesh::improve
