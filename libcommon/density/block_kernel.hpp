@@ -2,7 +2,7 @@
 // best instruction set of this machine (scalar, AVX2, AVX-512; chosen at run time). Error of a power: below 1e-6
 // relative.
 #pragma once
-#include "density/bounds_kernel.hpp"
+#include "density/units_kernel.hpp"
 
 namespace molmesh::density {
 

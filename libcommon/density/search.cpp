@@ -31,13 +31,18 @@ private:
   }
   SlabState find_slab(int32_t x);
   void work_through(const Node& node, NodeState& s, Workspace& w) const;
-  void work_through_block(int b, Vec3i corner, NodeState& s, const float** value, Workspace& w) const;
+  void work_through_block(int b, int octant, Vec3i corner, NodeState& s, const float** value, Workspace& w) const;
   void settle(NodeState& s, const float* const* value, Workspace& w) const;
   void need_neighbors(NodeState& s) const;
   void finish_slab(const SlabState& before, SlabState& slab, const SlabState& after, Band& band);
   void finish(NodeState& s, const NodeBits* const* below, const NodeBits* const* above, Workspace& w) const;
   void evaluate(Vec3i corner, Workspace& w) const;
   CellRange cells_of(Vec3i corner) const;
+  /// Å, of the points of a cube of blocks.
+  Vec3d middle_of(Vec3i corner, int32_t blocks) const {
+    const Box box = points_box(frame_, corner, blocks);
+    return 0.5 * (box.lo + box.hi);
+  }
   template <class F>
   void for_nodes(SlabState& slab, F&& work);
 
@@ -70,8 +75,7 @@ int64_t points_in_grid(const GridFrame& frame, Vec3i corner) {
 
 /// Values of a block from the selection made for it.
 void Search::evaluate(Vec3i corner, Workspace& w) const {
-  const Box box = points_box(frame_, corner, 1);
-  w.evaluator.evaluate(f_, w.selection, 0.5 * (box.lo + box.hi), frame_.spacing, w.value);
+  w.evaluator.evaluate(f_, w.selection, middle_of(corner, 1), frame_.spacing, w.value);
   if (dropped_bits_ > 0)
     round_values(w.value, dropped_bits_);
   ++w.counts.blocks_evaluated;
@@ -80,11 +84,11 @@ void Search::evaluate(Vec3i corner, Workspace& w) const {
   w.points += points_in_grid(frame_, 8 * corner);
 }
 
-void Search::work_through_block(int b, Vec3i corner, NodeState& s, const float** value, Workspace& w) const {
+void Search::work_through_block(int b, int octant, Vec3i corner, NodeState& s, const float** value,
+                                Workspace& w) const {
   const uint64_t bit = uint64_t{1} << b;
-  const Box box = points_box(frame_, corner, 1);
   ++w.counts.blocks_visited;
-  w.selection.select(0.5 * (box.lo + box.hi), 0.5 * (box.hi - box.lo), !o_.full);
+  w.selection.select(octant, !o_.full);
   if (w.selection.side == Side::inside)
     s.inside |= bit;
   if (w.selection.side != Side::mixed)
@@ -109,18 +113,16 @@ void Search::work_through(const Node& node, NodeState& s, Workspace& w) const {
   std::fill_n(&w.below.word[0][0], 8 * blocks_a_node, every_block);
   std::fill_n(&w.above.word[0][0], 8 * blocks_a_node, 0);
   const float* value[blocks_a_node] = {};
-  const Box all = points_box(frame_, node.corner, node_blocks);
-  w.selection.enter(0.5 * (all.lo + all.hi), nodes_.clusters(node));
+  w.selection.enter(middle_of(node.corner, node_blocks), nodes_.clusters(node));
   for (int octant = 0; octant < 8; ++octant) {
     const Vec3i part = 2 * Vec3i{octant >> 2, octant >> 1 & 1, octant & 1};
-    const Box box = points_box(frame_, node.corner + part, 2);
     if (!in_grid(frame_, node.corner + part) ||
-        (!w.selection.narrow(0.5 * (box.lo + box.hi), 0.5 * (box.hi - box.lo)) && !o_.full))
+        (!w.selection.narrow(middle_of(node.corner + part, 2), frame_.spacing) && !o_.full))
       continue;
     for (int i = 0; i < 8; ++i) {
       const Vec3i at = part + Vec3i{i >> 2, i >> 1 & 1, i & 1};
       if (in_grid(frame_, node.corner + at))
-        work_through_block(16 * at.x + 4 * at.y + at.z, node.corner + at, s, value, w);
+        work_through_block(16 * at.x + 4 * at.y + at.z, i, node.corner + at, s, value, w);
     }
   }
   settle(s, value, w);
@@ -220,15 +222,14 @@ void Search::finish(NodeState& s, const NodeBits* const* below, const NodeBits* 
     const float* value = s.known & bit ? s.sides->value[b] : nullptr;
     if (!value) {
       // Bounds left it out: its points are on corners of band cells, and lie where the bounds say.
-      const Box node = points_box(frame_, s.corner, node_blocks), box = points_box(frame_, corner, 1);
       if (!entered)
-        w.selection.enter(0.5 * (node.lo + node.hi), nodes_.clusters_at(s.corner));
+        w.selection.enter(middle_of(s.corner, node_blocks), nodes_.clusters_at(s.corner));
       entered = true;
-      const Vec3i in_node = block_at(b);
-      const Box part = points_box(frame_, s.corner + Vec3i{in_node.x & 2, in_node.y & 2, in_node.z & 2}, 2);
-      w.selection.narrow(0.5 * (part.lo + part.hi), 0.5 * (part.hi - part.lo));
+      const Vec3i in_node = block_at(b), part{in_node.x & 2, in_node.y & 2, in_node.z & 2},
+                  in_part = in_node - part;
+      w.selection.narrow(middle_of(s.corner + part, 2), frame_.spacing);
       ++w.counts.blocks_visited;
-      w.selection.select(0.5 * (box.lo + box.hi), 0.5 * (box.hi - box.lo), false);
+      w.selection.select(4 * in_part.x + 2 * in_part.y + in_part.z, false);
       evaluate(corner, w);
       value = w.value;
     }

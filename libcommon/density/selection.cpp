@@ -86,15 +86,35 @@ LocalBox Selection::local(Vec3d middle, Vec3d half) const {
   return b;
 }
 
-bool Selection::narrow(Vec3d middle, Vec3d half) {
-  const LocalBox part = local(middle, half);
+bool Selection::narrow(Vec3d middle, double h) {
+  part_middle_ = middle;
+  h_ = h;
+  octants_bounded_ = false;
+  const LocalBox part = local(middle, 7.5 * h * Vec3d{1, 1, 1});
   gather(part);
-  find_effects(part);
+  const auto room = static_cast<size_t>(near_.n) + 16;
+  if (effect_.size() < room)
+    for (std::vector<float>* v : {&upper_of_part_, &effect_})
+      v->resize(2 * room);
+  bound_units(near_, part, static_cast<float>(log2e * f_.decay), scaled_, upper_of_part_.data());
+  log2_upper_ = upper_of_part_.data();
+  find_effects();
   if (surely_outside())
     return false;
   drop(budget_.part);
   keep_only();
   return true;
+}
+
+/// octant_upper_, once a part.
+void Selection::bound_octants_of_part() {
+  stride_ = (near_.n + 31) & ~15;
+  if (octant_upper_.size() < static_cast<size_t>(8 * stride_))
+    octant_upper_.resize(static_cast<size_t>(16 * stride_));
+  for (int o = 0; o < 8; ++o)
+    octant_[o] = local(octant_middle(o), 3.5 * h_ * Vec3d{1, 1, 1});
+  bound_octants(near_, octant_, static_cast<float>(log2e * f_.decay), scaled_, octant_upper_.data(), stride_);
+  octants_bounded_ = true;
 }
 
 /// near_: the units of the clusters of the node that are near a part of it.
@@ -163,14 +183,9 @@ void Selection::keep_only() {
 }
 
 /// effect_: the most that dropping each unit can change G.
-void Selection::find_effects(const LocalBox& b) {
-  const auto n = static_cast<size_t>(near_.n);
-  if (log2_upper_.size() < n + 16)
-    for (std::vector<float>* v : {&log2_upper_, &effect_})
-      v->resize(2 * n + 16);
-  bound_units(near_, b, static_cast<float>(log2e * f_.decay), scaled_, log2_upper_.data());
+void Selection::find_effects() {
   if (f_.plain_above)
-    power_terms(log2_upper_.data(), near_.exponent.data(), near_.n, effect_.data());
+    power_terms(log2_upper_, near_.exponent.data(), near_.n, effect_.data());
   else
     find_effects_of_levels();
 }
@@ -185,10 +200,8 @@ void Selection::drop(double budget) {
         return most;
     return static_cast<float>(budget / std::max(1.0, near_.n * (1 + single)));
   }();
-  kept_.clear();
-  for (int32_t i = 0; i < near_.n; ++i)
-    if (effect_[static_cast<size_t>(i)] > limit)
-      kept_.push_back(i);
+  kept_.resize(static_cast<size_t>(near_.n) + 16);
+  kept_.resize(static_cast<size_t>(larger_than(effect_.data(), near_.n, limit, kept_.data())));
 }
 
 /// Units for arithmetic in single precision. False when it does not hold here.
@@ -208,24 +221,29 @@ bool Selection::take_single() {
   if (u.atom_x.size() < atom_room)
     for (std::vector<float>* v : {&u.atom_x, &u.atom_y, &u.atom_z, &u.atom_constant})
       v->resize(2 * atom_room);
-  if (!take_units(near_, kept_.data(), n, box, static_cast<float>(log2e * f_.decay), static_cast<float>(within_),
-                  u))
+  const bool absolute = f_.plain_above && budget_.within > 0;
+  if (!take_units(near_, kept_.data(), n, box, static_cast<float>(log2e * f_.decay),
+                  absolute ? log2_upper_ : nullptr, static_cast<float>(absolute ? budget_.within : within_), u))
     return false;
   units = n;
   atoms = u.begin[kept_.size()];
   return true;
 }
 
-void Selection::select(Vec3d middle, Vec3d half, bool classify) {
+void Selection::select(int octant, bool classify) {
   side = Side::mixed;
   arithmetic = least_;
-  box = local(middle, half);
-  find_effects(box);
+  if (!octants_bounded_)
+    bound_octants_of_part();
+  box = octant_[octant];
+  log2_upper_ = &octant_upper_[static_cast<size_t>(octant * stride_)];
+  find_effects();
   if (classify && surely_outside()) {
     side = Side::outside;
     return;
   }
   drop(budget_.block);
+  const Vec3d middle = octant_middle(octant), half = 3.5 * h_ * Vec3d{1, 1, 1};
   if (arithmetic == Arithmetic::in_single && !take_single())
     arithmetic = Arithmetic::in_double;
   if (arithmetic != Arithmetic::in_single)

@@ -1,8 +1,8 @@
 // selection.hpp — what matters in one block of 8³ grid points: the kept atoms, and bounds on G over the block.
 // Derivations in field.md.
 #pragma once
-#include "density/bounds_kernel.hpp"
 #include "density/field.hpp"
+#include "density/units_kernel.hpp"
 #include <span>
 #include <vector>
 
@@ -48,11 +48,12 @@ public:
 
   /// A node: the candidates for all its blocks, positions taken relative to `middle` (Å).
   void enter(Vec3d middle, std::span<const int32_t> clusters);
-  /// A box within the node: candidates for the blocks in it. False when G is surely below the band there.
-  bool narrow(Vec3d middle, Vec3d half);
-  /// A block: middle and half edges, Å, of the box of its points. With `classify`, blocks that are surely below
-  /// `lower` or above `upper` get their side and no units; otherwise side is mixed.
-  void select(Vec3d middle, Vec3d half, bool classify);
+  /// A part of the node, 2³ blocks of points spaced h around `middle` (Å): candidates for the blocks in it. False
+  /// when G is surely below the band there.
+  bool narrow(Vec3d middle, double h);
+  /// Block (i, j, k) of the part, octant 4·i + 2·j + k. With `classify`, blocks that are surely below `lower` or
+  /// above `upper` get their side and no units; otherwise side is mixed.
+  void select(int octant, bool classify);
 
   Side side = Side::mixed;
   Arithmetic arithmetic;        ///< that this block needs: the one asked for, or a safer one
@@ -69,8 +70,9 @@ private:
   LocalBox local(Vec3d middle, Vec3d half) const;
   void gather(const LocalBox& part);
   void keep_only();
-  void find_effects(const LocalBox& b);
+  void find_effects();
   void find_effects_of_levels();
+  void bound_octants_of_part();
   double upper_bound();
   bool surely_outside() { return (1 + slack_) * upper_bound() + 2 * budget_.total() < lower_; }
   void drop(double budget);
@@ -78,6 +80,9 @@ private:
   void take_double(Vec3d middle);
   bool surely_inside(Vec3d middle, Vec3d half);
   void filter(Vec3d middle, Vec3d half);
+  Vec3d octant_middle(int octant) const {
+    return part_middle_ + 4 * h_ * Vec3d{octant & 4 ? 1.0 : -1.0, octant & 2 ? 1.0 : -1.0, octant & 1 ? 1.0 : -1.0};
+  }
 
   const Field& f_;
   const Budget budget_;
@@ -86,11 +91,18 @@ private:
   const Arithmetic least_; ///< what was asked for
   double reach_ = 0;       ///< Å, the largest cutoff
   bool scaled_;            ///< upper bounds need more range than single precision has
-  Vec3d node_middle_;
-  LocalClusters local_;                           ///< of the node
-  NearUnits near_;                                ///< of the part of it at work
-  std::vector<int32_t> found_, kept_;             ///< clusters of local_; units of near_ that are not dropped
-  std::vector<float> log2_upper_, effect_, ones_; ///< of near_: bound on S over the box, effect on G of dropping it
+  Vec3d node_middle_, part_middle_;
+  double h_ = 0;
+  LocalClusters local_;               ///< of the node
+  NearUnits near_;                    ///< of the part of it at work
+  std::vector<int32_t> found_, kept_; ///< clusters of local_; units of near_ that are not dropped
+  LocalBox octant_[8];
+  bool octants_bounded_ = false;
+  std::vector<float> octant_upper_; ///< of near_, per octant: bound on log2 S over it
+  int32_t stride_ = 0;              ///< from octant to octant
+  const float* log2_upper_;         ///< of near_ over the box at work
+  std::vector<float> upper_of_part_, effect_,
+      ones_; ///< of near_: the same over the part; effect on G of dropping it
   UnitMiddles middles_;
   std::vector<std::vector<double>> sum_; ///< per level, per run of units of one group: upper bound of ln S
 };

@@ -50,6 +50,16 @@ HWY_INLINE V exp2(V x) {
   return exp2(f, x);
 }
 
+/// Between 2^x and 1.062·2^x, the chord from one whole power to the next, but for 2e-4 of it by rounding. x at most
+/// 127; below -126 it counts as -126.
+HWY_INLINE V exp2_above(V x) {
+  constexpr float big = 6144.0f; // 1.5·2^12: the sum's low bits are x in units of 2^-11
+  const V shifted = hn::Add(hn::Max(x, hn::Set(f, -126.0f)), hn::Set(f, big));
+  constexpr uint32_t bias = (127u << 23) - (0x45c00000u << 12);
+  return hn::BitCast(
+      f, hn::Add(hn::ShiftLeft<12>(hn::BitCast(I(), shifted)), hn::Set(I(), static_cast<int32_t>(bias))));
+}
+
 /// x normal and positive. Chebyshev interpolant of log2(1 + t)/t on [√½ - 1, √2 - 1]: 1.9e-7.
 HWY_INLINE V log2(V x) {
   constexpr float c[] = {1.44269499f, -0.72135293f, 0.48091671f, -0.36022518f,

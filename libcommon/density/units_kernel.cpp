@@ -1,0 +1,222 @@
+// units_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
+#include "density/units_kernel.hpp"
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "density/units_kernel.cpp"
+#include <hwy/foreach_target.h>
+
+#include "density/simd_math-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace molmesh::density {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// log2 of the atoms' terms at a point.
+struct TermsAt {
+  V x, y, z, k;
+  HWY_INLINE V operator()(V ax, V ay, V az, V peak) const {
+    const V dx = hn::Sub(ax, x), dy = hn::Sub(ay, y), dz = hn::Sub(az, z);
+    return hn::NegMulAdd(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), k, peak);
+  }
+};
+
+/// What take_units does with one threshold, log2 of the largest change by an atom that is dropped. dropped: an
+/// upper bound on what all that are dropped change.
+template <bool absolute>
+HWY_INLINE bool take(const NearUnits& from, const int32_t* list, int32_t n, const LocalBox& b, float decay,
+                     const float* log2_upper, float log2_least, BlockUnits& to, float& dropped) {
+  const TermsAt middle{hn::Set(f, b.middle[0]), hn::Set(f, b.middle[1]), hn::Set(f, b.middle[2]),
+                       hn::Set(f, decay)};
+  const V sx = hn::Set(f, 2 * decay * b.half[0] / 3.5f), sy = hn::Set(f, 2 * decay * b.half[1] / 3.5f),
+          sz = hn::Set(f, 2 * decay * b.half[2] / 3.5f);
+  V widest = hn::Zero(f), lost = widest;
+  size_t kept = 0;
+  for (int32_t u = 0; u < n; ++u) {
+    const auto s = static_cast<size_t>(u), at = static_cast<size_t>(list[u]);
+    const size_t begin = 16 * static_cast<size_t>(from.begin[at]),
+                 end = 16 * static_cast<size_t>(from.begin[at + 1]);
+    const auto log2_term = [&](size_t a) {
+      return middle(hn::LoadU(f, &from.atom_x[a]), hn::LoadU(f, &from.atom_y[a]), hn::LoadU(f, &from.atom_z[a]),
+                    hn::LoadU(f, &from.atom_peak[a]));
+    };
+    // The atom with the largest term in the middle: of T its term is 1 everywhere (field.md §4).
+    V largest = hn::Set(f, -2e30f), where = hn::Zero(f);
+    for (size_t a = begin; a < end; a += lanes) {
+      const V term = log2_term(a);
+      const auto more = hn::Gt(term, largest);
+      largest = hn::IfThenElse(more, term, largest);
+      where = hn::IfThenElse(more, hn::Set(f, static_cast<float>(a - begin)), where);
+    }
+    const V log2_largest = hn::MaxOfLanes(f, largest);
+    const intptr_t lane = hn::FindFirstTrue(f, hn::Eq(largest, log2_largest));
+    size_t first = begin + static_cast<size_t>(lane);
+    if (end - begin > static_cast<size_t>(lanes)) {
+      HWY_ALIGN float offset[lanes];
+      hn::Store(where, f, offset);
+      first += static_cast<size_t>(offset[lane]);
+    }
+    const float p = from.exponent[at], term = hn::GetLane(log2_largest);
+    to.exponent[s] = p;
+    to.log2_term[s] = term;
+    to.x[s] = from.atom_x[first];
+    to.y[s] = from.atom_y[first];
+    to.z[s] = from.atom_z[first];
+    // field.md §4: what dropping an atom changes G by, or (not absolute) its unit's sum, relative; log2 P ≤ (P -
+    // 1)/ln 2.
+    const float steep = 1.442696f * (p - 1);
+    const V change = hn::Set(f, !absolute ? 0
+                                : p <= 1  ? p * term + steep
+                                          : term + steep + (p - 1) * log2_upper[at]),
+            share = hn::Set(f, !absolute ? 1
+                               : p <= 1  ? 1 - p
+                                         : 0),
+            least = hn::Set(f, log2_least);
+    const V cx = hn::Mul(hn::Sub(hn::Set(f, to.x[s]), middle.x), sx),
+            cy = hn::Mul(hn::Sub(hn::Set(f, to.y[s]), middle.y), sy),
+            cz = hn::Mul(hn::Sub(hn::Set(f, to.z[s]), middle.z), sz);
+    const auto along = [&](V x, V y, V z) {
+      return hn::Mul(hn::Set(f, 3.5f), hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z))));
+    };
+    for (size_t a = begin; a < end; a += lanes) {
+      const V ax = hn::LoadU(f, &from.atom_x[a]), ay = hn::LoadU(f, &from.atom_y[a]),
+              az = hn::LoadU(f, &from.atom_z[a]);
+      const V weight = hn::Sub(middle(ax, ay, az, hn::LoadU(f, &from.atom_peak[a])), log2_largest);
+      V x = hn::Mul(hn::Sub(ax, middle.x), sx), y = hn::Mul(hn::Sub(ay, middle.y), sy),
+        z = hn::Mul(hn::Sub(az, middle.z), sz);
+      const V effect =
+          hn::Add(hn::Add(weight, change),
+                  along(hn::NegMulAdd(share, cx, x), hn::NegMulAdd(share, cy, y), hn::NegMulAdd(share, cz, z)));
+      // Unused slots have a peak of -1e30: never kept. The unit's first atom stays.
+      const auto keep =
+          hn::Or(hn::And(hn::Ge(effect, least), hn::Gt(weight, hn::Set(f, -1e29f))), hn::Ge(weight, hn::Zero(f)));
+      lost = hn::Add(lost, hn::IfThenZeroElse(keep, exp2_above(hn::Min(effect, hn::Set(f, 100.0f)))));
+      if (!to.direct) {
+        x = hn::Sub(x, cx);
+        y = hn::Sub(y, cy);
+        z = hn::Sub(z, cz);
+      }
+      const V swing = to.direct ? hn::Add(along(x, y, z), weight) : along(x, y, z);
+      widest = hn::Max(widest, hn::IfThenElseZero(keep, swing));
+      hn::StoreU(hn::Compress(x, keep), f, &to.atom_x[kept]);
+      hn::StoreU(hn::Compress(y, keep), f, &to.atom_y[kept]);
+      hn::StoreU(hn::Compress(z, keep), f, &to.atom_z[kept]);
+      hn::StoreU(hn::Compress(weight, keep), f, &to.atom_constant[kept]);
+      kept += hn::CountTrue(f, keep);
+    }
+    to.begin[s + 1] = static_cast<int32_t>(kept);
+  }
+  to.n = n;
+  dropped = hn::GetLane(hn::SumOfLanes(f, lost));
+  for (std::vector<float>* v : {&to.exponent, &to.log2_term, &to.x, &to.y, &to.z})
+    std::fill_n(v->begin() + n, 16, 0.0f);
+  const V twice = hn::Set(f, 2 * decay);
+  const float bend = decay * (b.half[0] * b.half[0] + b.half[1] * b.half[1] + b.half[2] * b.half[2]);
+  for (int32_t u = 0; u < n; u += lanes) {
+    V away = hn::Zero(f);
+    int axis = 0;
+    for (const std::vector<float>* v : {&to.x, &to.y, &to.z}) {
+      const V center = hn::LoadU(f, v->data() + u);
+      away = hn::MulAdd(hn::Set(f, b.half[axis]), hn::Abs(hn::Sub(center, hn::Set(f, b.middle[axis]))), away);
+      ++axis;
+    }
+    away = to.direct ? hn::MulAdd(away, twice, hn::Set(f, bend))
+                     : hn::Mul(hn::Mul(away, twice), hn::LoadU(f, to.exponent.data() + u));
+    const auto used = hn::Lt(hn::Iota(f, static_cast<float>(u)), hn::Set(f, static_cast<float>(n)));
+    widest = hn::Max(widest, hn::IfThenElseZero(used, away));
+  }
+  return hn::GetLane(hn::MaxOfLanes(f, widest)) <= log2_range;
+}
+
+bool take_units_simd(const NearUnits& from, const int32_t* list, int32_t n, const LocalBox& block, float decay,
+                     const float* log2_upper, float within, BlockUnits& to) {
+  int32_t slots = 1;
+  for (int32_t u = 0; u < n; ++u)
+    slots =
+        std::max(slots, from.begin[static_cast<size_t>(list[u]) + 1] - from.begin[static_cast<size_t>(list[u])]);
+  float dropped;
+  if (!log2_upper) // relative to each unit
+    return take<false>(from, list, n, block, decay, nullptr,
+                       std::log2(within / (16.0f * static_cast<float>(slots))), to, dropped);
+  // A threshold that mostly does; what it drops is summed. The last one cannot fail.
+  for (float log2_least = std::log2(within) - 4,
+             log2_last = std::log2(within / (16.0f * static_cast<float>(slots * n)));
+       ; log2_least = std::max(log2_last, log2_least - 2)) {
+    const bool holds = take<true>(from, list, n, block, decay, log2_upper, log2_least, to, dropped);
+    if (dropped <= within || log2_least <= log2_last)
+      return holds;
+  }
+}
+
+void unit_middles_simd(const BlockUnits& u, const LocalBox& b, float decay, UnitMiddles& to) {
+  for (int32_t n = 0; n < u.n; ++n) {
+    const auto s = static_cast<size_t>(n);
+    V w = hn::Zero(f), wx = w, wy = w, wz = w;
+    for (int32_t a = u.begin[s]; a < u.begin[s + 1]; a += lanes) {
+      const auto used = hn::Lt(hn::Iota(f, static_cast<float>(a - u.begin[s])),
+                               hn::Set(f, static_cast<float>(u.begin[s + 1] - u.begin[s])));
+      const V e = hn::IfThenElseZero(used, exp2(hn::LoadU(f, u.atom_constant.data() + a)));
+      w = hn::Add(w, e);
+      wx = hn::Add(hn::IfThenElseZero(used, hn::Mul(e, hn::LoadU(f, u.atom_x.data() + a))), wx);
+      wy = hn::Add(hn::IfThenElseZero(used, hn::Mul(e, hn::LoadU(f, u.atom_y.data() + a))), wy);
+      wz = hn::Add(hn::IfThenElseZero(used, hn::Mul(e, hn::LoadU(f, u.atom_z.data() + a))), wz);
+    }
+    const float total = hn::GetLane(hn::SumOfLanes(f, w)), per = 3.5f / (2 * decay * total);
+    to.log2_sum[s] = total;
+    to.x[s] = (u.direct ? b.middle[0] : u.x[s]) + per / b.half[0] * hn::GetLane(hn::SumOfLanes(f, wx));
+    to.y[s] = (u.direct ? b.middle[1] : u.y[s]) + per / b.half[1] * hn::GetLane(hn::SumOfLanes(f, wy));
+    to.z[s] = (u.direct ? b.middle[2] : u.z[s]) + per / b.half[2] * hn::GetLane(hn::SumOfLanes(f, wz));
+  }
+  std::fill_n(to.log2_sum.begin() + u.n, 16, 1.0f);
+  for (int32_t n = 0; n < u.n; n += lanes)
+    hn::StoreU(hn::Add(log2(hn::LoadU(f, to.log2_sum.data() + n)), hn::LoadU(f, u.log2_term.data() + n)), f,
+               to.log2_sum.data() + n);
+}
+
+void sum_of_powers_simd(int32_t n, const float* exponent, const float* log2_sum, const float* x, const float* y,
+                        const float* z, const LocalBox& b, float decay, float* value, float* gradient) {
+  V sum = hn::Zero(f), gx = sum, gy = sum, gz = sum;
+  for (int32_t u = 0; u < n; u += lanes) {
+    const V p = hn::LoadU(f, exponent + u);
+    const auto used = hn::Lt(hn::Iota(f, static_cast<float>(u)), hn::Set(f, static_cast<float>(n)));
+    const V e = hn::IfThenElseZero(used, exp2(hn::Min(hn::Mul(p, hn::LoadU(f, log2_sum + u)), hn::Set(f, 100.0f)))),
+            ep = hn::Mul(e, p);
+    sum = hn::Add(sum, e);
+    gx = hn::MulAdd(ep, hn::Sub(hn::LoadU(f, x + u), hn::Set(f, b.middle[0])), gx);
+    gy = hn::MulAdd(ep, hn::Sub(hn::LoadU(f, y + u), hn::Set(f, b.middle[1])), gy);
+    gz = hn::MulAdd(ep, hn::Sub(hn::LoadU(f, z + u), hn::Set(f, b.middle[2])), gz);
+  }
+  *value = hn::GetLane(hn::SumOfLanes(f, sum));
+  gradient[0] = 2 * decay * hn::GetLane(hn::SumOfLanes(f, gx));
+  gradient[1] = 2 * decay * hn::GetLane(hn::SumOfLanes(f, gy));
+  gradient[2] = 2 * decay * hn::GetLane(hn::SumOfLanes(f, gz));
+}
+
+} // namespace
+} // namespace HWY_NAMESPACE
+} // namespace molmesh::density
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace molmesh::density {
+
+HWY_EXPORT(take_units_simd);
+HWY_EXPORT(unit_middles_simd);
+HWY_EXPORT(sum_of_powers_simd);
+
+bool take_units(const NearUnits& from, const int32_t* list, int32_t n, const LocalBox& block, float decay,
+                const float* log2_upper, float within, BlockUnits& to) {
+  return HWY_DYNAMIC_DISPATCH(take_units_simd)(from, list, n, block, decay, log2_upper, within, to);
+}
+void unit_middles(const BlockUnits& units, const LocalBox& block, float decay, UnitMiddles& to) {
+  HWY_DYNAMIC_DISPATCH(unit_middles_simd)(units, block, decay, to);
+}
+void sum_of_powers(int32_t n, const float* exponent, const float* log2_sum, const float* x, const float* y,
+                   const float* z, const LocalBox& block, float decay, float* value, float* gradient) {
+  HWY_DYNAMIC_DISPATCH(sum_of_powers_simd)(n, exponent, log2_sum, x, y, z, block, decay, value, gradient);
+}
+
+} // namespace molmesh::density
+#endif

@@ -1,0 +1,41 @@
+// units_kernel.hpp — the atoms that matter in a block, by unit, in single precision, for the best instruction set
+// of this machine. Logarithms are to base 2.
+#pragma once
+#include "density/bounds_kernel.hpp"
+
+namespace molmesh::density {
+
+/// The units of a block (field.md §4): S(x) = 2^log2_term · 2^(-decay·(2δ·(m - c) + δ²)) · T(x), δ = x - m, m the
+/// block's middle, c = (x, y, z) the unit's atom of the largest term there, Å, relative to the node's middle.
+/// Atoms of unit u: begin[u] … begin[u + 1]; their terms of T at a point are 2^(constant + x·i + y·j + z·k) with
+/// i, j, k = -3.5 … 3.5. Direct: the atoms' terms hold the middle factor of S too, but for its curvature, which is
+/// the same for all. Arrays hold 16 more elements than there are units or atoms.
+struct BlockUnits {
+  int32_t n = 0;
+  bool direct = false;
+  std::vector<int32_t> begin{0}; ///< [n + 1]
+  std::vector<float> exponent, log2_term, x, y, z;
+  std::vector<float> atom_x, atom_y, atom_z, atom_constant;
+};
+
+/// Largest change of a logarithm over a block that leaves single precision far from overflow.
+constexpr float log2_range = 115;
+
+/// The n units `list` of `from`, into arrays that hold enough, without atoms that do not matter: all that are
+/// dropped change ΣS^P by at most `within`, or, without log2_upper (bounds on the sums of all units of `from` over
+/// the block), the sum of each unit by that part of it. to.direct is the caller's wish. False when single precision
+/// does not hold.
+bool take_units(const NearUnits& from, const int32_t* list, int32_t n, const LocalBox& block, float decay,
+                const float* log2_upper, float within, BlockUnits& to);
+
+/// log2 S in the middle of the block, and the mean of the atoms' positions weighted with their terms there, Å.
+struct UnitMiddles {
+  std::vector<float> log2_sum, x, y, z; ///< [n + 16]
+};
+void unit_middles(const BlockUnits& units, const LocalBox& block, float decay, UnitMiddles& to);
+
+/// Σ S^P at the block's middle from such sums and means, and its gradient, Å⁻¹. Arrays hold n + 16.
+void sum_of_powers(int32_t n, const float* exponent, const float* log2_sum, const float* x, const float* y,
+                   const float* z, const LocalBox& block, float decay, float* value, float* gradient);
+
+} // namespace molmesh::density
