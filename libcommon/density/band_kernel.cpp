@@ -132,6 +132,23 @@ HWY_INLINE void make_plane(const NodeBits* const* nodes, int32_t x, Plane& p) {
   p.row[33] = edge(2, 0);
 }
 
+/// The same without the nodes around: what lies beyond the node's own points is what `beyond` has at the nearest of
+/// them.
+HWY_INLINE void make_plane_alone(const NodeBits& node, const NodeBits& beyond, int32_t x, Plane& p) {
+  const auto edge = [](uint64_t row) { return row << 1 | (row & 1) | row >> 31 << 33; };
+  const bool inner = x >= 0 && x < node_edge;
+  const int32_t nearest = std::clamp(x, 0, node_edge - 1);
+  const uint32_t *const own = inner ? node.row[x] : beyond.row[nearest], *const outer = beyond.row[nearest];
+  constexpr hn::Rebind<uint32_t, U> half{};
+  for (int32_t y = 0; y < 32; y += lanes) {
+    const auto mid = hn::PromoteTo(u, hn::LoadU(half, own + y)), far = hn::PromoteTo(u, hn::LoadU(half, outer + y));
+    const auto lo = hn::And(far, hn::Set(u, uint64_t{1})), hi = hn::ShiftLeft<33>(hn::ShiftRight<31>(far));
+    hn::StoreU(hn::Or(hn::ShiftLeft<1>(mid), hn::Or(lo, hi)), u, p.row + 1 + y);
+  }
+  p.row[0] = edge(outer[0]);
+  p.row[33] = edge(outer[31]);
+}
+
 /// Bit k of row j: the four corners in the plane of cell (j - 1, k - 1) are set.
 HWY_INLINE void all_in_plane(const Plane& p, Plane& four) {
   Plane two;
@@ -144,8 +161,9 @@ HWY_INLINE void all_in_plane(const Plane& p, Plane& four) {
     hn::Store(hn::And(hn::Load(u, two.row + j), hn::LoadU(u, two.row + j + 1)), u, four.row + j);
 }
 
-void band_points_simd(const NodeBits* const* below, const NodeBits* const* above, const CellRange& cells,
-                      NodeBits& active) {
+/// plane(x, below, p): plane x = -1 … 32 of the sets below or above the band.
+template <class MakePlane>
+HWY_INLINE void corners_of_band_cells(MakePlane&& plane, const CellRange& cells, NodeBits& active) {
   const auto in = [&](int axis, int32_t cell) { return cell >= cells.first[axis] && cell < cells.end[axis]; };
   uint64_t z_valid = 0;
   for (int32_t k = 0; k < 33; ++k)
@@ -155,10 +173,10 @@ void band_points_simd(const NodeBits* const* below, const NodeBits* const* above
     valid[j] = in(1, j - 1) ? z_valid : 0;
   Plane p{}, four_below[2]{}, four_above[2]{}, cell{}, point[2]{};
   for (int32_t x = -1; x <= 32; ++x) {
-    const int32_t n = x < 0 ? 0 : x < 32 ? 9 : 18, now = x & 1, last = now ^ 1;
-    make_plane(below + n, x & 31, p);
+    const int32_t now = x & 1, last = now ^ 1;
+    plane(x, true, p);
     all_in_plane(p, four_below[now]);
-    make_plane(above + n, x & 31, p);
+    plane(x, false, p);
     all_in_plane(p, four_above[now]);
     if (x < 0)
       continue;
@@ -180,6 +198,23 @@ void band_points_simd(const NodeBits* const* below, const NodeBits* const* above
   }
 }
 
+void band_points_simd(const NodeBits* const* below, const NodeBits* const* above, const CellRange& cells,
+                      NodeBits& active) {
+  corners_of_band_cells(
+      [&](int32_t x, bool lower, Plane& p) {
+        make_plane((lower ? below : above) + (x < 0 ? 0 : x < 32 ? 9 : 18), x & 31, p);
+      },
+      cells, active);
+}
+
+void likely_band_points_simd(const Sides& sides, const Sides& beyond, const CellRange& cells, NodeBits& active) {
+  corners_of_band_cells(
+      [&](int32_t x, bool lower, Plane& p) {
+        make_plane_alone(lower ? sides.below : sides.above, lower ? beyond.below : beyond.above, x, p);
+      },
+      cells, active);
+}
+
 int32_t pack_active_simd(const float* v, const uint64_t* active, float* out) {
   float* const begin = out;
 #if HWY_TARGET <= HWY_AVX2
@@ -198,6 +233,26 @@ int32_t pack_active_simd(const float* v, const uint64_t* active, float* out) {
   return static_cast<int32_t>(out - begin);
 }
 
+int32_t keep_active_simd(float* v, const uint64_t* stored, const uint64_t* active) {
+  float *const begin = v, *out = v;
+  for (int32_t w = 0; w < 8; ++w) {
+    const auto count = static_cast<size_t>(std::popcount(stored[w]));
+    if (stored[w] == active[w]) {
+      if (out != v)
+        std::memmove(out, v, count * sizeof(float));
+      out += count;
+    } else {
+      const float* from = v;
+      for (uint64_t left = stored[w]; left; left &= left - 1, ++from) {
+        *out = *from;
+        out += (active[w] & left & -left) != 0;
+      }
+    }
+    v += count;
+  }
+  return static_cast<int32_t>(out - begin);
+}
+
 } // namespace
 } // namespace HWY_NAMESPACE
 } // namespace molmesh::density
@@ -211,6 +266,8 @@ HWY_EXPORT(classify_points_simd);
 HWY_EXPORT(rows_from_words_simd);
 HWY_EXPORT(words_from_rows_simd);
 HWY_EXPORT(band_points_simd);
+HWY_EXPORT(likely_band_points_simd);
+HWY_EXPORT(keep_active_simd);
 HWY_EXPORT(pack_active_simd);
 
 void round_values(float* v, int bits) {
@@ -228,6 +285,12 @@ void words_from_rows(const NodeBits& rows, NodeWords& words) {
 void band_points(const NodeBits* const* below, const NodeBits* const* above, const CellRange& cells,
                  NodeBits& active) {
   HWY_DYNAMIC_DISPATCH(band_points_simd)(below, above, cells, active);
+}
+void likely_band_points(const Sides& sides, const Sides& beyond, const CellRange& cells, NodeBits& active) {
+  HWY_DYNAMIC_DISPATCH(likely_band_points_simd)(sides, beyond, cells, active);
+}
+int32_t keep_active(float* v, const uint64_t* stored, const uint64_t* active) {
+  return HWY_DYNAMIC_DISPATCH(keep_active_simd)(v, stored, active);
 }
 int32_t pack_active(const float* v, const uint64_t* active, float* out) {
   return HWY_DYNAMIC_DISPATCH(pack_active_simd)(v, active, out);

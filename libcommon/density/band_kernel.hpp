@@ -13,6 +13,11 @@ struct NodeBits {
   uint32_t row[node_edge][node_edge];
 };
 
+/// The points of a node that are below the band and those that are above.
+struct Sides {
+  NodeBits below, above;
+};
+
 /// The same set by blocks: bit 8·j + k of word [block][i].
 struct NodeWords {
   uint64_t word[blocks_a_node][8];
@@ -38,6 +43,13 @@ struct CellRange {
 /// above: the sets of the 27 nodes around it, in order of (x, y, z), the node itself the 14th.
 void band_points(const NodeBits* const* below, const NodeBits* const* above, const CellRange& cells,
                  NodeBits& active);
+
+/// The same as far as the node knows it alone. What lies beyond its own points counts as `beyond` has it at the
+/// nearest of them.
+void likely_band_points(const Sides& sides, const Sides& beyond, const CellRange& cells, NodeBits& active);
+
+/// v: the values of the points stored[8], in order. Keeps those of active[8], a subset. Returns how many.
+int32_t keep_active(float* v, const uint64_t* stored, const uint64_t* active);
 
 /// Copies the v whose bit of active[8] is set to out, in order; may write up to 16 values more. Returns how many.
 int32_t pack_active(const float* v, const uint64_t* active, float* out);

@@ -2,8 +2,11 @@
 // Pages of the ordinary size: asking for large ones fills 512 MB in 0.06 s where the system has them at hand, but
 // in 1.4 s where a virtual machine has to fetch them from its host; ordinary ones took 0.25 s always.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <new>
+#include <sys/mman.h>
 #include <utility>
 #include <vector>
 
@@ -31,5 +34,19 @@ struct LargeAllocator : std::allocator<T> {
 
 template <class T>
 using LargeArray = std::vector<T, LargeAllocator<T>>;
+
+/// Asks the system for the whole pages in [begin, begin + bytes) at once, where it can: a quarter cheaper than one
+/// by one as they are touched.
+inline void prepare_pages(void* begin, std::size_t bytes) {
+#ifdef MADV_POPULATE_WRITE
+  constexpr std::uintptr_t page = 4096;
+  const auto first = (reinterpret_cast<std::uintptr_t>(begin) + page - 1) & ~(page - 1),
+             end = (reinterpret_cast<std::uintptr_t>(begin) + bytes) & ~(page - 1);
+  if (first < end)
+    madvise(reinterpret_cast<void*>(first), end - first, MADV_POPULATE_WRITE);
+#else
+  static_cast<void>(begin), static_cast<void>(bytes);
+#endif
+}
 
 } // namespace molmesh

@@ -16,20 +16,21 @@ constexpr Vec3i direction(int n) { // of the 27 nodes around one
   return {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1};
 }
 
-/// The sides of a node's points, and where the values of its evaluated blocks are.
-struct Sides {
-  NodeBits below, above;
-  const float* value[blocks_a_node]; ///< [512] each, null where not evaluated
+/// What a node knows before its neighbors do: the sides of its points, and the values of those that look like
+/// corners of band cells, block by block.
+struct NodePoints : Sides {
+  NodeBits stored;
+  float* value[blocks_a_node]; ///< of the stored points, in order; of evaluated blocks
 };
 
 /// Sets of blocks are bits, by number of the block in the node.
 struct NodeState {
-  Vec3i corner;                   ///< in blocks
-  uint64_t known = 0, inside = 0; ///< evaluated; not evaluated and above the band
-  std::unique_ptr<Sides> sides;   ///< none: all below the band, or all above it when `inside` is full
-  std::vector<Vec3i> needed;      ///< nodes without clusters that this one may give corners of band cells
-  uint64_t kept = 0, closed = 0;  ///< blocks with active points; without and inside
-  std::vector<BandBlock> band;    ///< of kept, in order
+  Vec3i corner;                      ///< in blocks
+  uint64_t known = 0, inside = 0;    ///< evaluated; not evaluated and above the band
+  std::unique_ptr<NodePoints> sides; ///< none: all below the band, or all above it when `inside` is full
+  std::vector<Vec3i> needed;         ///< nodes without clusters that this one may give corners of band cells
+  uint64_t kept = 0, closed = 0;     ///< blocks with active points; without and inside
+  std::vector<BandBlock> band;       ///< of kept, in order
 };
 
 /// The nodes that begin at block x.

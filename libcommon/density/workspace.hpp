@@ -11,38 +11,38 @@
 
 namespace molmesh::density {
 
-/// Floats handed out piece by piece; they stay where they are until all are given back.
+/// Floats handed out piece by piece; they stay where they are.
 class Arena {
 public:
   /// A piece of at most `most` ≤ 512 + 16 floats; keep() says how many of them stay.
   float* take(size_t most) {
     if (chunk_.empty() || used_ + most > size) {
-      used_ = 0;
-      if (++current_ >= chunk_.size()) {
-        chunk_.emplace_back(size);
-        current_ = chunk_.size() - 1;
-      }
+      chunk_.emplace_back(size);
+      used_ = ready_ = 0;
     }
-    return chunk_[current_].data() + used_;
+    if (used_ + most > ready_) {
+      prepare_pages(chunk_.back().data() + ready_, at_once * sizeof(float));
+      ready_ += at_once;
+    }
+    return chunk_.back().data() + used_;
   }
   void keep(size_t n) { used_ += n; }
-  void give_back_all() { current_ = used_ = 0; }
   std::vector<LargeArray<float>> release() { return std::move(chunk_); }
 
 private:
-  static constexpr size_t size = size_t{1} << 21; // 8 MiB
+  static constexpr size_t size = size_t{1} << 21, at_once = size_t{1} << 15; // 8 MiB, 128 KiB
   std::vector<LargeArray<float>> chunk_;
-  size_t current_ = 0, used_ = 0;
+  size_t used_ = 0, ready_ = 0; ///< of the last chunk
 };
 
 struct Workspace {
   Selection selection;
-  Evaluator evaluator;
-  NodeWords below, above, active;
-  NodeBits rows;
-  alignas(64) float value[512]; ///< of the block at work
-  Arena values[2] = {};         ///< of blocks, for slabs of even and odd number
-  Arena packed = {};            ///< of the band
+  Evaluator evaluator = {};
+  alignas(64) float value[blocks_a_node][512] = {}; ///< of the blocks of the node at work
+  NodeWords below = {}, above = {}, far_below = {}, far_above = {}, active = {}, stored = {};
+  NodeBits rows = {};
+  Sides beyond = {};
+  Arena packed = {}; ///< of the band
   SearchCounts counts = {};
   int64_t points = 0; ///< of the grid, evaluated
 };
