@@ -20,7 +20,7 @@ constexpr F f{};
 constexpr int32_t float_lanes = static_cast<int32_t>(HWY_MIN(16, HWY_LANES(float)));
 using U = hn::CappedTag<uint64_t, 8>;
 constexpr U u{};
-constexpr int32_t lanes = static_cast<int32_t>(HWY_MIN(8, HWY_LANES(uint64_t)));
+constexpr int32_t lanes = static_cast<int32_t>(HWY_MIN(8, HWY_LANES(uint64_t))), vectors = 40 / lanes;
 
 void round_values_simd(float* v, int bits) {
   const hn::Rebind<uint32_t, F> i;
@@ -149,19 +149,12 @@ HWY_INLINE void make_plane_alone(const NodeBits& node, const NodeBits& beyond, i
   p.row[33] = edge(outer[31]);
 }
 
-/// Bit k of row j: the four corners in the plane of cell (j - 1, k - 1) are set.
-HWY_INLINE void all_in_plane(const Plane& p, Plane& four) {
-  Plane two;
-  for (int32_t j = 0; j < 40; j += lanes) {
-    const auto row = hn::Load(u, p.row + j);
-    hn::Store(hn::And(row, hn::ShiftRight<1>(row)), u, two.row + j);
-  }
-  std::fill_n(two.row + 40, 8, uint64_t{0});
-  for (int32_t j = 0; j < 40; j += lanes)
-    hn::Store(hn::And(hn::Load(u, two.row + j), hn::LoadU(u, two.row + j + 1)), u, four.row + j);
-}
+/// Planes 0 … 33 of something, each of 34 rows.
+using Planes = Plane[34];
 
-/// plane(x, below, p): plane x = -1 … 32 of the sets below or above the band.
+/// Row j of plane i: corners (i, j) … of cell (i - 1, j - 1, k - 1) in bit k. Loop by loop over all planes: loads
+/// of rows that were stored a moment ago, but as parts of other vectors, would have to wait for them. plane(x,
+/// below, p): plane x = -1 … 32 of the sets below or above the band.
 template <class MakePlane>
 HWY_INLINE void corners_of_band_cells(MakePlane&& plane, const CellRange& cells, NodeBits& active) {
   const auto in = [&](int axis, int32_t cell) { return cell >= cells.first[axis] && cell < cells.end[axis]; };
@@ -171,31 +164,43 @@ HWY_INLINE void corners_of_band_cells(MakePlane&& plane, const CellRange& cells,
   HWY_ALIGN uint64_t valid[40] = {};
   for (int32_t j = 0; j < 33; ++j)
     valid[j] = in(1, j - 1) ? z_valid : 0;
-  Plane p{}, four_below[2]{}, four_above[2]{}, cell{}, point[2]{};
-  for (int32_t x = -1; x <= 32; ++x) {
-    const int32_t now = x & 1, last = now ^ 1;
-    plane(x, true, p);
-    all_in_plane(p, four_below[now]);
-    plane(x, false, p);
-    all_in_plane(p, four_above[now]);
-    if (x < 0)
-      continue;
-    // Cells between planes x - 1 and x; then which points of a plane they touch.
-    const bool valid_x = in(0, x - 1);
+  Planes set[2], cell;
+  for (int32_t x = -1; x <= 32; ++x)
+    for (const bool below : {false, true}) {
+      Plane& p = set[below][x + 1];
+      std::fill_n(p.row + 34, 14, uint64_t{0});
+      plane(x, below, p);
+    }
+  // Where the four corners of a cell that lie in a plane are in the set.
+  for (Planes& planes : set)
+    for (Plane& p : planes) {
+      hn::Vec<U> four[vectors];
+      for (int32_t v = 0; v < vectors; ++v) {
+        const auto near = hn::LoadU(u, p.row + lanes * v), far = hn::LoadU(u, p.row + lanes * v + 1);
+        const auto both = hn::And(near, far);
+        four[v] = hn::And(both, hn::ShiftRight<1>(both));
+      }
+      for (int32_t v = 0; v < vectors; ++v)
+        hn::StoreU(four[v], u, p.row + lanes * v);
+    }
+  // Cells between a plane and the next, and the points of a row along z that they touch.
+  for (int32_t i = 0; i < 33; ++i)
     for (int32_t j = 0; j < 40; j += lanes) {
-      const auto both = [&](const Plane* four) {
-        return hn::And(hn::Load(u, four[last].row + j), hn::Load(u, four[now].row + j));
+      const auto both = [&](const Planes& planes) {
+        return hn::And(hn::Load(u, planes[i].row + j), hn::Load(u, planes[i + 1].row + j));
       };
       const auto c =
-          valid_x ? hn::AndNot(hn::Or(both(four_below), both(four_above)), hn::Load(u, valid + j)) : hn::Zero(u);
-      hn::Store(hn::Or(c, hn::ShiftRight<1>(c)), u, cell.row + j);
+          in(0, i - 1) ? hn::AndNot(hn::Or(both(set[0]), both(set[1])), hn::Load(u, valid + j)) : hn::Zero(u);
+      hn::Store(hn::Or(c, hn::ShiftRight<1>(c)), u, cell[i].row + j);
     }
-    for (int32_t j = 0; j < 32; j += lanes)
-      hn::Store(hn::Or(hn::Load(u, cell.row + j), hn::LoadU(u, cell.row + j + 1)), u, point[now].row + j);
-    if (x > 0)
-      for (int32_t j = 0; j < 32; ++j)
-        active.row[x - 1][j] = static_cast<uint32_t>(point[now].row[j] | point[last].row[j]);
-  }
+  for (int32_t x = 0; x < 32; ++x)
+    for (int32_t j = 0; j < 32; j += lanes) {
+      const auto rows = [&](int32_t i) {
+        return hn::Or(hn::Load(u, cell[i].row + j), hn::LoadU(u, cell[i].row + j + 1));
+      };
+      hn::StoreU(hn::TruncateTo(hn::Rebind<uint32_t, U>(), hn::Or(rows(x), rows(x + 1))), hn::Rebind<uint32_t, U>(),
+                 &active.row[x][j]);
+    }
 }
 
 void band_points_simd(const NodeBits* const* below, const NodeBits* const* above, const CellRange& cells,
@@ -236,19 +241,31 @@ int32_t pack_active_simd(const float* v, const uint64_t* active, float* out) {
 int32_t keep_active_simd(float* v, const uint64_t* stored, const uint64_t* active) {
   float *const begin = v, *out = v;
   for (int32_t w = 0; w < 8; ++w) {
-    const auto count = static_cast<size_t>(std::popcount(stored[w]));
-    if (stored[w] == active[w]) {
+    const uint64_t all = stored[w], kept = active[w];
+    const auto count = static_cast<size_t>(std::popcount(all));
+    if (all == kept) {
       if (out != v)
         std::memmove(out, v, count * sizeof(float));
+      v += count;
       out += count;
-    } else {
-      const float* from = v;
-      for (uint64_t left = stored[w]; left; left &= left - 1, ++from) {
-        *out = *from;
-        out += (active[w] & left & -left) != 0;
-      }
+      continue;
+    }
+#if HWY_TARGET <= HWY_AVX2
+    uint64_t keep = _pext_u64(kept, all);
+    for (size_t i = 0; i < count; i += float_lanes, keep = float_lanes < 64 ? keep >> float_lanes : 0) {
+      uint8_t bits[8]; // LoadMaskBits may read eight bytes
+      std::memcpy(bits, &keep, 8);
+      const auto mask = hn::And(hn::LoadMaskBits(f, bits), hn::FirstN(f, count - i));
+      hn::CompressBlendedStore(hn::LoadU(f, v + i), mask, f, out);
+      out += hn::CountTrue(f, mask);
     }
     v += count;
+#else
+    for (uint64_t left = all; left; left &= left - 1, ++v) {
+      *out = *v;
+      out += (kept & left & -left) != 0;
+    }
+#endif
   }
   return static_cast<int32_t>(out - begin);
 }

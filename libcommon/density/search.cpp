@@ -33,7 +33,7 @@ private:
   /// What G is multiplied with from a point to the next, at most, in all but a few places: near the surface the
   /// atoms that matter are 2 Å away.
   float usual_step() const {
-    return static_cast<float>(std::exp(std::min(40.0, 5 * f_.decay * f_.steepest * frame_.spacing)));
+    return static_cast<float>(std::exp(std::min(40.0, 4 * f_.decay * f_.steepest * frame_.spacing)));
   }
   SlabState find_slab(int32_t x);
   void work_through(const Node& node, NodeState& s, Workspace& w) const;

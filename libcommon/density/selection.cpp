@@ -2,6 +2,7 @@
 #include "density/selection.hpp"
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numbers>
 
@@ -63,17 +64,17 @@ void Selection::enter(Vec3d middle, std::span<const int32_t> clusters) {
     l.hi_x[i] = static_cast<float>(hi.x), l.hi_y[i] = static_cast<float>(hi.y),
     l.hi_z[i] = static_cast<float>(hi.z);
     l.cutoff2[i] = static_cast<float>((1 + single) * f_.cutoff2[c]);
-    size_t slot = 16 * i;
-    for (auto a = static_cast<size_t>(f_.begin[c]); a < static_cast<size_t>(f_.begin[c + 1]); ++a, ++slot) {
-      l.atom_x[slot] = static_cast<float>(f_.x[a] - middle.x);
-      l.atom_y[slot] = static_cast<float>(f_.y[a] - middle.y);
-      l.atom_z[slot] = static_cast<float>(f_.z[a] - middle.z);
-      l.atom_peak[slot] = static_cast<float>(log2e * f_.peak[a]);
-    }
-    for (; slot < 16 * (i + 1); ++slot) {
-      l.atom_x[slot] = l.atom_y[slot] = l.atom_z[slot] = 0;
-      l.atom_peak[slot] = -1e30f;
-    }
+    const auto first = static_cast<size_t>(f_.begin[c]), count = static_cast<size_t>(f_.begin[c + 1]) - first;
+    const auto fill = [&](std::vector<float>& to, const std::vector<double>& from, double scale, double origin,
+                          float unused) {
+      for (size_t a = 0; a < count; ++a)
+        to[16 * i + a] = static_cast<float>(scale * (from[first + a] - origin));
+      std::fill_n(to.begin() + static_cast<std::ptrdiff_t>(16 * i + count), 16 - count, unused);
+    };
+    fill(l.atom_x, f_.x, 1, middle.x, 0);
+    fill(l.atom_y, f_.y, 1, middle.y, 0);
+    fill(l.atom_z, f_.z, 1, middle.z, 0);
+    fill(l.atom_peak, f_.peak, log2e, 0, -1e30f);
   }
 }
 
@@ -133,7 +134,7 @@ void Selection::gather(const LocalBox& part) {
     const auto c = static_cast<size_t>(found_[i]);
     u.cluster[i] = local_.cluster[c];
     const auto copy = [&](const std::vector<float>& from, std::vector<float>& to) {
-      std::copy_n(&from[16 * c], 16, &to[16 * i]);
+      std::memcpy(&to[16 * i], &from[16 * c], 16 * sizeof(float));
     };
     copy(local_.atom_x, u.atom_x);
     copy(local_.atom_y, u.atom_y);
@@ -158,15 +159,11 @@ void Selection::keep_only() {
   for (const int32_t k : kept_) {
     const auto n = static_cast<size_t>(k);
     const auto begin = static_cast<size_t>(u.begin[n]), end = static_cast<size_t>(u.begin[n + 1]);
-    if (to != begin) {
-      const auto move = [&](auto& v, size_t each) {
-        std::copy(v.begin() + static_cast<std::ptrdiff_t>(each * begin),
-                  v.begin() + static_cast<std::ptrdiff_t>(each * end),
-                  v.begin() + static_cast<std::ptrdiff_t>(each * to));
-      };
-      move(u.cluster, 1);
+    for (size_t c = begin; c < end && to != begin; ++c) {
+      const size_t at = to + c - begin;
+      u.cluster[at] = u.cluster[c];
       for (std::vector<float>* v : {&u.atom_x, &u.atom_y, &u.atom_z, &u.atom_peak})
-        move(*v, 16);
+        std::memcpy(&(*v)[16 * at], &(*v)[16 * c], 16 * sizeof(float));
     }
     u.begin[units_to] = static_cast<int32_t>(to);
     u.group[units_to] = u.group[n];

@@ -14,38 +14,25 @@ namespace molmesh::density {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// log2 of the atoms' terms at a point.
+/// log2 of the terms of atoms, from the a-th, at a point.
 struct TermsAt {
   V x, y, z, k;
-  HWY_INLINE V operator()(V ax, V ay, V az, V peak) const {
-    const V dx = hn::Sub(ax, x), dy = hn::Sub(ay, y), dz = hn::Sub(az, z);
-    return hn::NegMulAdd(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), k, peak);
+  HWY_INLINE V operator()(const NearUnits& u, size_t a) const {
+    const V dx = hn::Sub(hn::LoadU(f, &u.atom_x[a]), x), dy = hn::Sub(hn::LoadU(f, &u.atom_y[a]), y),
+            dz = hn::Sub(hn::LoadU(f, &u.atom_z[a]), z);
+    return hn::NegMulAdd(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), k, hn::LoadU(f, &u.atom_peak[a]));
   }
 };
 
-/// What take_units does with one threshold, log2 of the largest change by an atom that is dropped. dropped: an
-/// upper bound on what all that are dropped change.
-template <bool absolute>
-HWY_INLINE bool take(const NearUnits& from, const int32_t* list, int32_t n, const LocalBox& b, float decay,
-                     const float* log2_upper, float log2_least, BlockUnits& to, float& dropped) {
-  const TermsAt middle{hn::Set(f, b.middle[0]), hn::Set(f, b.middle[1]), hn::Set(f, b.middle[2]),
-                       hn::Set(f, decay)};
-  const V sx = hn::Set(f, 2 * decay * b.half[0] / 3.5f), sy = hn::Set(f, 2 * decay * b.half[1] / 3.5f),
-          sz = hn::Set(f, 2 * decay * b.half[2] / 3.5f);
-  V widest = hn::Zero(f), lost = widest;
-  size_t kept = 0;
+/// The atom of each unit with the largest term in the middle: of T its term is 1 everywhere (field.md §4).
+void find_centers(const NearUnits& from, const int32_t* list, int32_t n, const TermsAt& middle, BlockUnits& to) {
   for (int32_t u = 0; u < n; ++u) {
     const auto s = static_cast<size_t>(u), at = static_cast<size_t>(list[u]);
     const size_t begin = 16 * static_cast<size_t>(from.begin[at]),
                  end = 16 * static_cast<size_t>(from.begin[at + 1]);
-    const auto log2_term = [&](size_t a) {
-      return middle(hn::LoadU(f, &from.atom_x[a]), hn::LoadU(f, &from.atom_y[a]), hn::LoadU(f, &from.atom_z[a]),
-                    hn::LoadU(f, &from.atom_peak[a]));
-    };
-    // The atom with the largest term in the middle: of T its term is 1 everywhere (field.md §4).
     V largest = hn::Set(f, -2e30f), where = hn::Zero(f);
     for (size_t a = begin; a < end; a += lanes) {
-      const V term = log2_term(a);
+      const V term = middle(from, a);
       const auto more = hn::Gt(term, largest);
       largest = hn::IfThenElse(more, term, largest);
       where = hn::IfThenElse(more, hn::Set(f, static_cast<float>(a - begin)), where);
@@ -58,22 +45,38 @@ HWY_INLINE bool take(const NearUnits& from, const int32_t* list, int32_t n, cons
       hn::Store(where, f, offset);
       first += static_cast<size_t>(offset[lane]);
     }
-    const float p = from.exponent[at], term = hn::GetLane(log2_largest);
-    to.exponent[s] = p;
-    to.log2_term[s] = term;
+    to.exponent[s] = from.exponent[at];
+    to.log2_term[s] = hn::GetLane(log2_largest);
     to.x[s] = from.atom_x[first];
     to.y[s] = from.atom_y[first];
     to.z[s] = from.atom_z[first];
-    // field.md §4: what dropping an atom changes G by, or (not absolute) its unit's sum, relative; log2 P ≤ (P -
-    // 1)/ln 2.
-    const float steep = 1.442696f * (p - 1);
+  }
+}
+
+/// What take_units does with one threshold, log2 of the largest change by an atom that is dropped. dropped: an
+/// upper bound on what all that are dropped change.
+template <bool absolute, bool direct>
+HWY_INLINE bool take(const NearUnits& from, const int32_t* list, int32_t n, const LocalBox& b, float decay,
+                     const TermsAt& middle, const float* log2_upper, float log2_least, BlockUnits& to,
+                     float& dropped) {
+  const V sx = hn::Set(f, 2 * decay * b.half[0] / 3.5f), sy = hn::Set(f, 2 * decay * b.half[1] / 3.5f),
+          sz = hn::Set(f, 2 * decay * b.half[2] / 3.5f), least = hn::Set(f, log2_least);
+  V widest = hn::Zero(f), lost = widest;
+  size_t kept = 0;
+  for (int32_t u = 0; u < n; ++u) {
+    const auto s = static_cast<size_t>(u), at = static_cast<size_t>(list[u]);
+    const size_t begin = 16 * static_cast<size_t>(from.begin[at]),
+                 end = 16 * static_cast<size_t>(from.begin[at + 1]);
+    // field.md §4: what dropping an atom changes G by, or (not absolute) its unit's sum, relative;
+    // log2 P ≤ (P - 1)/ln 2.
+    const float p = to.exponent[s], term = to.log2_term[s], steep = 1.442696f * (p - 1);
     const V change = hn::Set(f, !absolute ? 0
                                 : p <= 1  ? p * term + steep
                                           : term + steep + (p - 1) * log2_upper[at]),
             share = hn::Set(f, !absolute ? 1
                                : p <= 1  ? 1 - p
                                          : 0),
-            least = hn::Set(f, log2_least);
+            log2_largest = hn::Set(f, term);
     const V cx = hn::Mul(hn::Sub(hn::Set(f, to.x[s]), middle.x), sx),
             cy = hn::Mul(hn::Sub(hn::Set(f, to.y[s]), middle.y), sy),
             cz = hn::Mul(hn::Sub(hn::Set(f, to.z[s]), middle.z), sz);
@@ -81,24 +84,24 @@ HWY_INLINE bool take(const NearUnits& from, const int32_t* list, int32_t n, cons
       return hn::Mul(hn::Set(f, 3.5f), hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z))));
     };
     for (size_t a = begin; a < end; a += lanes) {
-      const V ax = hn::LoadU(f, &from.atom_x[a]), ay = hn::LoadU(f, &from.atom_y[a]),
-              az = hn::LoadU(f, &from.atom_z[a]);
-      const V weight = hn::Sub(middle(ax, ay, az, hn::LoadU(f, &from.atom_peak[a])), log2_largest);
-      V x = hn::Mul(hn::Sub(ax, middle.x), sx), y = hn::Mul(hn::Sub(ay, middle.y), sy),
-        z = hn::Mul(hn::Sub(az, middle.z), sz);
+      const V weight = hn::Sub(middle(from, a), log2_largest);
+      V x = hn::Mul(hn::Sub(hn::LoadU(f, &from.atom_x[a]), middle.x), sx),
+        y = hn::Mul(hn::Sub(hn::LoadU(f, &from.atom_y[a]), middle.y), sy),
+        z = hn::Mul(hn::Sub(hn::LoadU(f, &from.atom_z[a]), middle.z), sz);
       const V effect =
           hn::Add(hn::Add(weight, change),
                   along(hn::NegMulAdd(share, cx, x), hn::NegMulAdd(share, cy, y), hn::NegMulAdd(share, cz, z)));
-      // Unused slots have a peak of -1e30: never kept. The unit's first atom stays.
+      // Unused slots have a peak of -1e30: never kept. The unit's center stays.
       const auto keep =
           hn::Or(hn::And(hn::Ge(effect, least), hn::Gt(weight, hn::Set(f, -1e29f))), hn::Ge(weight, hn::Zero(f)));
-      lost = hn::Add(lost, hn::IfThenZeroElse(keep, exp2_above(hn::Min(effect, hn::Set(f, 100.0f)))));
-      if (!to.direct) {
+      if (absolute)
+        lost = hn::Add(lost, hn::IfThenZeroElse(keep, exp2_above(hn::Min(effect, hn::Set(f, 100.0f)))));
+      if (!direct) {
         x = hn::Sub(x, cx);
         y = hn::Sub(y, cy);
         z = hn::Sub(z, cz);
       }
-      const V swing = to.direct ? hn::Add(along(x, y, z), weight) : along(x, y, z);
+      const V swing = direct ? hn::Add(along(x, y, z), weight) : along(x, y, z);
       widest = hn::Max(widest, hn::IfThenElseZero(keep, swing));
       hn::StoreU(hn::Compress(x, keep), f, &to.atom_x[kept]);
       hn::StoreU(hn::Compress(y, keep), f, &to.atom_y[kept]);
@@ -109,7 +112,7 @@ HWY_INLINE bool take(const NearUnits& from, const int32_t* list, int32_t n, cons
     to.begin[s + 1] = static_cast<int32_t>(kept);
   }
   to.n = n;
-  dropped = hn::GetLane(hn::SumOfLanes(f, lost));
+  dropped = absolute ? hn::GetLane(hn::SumOfLanes(f, lost)) : 0;
   for (std::vector<float>* v : {&to.exponent, &to.log2_term, &to.x, &to.y, &to.z})
     std::fill_n(v->begin() + n, 16, 0.0f);
   const V twice = hn::Set(f, 2 * decay);
@@ -122,8 +125,8 @@ HWY_INLINE bool take(const NearUnits& from, const int32_t* list, int32_t n, cons
       away = hn::MulAdd(hn::Set(f, b.half[axis]), hn::Abs(hn::Sub(center, hn::Set(f, b.middle[axis]))), away);
       ++axis;
     }
-    away = to.direct ? hn::MulAdd(away, twice, hn::Set(f, bend))
-                     : hn::Mul(hn::Mul(away, twice), hn::LoadU(f, to.exponent.data() + u));
+    away = direct ? hn::MulAdd(away, twice, hn::Set(f, bend))
+                  : hn::Mul(hn::Mul(away, twice), hn::LoadU(f, to.exponent.data() + u));
     const auto used = hn::Lt(hn::Iota(f, static_cast<float>(u)), hn::Set(f, static_cast<float>(n)));
     widest = hn::Max(widest, hn::IfThenElseZero(used, away));
   }
@@ -136,16 +139,24 @@ bool take_units_simd(const NearUnits& from, const int32_t* list, int32_t n, cons
   for (int32_t u = 0; u < n; ++u)
     slots =
         std::max(slots, from.begin[static_cast<size_t>(list[u]) + 1] - from.begin[static_cast<size_t>(list[u])]);
+  const TermsAt middle{hn::Set(f, block.middle[0]), hn::Set(f, block.middle[1]), hn::Set(f, block.middle[2]),
+                       hn::Set(f, decay)};
+  find_centers(from, list, n, middle, to);
+  const float log2_within = within > 0 ? hn::GetLane(log2(hn::Set(f, within))) : -1e30f;
+  const auto safe = [&](int32_t atoms) {
+    return log2_within - hn::GetLane(log2(hn::Set(f, static_cast<float>(atoms)))) - 1e-5f;
+  };
   float dropped;
-  if (!log2_upper) // relative to each unit
-    return take<false>(from, list, n, block, decay, nullptr,
-                       std::log2(within / (16.0f * static_cast<float>(slots))), to, dropped);
+  if (!log2_upper) { // relative to each unit
+    const auto relative = to.direct ? take<false, true> : take<false, false>;
+    return relative(from, list, n, block, decay, middle, nullptr, safe(16 * slots), to, dropped);
+  }
   // A threshold that mostly does; what it drops is summed. The last one cannot fail.
-  for (float log2_least = std::log2(within) - 4,
-             log2_last = std::log2(within / (16.0f * static_cast<float>(slots * n)));
-       ; log2_least = std::max(log2_last, log2_least - 2)) {
-    const bool holds = take<true>(from, list, n, block, decay, log2_upper, log2_least, to, dropped);
-    if (dropped <= within || log2_least <= log2_last)
+  const auto absolute = to.direct ? take<true, true> : take<true, false>;
+  const float last = safe(16 * std::max(1, slots * n));
+  for (float least = std::max(last, log2_within - 4);; least = std::max(last, least - 2)) {
+    const bool holds = absolute(from, list, n, block, decay, middle, log2_upper, least, to, dropped);
+    if (dropped <= within || least <= last)
       return holds;
   }
 }
