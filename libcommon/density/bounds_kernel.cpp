@@ -42,44 +42,43 @@ HWY_INLINE V fall(V at, float middle, float half, V decay) {
   return hn::Mul(hn::Mul(d, d), decay);
 }
 
-/// Sums of unit n over one box, relative to 2^scale, scale the log2 of the largest term.
-HWY_INLINE float bound_scaled(const NearUnits& u, size_t begin, size_t end, const LocalBox& b, V k) {
+/// log2 of the sum over one box of a unit's terms, however small.
+HWY_INLINE float bound_scaled(const LocalClusters& node, const int32_t* cluster, int32_t clusters,
+                              const LocalBox& b, V k) {
   const auto log2_term = [&](size_t a) {
-    V e = hn::LoadU(f, &u.atom_peak[a]);
-    e = hn::Sub(e, fall(hn::LoadU(f, &u.atom_x[a]), b.middle[0], b.half[0], k));
-    e = hn::Sub(e, fall(hn::LoadU(f, &u.atom_y[a]), b.middle[1], b.half[1], k));
-    return hn::Sub(e, fall(hn::LoadU(f, &u.atom_z[a]), b.middle[2], b.half[2], k));
+    V e = hn::LoadU(f, &node.atom_peak[a]);
+    e = hn::Sub(e, fall(hn::LoadU(f, &node.atom_x[a]), b.middle[0], b.half[0], k));
+    e = hn::Sub(e, fall(hn::LoadU(f, &node.atom_y[a]), b.middle[1], b.half[1], k));
+    return hn::Sub(e, fall(hn::LoadU(f, &node.atom_z[a]), b.middle[2], b.half[2], k));
   };
   V largest = hn::Set(f, -1e30f), sum = hn::Zero(f);
-  for (size_t a = begin; a < end; a += lanes)
-    largest = hn::Max(largest, log2_term(a));
+  for_atoms(cluster, clusters, [&](size_t a) { largest = hn::Max(largest, log2_term(a)); });
   const V scale = hn::MaxOfLanes(f, largest);
-  for (size_t a = begin; a < end; a += lanes)
-    sum = hn::Add(sum, exp2(hn::Sub(log2_term(a), scale)));
+  for_atoms(cluster, clusters, [&](size_t a) { sum = hn::Add(sum, exp2(hn::Sub(log2_term(a), scale))); });
   return hn::GetLane(hn::Add(scale, log2(hn::SumOfLanes(f, sum))));
 }
 
-/// The 2³ boxes (2 = sides) that intervals make: side[axis] of box[0] and of the one next to it along the axis.
+/// The 2³ boxes that two intervals along each axis make (sides = 2), as octants are numbered; or one.
 template <int sides>
-HWY_INLINE void bound_boxes(const NearUnits& u, const LocalBox* box, float decay, bool scaled, float* log2_upper,
-                            int32_t stride) {
+HWY_INLINE void bound_boxes(const LocalClusters& node, const NearUnits& u, const LocalBox* box, float decay,
+                            bool scaled, float* log2_upper, int32_t stride) {
   constexpr int boxes = sides * sides * sides;
   const V k = hn::Set(f, decay);
   for (int32_t n = 0; n < u.n; ++n) {
-    const size_t begin = 16 * static_cast<size_t>(u.begin[static_cast<size_t>(n)]),
-                 end = 16 * static_cast<size_t>(u.begin[static_cast<size_t>(n) + 1]);
+    const int32_t begin = u.begin[static_cast<size_t>(n)],
+                  clusters = u.begin[static_cast<size_t>(n) + 1] - begin, *const cluster = u.cluster.data() + begin;
     if (scaled) {
       for (int b = 0; b < boxes; ++b)
-        log2_upper[b * stride + n] = bound_scaled(u, begin, end, box[b], k);
+        log2_upper[b * stride + n] = bound_scaled(node, cluster, clusters, box[b], k);
       continue;
     }
     V sum[boxes];
     for (V& s : sum)
       s = hn::Zero(f);
-    for (size_t a = begin; a < end; a += lanes) {
+    for_atoms(cluster, clusters, [&](size_t a) {
       V x[sides], y[sides], z[sides];
-      const V ax = hn::LoadU(f, &u.atom_x[a]), ay = hn::LoadU(f, &u.atom_y[a]), az = hn::LoadU(f, &u.atom_z[a]),
-              peak = hn::LoadU(f, &u.atom_peak[a]);
+      const V ax = hn::LoadU(f, &node.atom_x[a]), ay = hn::LoadU(f, &node.atom_y[a]),
+              az = hn::LoadU(f, &node.atom_z[a]), peak = hn::LoadU(f, &node.atom_peak[a]);
       for (int s = 0; s < sides; ++s) {
         x[s] = hn::Sub(peak, fall(ax, box[sides * sides * s].middle[0], box->half[0], k));
         y[s] = fall(ay, box[sides * s].middle[1], box->half[1], k);
@@ -93,7 +92,7 @@ HWY_INLINE void bound_boxes(const NearUnits& u, const LocalBox* box, float decay
             to = hn::Add(to, exp2_above(hn::Sub(xy, z[l])));
           }
         }
-    }
+    });
     for (int b = 0; b < boxes; ++b)
       log2_upper[b * stride + n] = hn::GetLane(hn::SumOfLanes(f, sum[b]));
   }
@@ -105,13 +104,14 @@ HWY_INLINE void bound_boxes(const NearUnits& u, const LocalBox* box, float decay
   }
 }
 
-void bound_units_simd(const NearUnits& u, const LocalBox& b, float decay, bool scaled, float* log2_upper) {
-  bound_boxes<1>(u, &b, decay, scaled, log2_upper, 0);
+void bound_units_simd(const LocalClusters& node, const NearUnits& u, const LocalBox& b, float decay, bool scaled,
+                      float* log2_upper) {
+  bound_boxes<1>(node, u, &b, decay, scaled, log2_upper, 0);
 }
 
-void bound_octants_simd(const NearUnits& u, const LocalBox* octant, float decay, bool scaled, float* log2_upper,
-                        int32_t stride) {
-  bound_boxes<2>(u, octant, decay, scaled, log2_upper, stride);
+void bound_octants_simd(const LocalClusters& node, const NearUnits& u, const LocalBox* octant, float decay,
+                        bool scaled, float* log2_upper, int32_t stride) {
+  bound_boxes<2>(node, u, octant, decay, scaled, log2_upper, stride);
 }
 
 void power_terms_simd(const float* log2_sum, const float* exponent, int32_t n, float* term) {
@@ -159,12 +159,13 @@ HWY_EXPORT(larger_than_simd);
 int32_t near_clusters(const LocalClusters& c, int32_t n, const LocalBox& box, int32_t* out) {
   return HWY_DYNAMIC_DISPATCH(near_clusters_simd)(c, n, box, out);
 }
-void bound_units(const NearUnits& units, const LocalBox& box, float decay, bool scaled, float* log2_upper) {
-  HWY_DYNAMIC_DISPATCH(bound_units_simd)(units, box, decay, scaled, log2_upper);
+void bound_units(const LocalClusters& node, const NearUnits& units, const LocalBox& box, float decay, bool scaled,
+                 float* log2_upper) {
+  HWY_DYNAMIC_DISPATCH(bound_units_simd)(node, units, box, decay, scaled, log2_upper);
 }
-void bound_octants(const NearUnits& units, const LocalBox* octant, float decay, bool scaled, float* log2_upper,
-                   int32_t stride) {
-  HWY_DYNAMIC_DISPATCH(bound_octants_simd)(units, octant, decay, scaled, log2_upper, stride);
+void bound_octants(const LocalClusters& node, const NearUnits& units, const LocalBox* octant, float decay,
+                   bool scaled, float* log2_upper, int32_t stride) {
+  HWY_DYNAMIC_DISPATCH(bound_octants_simd)(node, units, octant, decay, scaled, log2_upper, stride);
 }
 void power_terms(const float* log2_sum, const float* exponent, int32_t n, float* term) {
   HWY_DYNAMIC_DISPATCH(power_terms_simd)(log2_sum, exponent, n, term);

@@ -26,23 +26,23 @@ struct LocalClusters {
 /// many.
 int32_t near_clusters(const LocalClusters& c, int32_t n, const LocalBox& box, int32_t* out);
 
-/// Units that may matter in a box: sums of atoms that are raised to one power. Atoms in slots of 16 a cluster.
+/// Units that may matter in a box: sums of atoms that are raised to one power.
 struct NearUnits {
   int32_t n = 0;
-  std::vector<int32_t> begin;                           ///< [n + 1] position in `cluster`
-  std::vector<int32_t> cluster;                         ///< index in Field
-  std::vector<int64_t> group;                           ///< [n] innermost group
-  std::vector<float> exponent;                          ///< [n + 16]
-  std::vector<float> atom_x, atom_y, atom_z, atom_peak; ///< [16·clusters]
+  std::vector<int32_t> begin;   ///< [n + 1] position in `cluster`
+  std::vector<int32_t> cluster; ///< index in the node's clusters
+  std::vector<int64_t> group;   ///< [n] innermost group
+  std::vector<float> exponent;  ///< [n + 16]
 };
 
 /// log2 of an upper bound over `box` of each unit's sum. log2_upper holds n + 16. Without `scaled`, bounds below
 /// 2^-122 are not told apart.
-void bound_units(const NearUnits& units, const LocalBox& box, float decay, bool scaled, float* log2_upper);
+void bound_units(const LocalClusters& node, const NearUnits& units, const LocalBox& box, float decay, bool scaled,
+                 float* log2_upper);
 /// The same for eight boxes of one size: octant[4·i + 2·j + k] has the i-th of two intervals along x, the j-th
 /// along y, the k-th along z. log2_upper[stride·octant + unit], stride at least n + 16.
-void bound_octants(const NearUnits& units, const LocalBox* octant, float decay, bool scaled, float* log2_upper,
-                   int32_t stride);
+void bound_octants(const LocalClusters& node, const NearUnits& units, const LocalBox* octant, float decay,
+                   bool scaled, float* log2_upper, int32_t stride);
 
 /// term = 2^(exponent·log2_sum), from 2^-126 to 2^127. n is rounded up to a multiple of 16.
 void power_terms(const float* log2_sum, const float* exponent, int32_t n, float* term);

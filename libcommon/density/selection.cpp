@@ -2,7 +2,6 @@
 #include "density/selection.hpp"
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
 
@@ -97,7 +96,7 @@ bool Selection::narrow(Vec3d middle, double h) {
   if (effect_.size() < room)
     for (std::vector<float>* v : {&upper_of_part_, &effect_})
       v->resize(2 * room);
-  bound_units(near_, part, static_cast<float>(log2e * f_.decay), scaled_, upper_of_part_.data());
+  bound_units(local_, near_, part, static_cast<float>(log2e * f_.decay), scaled_, upper_of_part_.data());
   log2_upper_ = upper_of_part_.data();
   find_effects();
   if (surely_outside())
@@ -114,7 +113,8 @@ void Selection::bound_octants_of_part() {
     octant_upper_.resize(static_cast<size_t>(16 * stride_));
   for (int o = 0; o < 8; ++o)
     octant_[o] = local(octant_middle(o), 3.5 * h_ * Vec3d{1, 1, 1});
-  bound_octants(near_, octant_, static_cast<float>(log2e * f_.decay), scaled_, octant_upper_.data(), stride_);
+  bound_octants(local_, near_, octant_, static_cast<float>(log2e * f_.decay), scaled_, octant_upper_.data(),
+                stride_);
   octants_bounded_ = true;
 }
 
@@ -126,20 +126,10 @@ void Selection::gather(const LocalBox& part) {
   NearUnits& u = near_;
   u.begin.clear();
   u.group.clear();
-  u.cluster.resize(clusters);
+  u.cluster.assign(found_.begin(), found_.begin() + n);
   u.exponent.resize(clusters + 16);
-  for (std::vector<float>* v : {&u.atom_x, &u.atom_y, &u.atom_z, &u.atom_peak})
-    v->resize(16 * clusters);
   for (size_t i = 0; i < clusters; ++i) {
     const auto c = static_cast<size_t>(found_[i]);
-    u.cluster[i] = local_.cluster[c];
-    const auto copy = [&](const std::vector<float>& from, std::vector<float>& to) {
-      std::memcpy(&to[16 * i], &from[16 * c], 16 * sizeof(float));
-    };
-    copy(local_.atom_x, u.atom_x);
-    copy(local_.atom_y, u.atom_y);
-    copy(local_.atom_z, u.atom_z);
-    copy(local_.atom_peak, u.atom_peak);
     // With P = 1 a cluster can go without the others of its group.
     if (u.group.empty() || local_.exponent[c] == 1 || u.group.back() != local_.group[c]) {
       u.exponent[u.group.size()] = local_.exponent[c];
@@ -159,12 +149,9 @@ void Selection::keep_only() {
   for (const int32_t k : kept_) {
     const auto n = static_cast<size_t>(k);
     const auto begin = static_cast<size_t>(u.begin[n]), end = static_cast<size_t>(u.begin[n + 1]);
-    for (size_t c = begin; c < end && to != begin; ++c) {
-      const size_t at = to + c - begin;
-      u.cluster[at] = u.cluster[c];
-      for (std::vector<float>* v : {&u.atom_x, &u.atom_y, &u.atom_z, &u.atom_peak})
-        std::memcpy(&(*v)[16 * at], &(*v)[16 * c], 16 * sizeof(float));
-    }
+    std::copy(u.cluster.begin() + static_cast<std::ptrdiff_t>(begin),
+              u.cluster.begin() + static_cast<std::ptrdiff_t>(end),
+              u.cluster.begin() + static_cast<std::ptrdiff_t>(to));
     u.begin[units_to] = static_cast<int32_t>(to);
     u.group[units_to] = u.group[n];
     u.exponent[units_to++] = u.exponent[n];
@@ -209,7 +196,7 @@ bool Selection::take_single() {
   const double half = std::sqrt(double{box.half[0]} * box.half[0] + double{box.half[1]} * box.half[1] +
                                 double{box.half[2]} * box.half[2]);
   u.direct = log2e * f_.decay * half * (2 * (reach_ + half) + half) < 0.8 * log2_range;
-  const size_t room = kept_.size() + 17, atom_room = near_.atom_x.size() + 32;
+  const size_t room = kept_.size() + 17, atom_room = 16 * near_.cluster.size() + 32;
   if (u.x.size() < room) {
     u.begin.resize(2 * room);
     for (std::vector<float>* v : {&u.exponent, &u.log2_term, &u.x, &u.y, &u.z})
@@ -219,7 +206,7 @@ bool Selection::take_single() {
     for (std::vector<float>* v : {&u.atom_x, &u.atom_y, &u.atom_z, &u.atom_constant})
       v->resize(2 * atom_room);
   const bool absolute = f_.plain_above && budget_.within > 0;
-  if (!take_units(near_, kept_.data(), n, box, static_cast<float>(log2e * f_.decay),
+  if (!take_units(local_, near_, kept_.data(), n, box, static_cast<float>(log2e * f_.decay),
                   absolute ? log2_upper_ : nullptr, static_cast<float>(absolute ? budget_.within : within_), u))
     return false;
   units = n;

@@ -23,7 +23,7 @@ void Selection::take_double(Vec3d middle) {
            {}};
     double largest = -infinity;
     for (auto i = static_cast<size_t>(near_.begin[n]); i < static_cast<size_t>(near_.begin[n + 1]); ++i) {
-      const auto cluster = static_cast<size_t>(near_.cluster[i]);
+      const auto cluster = static_cast<size_t>(local_.cluster[static_cast<size_t>(near_.cluster[i])]);
       for (auto a = static_cast<size_t>(f_.begin[cluster]); a < static_cast<size_t>(f_.begin[cluster + 1]); ++a) {
         const Vec3d d{f_.x[a] - middle.x, f_.y[a] - middle.y, f_.z[a] - middle.z};
         ln_weight.push_back(f_.peak[a] - f_.decay * norm2(d));

@@ -70,6 +70,14 @@ HWY_INLINE V log2(V x) {
   return hn::MulAdd(t, polynomial(f, t, c), hn::ConvertTo(f, n));
 }
 
+/// use(a) for the first of every `lanes` atoms in the slots of clusters.
+template <class Use>
+HWY_INLINE void for_atoms(const int32_t* cluster, int32_t clusters, Use&& use) {
+  for (int32_t c = 0; c < clusters; ++c)
+    for (size_t a = 16 * static_cast<size_t>(cluster[c]), end = a + 16; a < end; a += lanes)
+      use(a);
+}
+
 HWY_INLINE V twice_square_root(V x) { // one Newton step on the machine's estimate: 3e-7
   const V r = hn::ApproximateReciprocalSqrt(x), xr = hn::Mul(x, r);
   return hn::Mul(xr, hn::NegMulAdd(xr, r, hn::Set(f, 3.0f)));

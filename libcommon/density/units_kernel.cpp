@@ -17,7 +17,7 @@ namespace {
 /// log2 of the terms of atoms, from the a-th, at a point.
 struct TermsAt {
   V x, y, z, k;
-  HWY_INLINE V operator()(const NearUnits& u, size_t a) const {
+  HWY_INLINE V operator()(const LocalClusters& u, size_t a) const {
     const V dx = hn::Sub(hn::LoadU(f, &u.atom_x[a]), x), dy = hn::Sub(hn::LoadU(f, &u.atom_y[a]), y),
             dz = hn::Sub(hn::LoadU(f, &u.atom_z[a]), z);
     return hn::NegMulAdd(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), k, hn::LoadU(f, &u.atom_peak[a]));
@@ -25,48 +25,50 @@ struct TermsAt {
 };
 
 /// The atom of each unit with the largest term in the middle: of T its term is 1 everywhere (field.md §4).
-void find_centers(const NearUnits& from, const int32_t* list, int32_t n, const TermsAt& middle, BlockUnits& to) {
+void find_centers(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
+                  const TermsAt& middle, BlockUnits& to) {
   for (int32_t u = 0; u < n; ++u) {
     const auto s = static_cast<size_t>(u), at = static_cast<size_t>(list[u]);
-    const size_t begin = 16 * static_cast<size_t>(from.begin[at]),
-                 end = 16 * static_cast<size_t>(from.begin[at + 1]);
-    V largest = hn::Set(f, -2e30f), where = hn::Zero(f);
-    for (size_t a = begin; a < end; a += lanes) {
-      const V term = middle(from, a);
+    const int32_t begin = from.begin[at], clusters = from.begin[at + 1] - begin;
+    const int32_t* const cluster = from.cluster.data() + begin;
+    V largest = hn::Set(f, -2e30f);
+    auto where = hn::Zero(I());
+    for_atoms(cluster, clusters, [&](size_t a) {
+      const V term = middle(node, a);
       const auto more = hn::Gt(term, largest);
       largest = hn::IfThenElse(more, term, largest);
-      where = hn::IfThenElse(more, hn::Set(f, static_cast<float>(a - begin)), where);
-    }
+      where = hn::IfThenElse(hn::RebindMask(I(), more), hn::Set(I(), static_cast<int32_t>(a)), where);
+    });
     const V log2_largest = hn::MaxOfLanes(f, largest);
     const intptr_t lane = hn::FindFirstTrue(f, hn::Eq(largest, log2_largest));
-    size_t first = begin + static_cast<size_t>(lane);
-    if (end - begin > static_cast<size_t>(lanes)) {
-      HWY_ALIGN float offset[lanes];
-      hn::Store(where, f, offset);
-      first += static_cast<size_t>(offset[lane]);
+    size_t first = static_cast<size_t>(lane);
+    if (clusters > 1 || lanes < 16) {
+      HWY_ALIGN int32_t at_lane[lanes];
+      hn::Store(where, I(), at_lane);
+      first += static_cast<size_t>(at_lane[lane]);
+    } else {
+      first += 16 * static_cast<size_t>(*cluster);
     }
     to.exponent[s] = from.exponent[at];
     to.log2_term[s] = hn::GetLane(log2_largest);
-    to.x[s] = from.atom_x[first];
-    to.y[s] = from.atom_y[first];
-    to.z[s] = from.atom_z[first];
+    to.x[s] = node.atom_x[first];
+    to.y[s] = node.atom_y[first];
+    to.z[s] = node.atom_z[first];
   }
 }
 
 /// What take_units does with one threshold, log2 of the largest change by an atom that is dropped. dropped: an
 /// upper bound on what all that are dropped change.
 template <bool absolute, bool direct>
-HWY_INLINE bool take(const NearUnits& from, const int32_t* list, int32_t n, const LocalBox& b, float decay,
-                     const TermsAt& middle, const float* log2_upper, float log2_least, BlockUnits& to,
-                     float& dropped) {
+HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
+                     const LocalBox& b, float decay, const TermsAt& middle, const float* log2_upper,
+                     float log2_least, BlockUnits& to, float& dropped) {
   const V sx = hn::Set(f, 2 * decay * b.half[0] / 3.5f), sy = hn::Set(f, 2 * decay * b.half[1] / 3.5f),
           sz = hn::Set(f, 2 * decay * b.half[2] / 3.5f), least = hn::Set(f, log2_least);
   V widest = hn::Zero(f), lost = widest;
   size_t kept = 0;
   for (int32_t u = 0; u < n; ++u) {
     const auto s = static_cast<size_t>(u), at = static_cast<size_t>(list[u]);
-    const size_t begin = 16 * static_cast<size_t>(from.begin[at]),
-                 end = 16 * static_cast<size_t>(from.begin[at + 1]);
     // field.md §4: what dropping an atom changes G by, or (not absolute) its unit's sum, relative;
     // log2 P ≤ (P - 1)/ln 2.
     const float p = to.exponent[s], term = to.log2_term[s], steep = 1.442696f * (p - 1);
@@ -83,11 +85,11 @@ HWY_INLINE bool take(const NearUnits& from, const int32_t* list, int32_t n, cons
     const auto along = [&](V x, V y, V z) {
       return hn::Mul(hn::Set(f, 3.5f), hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z))));
     };
-    for (size_t a = begin; a < end; a += lanes) {
-      const V weight = hn::Sub(middle(from, a), log2_largest);
-      V x = hn::Mul(hn::Sub(hn::LoadU(f, &from.atom_x[a]), middle.x), sx),
-        y = hn::Mul(hn::Sub(hn::LoadU(f, &from.atom_y[a]), middle.y), sy),
-        z = hn::Mul(hn::Sub(hn::LoadU(f, &from.atom_z[a]), middle.z), sz);
+    for_atoms(from.cluster.data() + from.begin[at], from.begin[at + 1] - from.begin[at], [&](size_t a) {
+      const V weight = hn::Sub(middle(node, a), log2_largest);
+      V x = hn::Mul(hn::Sub(hn::LoadU(f, &node.atom_x[a]), middle.x), sx),
+        y = hn::Mul(hn::Sub(hn::LoadU(f, &node.atom_y[a]), middle.y), sy),
+        z = hn::Mul(hn::Sub(hn::LoadU(f, &node.atom_z[a]), middle.z), sz);
       const V effect =
           hn::Add(hn::Add(weight, change),
                   along(hn::NegMulAdd(share, cx, x), hn::NegMulAdd(share, cy, y), hn::NegMulAdd(share, cz, z)));
@@ -108,7 +110,7 @@ HWY_INLINE bool take(const NearUnits& from, const int32_t* list, int32_t n, cons
       hn::StoreU(hn::Compress(z, keep), f, &to.atom_z[kept]);
       hn::StoreU(hn::Compress(weight, keep), f, &to.atom_constant[kept]);
       kept += hn::CountTrue(f, keep);
-    }
+    });
     to.begin[s + 1] = static_cast<int32_t>(kept);
   }
   to.n = n;
@@ -133,15 +135,15 @@ HWY_INLINE bool take(const NearUnits& from, const int32_t* list, int32_t n, cons
   return hn::GetLane(hn::MaxOfLanes(f, widest)) <= log2_range;
 }
 
-bool take_units_simd(const NearUnits& from, const int32_t* list, int32_t n, const LocalBox& block, float decay,
-                     const float* log2_upper, float within, BlockUnits& to) {
+bool take_units_simd(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
+                     const LocalBox& block, float decay, const float* log2_upper, float within, BlockUnits& to) {
   int32_t slots = 1;
   for (int32_t u = 0; u < n; ++u)
     slots =
         std::max(slots, from.begin[static_cast<size_t>(list[u]) + 1] - from.begin[static_cast<size_t>(list[u])]);
   const TermsAt middle{hn::Set(f, block.middle[0]), hn::Set(f, block.middle[1]), hn::Set(f, block.middle[2]),
                        hn::Set(f, decay)};
-  find_centers(from, list, n, middle, to);
+  find_centers(node, from, list, n, middle, to);
   const float log2_within = within > 0 ? hn::GetLane(log2(hn::Set(f, within))) : -1e30f;
   const auto safe = [&](int32_t atoms) {
     return log2_within - hn::GetLane(log2(hn::Set(f, static_cast<float>(atoms)))) - 1e-5f;
@@ -149,13 +151,13 @@ bool take_units_simd(const NearUnits& from, const int32_t* list, int32_t n, cons
   float dropped;
   if (!log2_upper) { // relative to each unit
     const auto relative = to.direct ? take<false, true> : take<false, false>;
-    return relative(from, list, n, block, decay, middle, nullptr, safe(16 * slots), to, dropped);
+    return relative(node, from, list, n, block, decay, middle, nullptr, safe(16 * slots), to, dropped);
   }
   // A threshold that mostly does; what it drops is summed. The last one cannot fail.
   const auto absolute = to.direct ? take<true, true> : take<true, false>;
   const float last = safe(16 * std::max(1, slots * n));
   for (float least = std::max(last, log2_within - 4);; least = std::max(last, least - 2)) {
-    const bool holds = absolute(from, list, n, block, decay, middle, log2_upper, least, to, dropped);
+    const bool holds = absolute(node, from, list, n, block, decay, middle, log2_upper, least, to, dropped);
     if (dropped <= within || least <= last)
       return holds;
   }
@@ -217,9 +219,9 @@ HWY_EXPORT(take_units_simd);
 HWY_EXPORT(unit_middles_simd);
 HWY_EXPORT(sum_of_powers_simd);
 
-bool take_units(const NearUnits& from, const int32_t* list, int32_t n, const LocalBox& block, float decay,
-                const float* log2_upper, float within, BlockUnits& to) {
-  return HWY_DYNAMIC_DISPATCH(take_units_simd)(from, list, n, block, decay, log2_upper, within, to);
+bool take_units(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
+                const LocalBox& block, float decay, const float* log2_upper, float within, BlockUnits& to) {
+  return HWY_DYNAMIC_DISPATCH(take_units_simd)(node, from, list, n, block, decay, log2_upper, within, to);
 }
 void unit_middles(const BlockUnits& units, const LocalBox& block, float decay, UnitMiddles& to) {
   HWY_DYNAMIC_DISPATCH(unit_middles_simd)(units, block, decay, to);

@@ -25,8 +25,8 @@ constexpr float log2_range = 115;
 /// dropped change ΣS^P by at most `within`, or, without log2_upper (bounds on the sums of all units of `from` over
 /// the block), the sum of each unit by that part of it. to.direct is the caller's wish. False when single precision
 /// does not hold.
-bool take_units(const NearUnits& from, const int32_t* list, int32_t n, const LocalBox& block, float decay,
-                const float* log2_upper, float within, BlockUnits& to);
+bool take_units(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
+                const LocalBox& block, float decay, const float* log2_upper, float within, BlockUnits& to);
 
 /// log2 S in the middle of the block, and the mean of the atoms' positions weighted with their terms there, Å.
 struct UnitMiddles {
