@@ -23,13 +23,6 @@ struct NodeWords {
   uint64_t word[blocks_a_node][8];
 };
 
-/// Rounds v[512] to nearest with the last `bits` (1 to 20) bits zero, for files that compress: a relative error of
-/// at most 2^(bits - 24).
-void round_values(float* v, int bits);
-
-/// Bit 8·j + k of word i of below and above, of the 512 values of a block: v < lower, v > upper.
-void classify_points(const float* v, float lower, float upper, uint64_t* below, uint64_t* above);
-
 void rows_from_words(const NodeWords& words, NodeBits& rows);
 void words_from_rows(const NodeBits& rows, NodeWords& words);
 
@@ -47,11 +40,5 @@ void band_points(const NodeBits* const* below, const NodeBits* const* above, con
 /// The same as far as the node knows it alone. What lies beyond its own points counts as `beyond` has it at the
 /// nearest of them.
 void likely_band_points(const Sides& sides, const Sides& beyond, const CellRange& cells, NodeBits& active);
-
-/// v: the values of the points stored[8], in order. Keeps those of active[8], a subset. Returns how many.
-int32_t keep_active(float* v, const uint64_t* stored, const uint64_t* active);
-
-/// Copies the v whose bit of active[8] is set to out, in order; may write up to 16 values more. Returns how many.
-int32_t pack_active(const float* v, const uint64_t* active, float* out);
 
 } // namespace molmesh::density

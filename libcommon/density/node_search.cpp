@@ -1,0 +1,208 @@
+// node_search.cpp — bounds, values and sides of a node's blocks; then its active points.
+#include "density/node_search.hpp"
+#include "density/values_kernel.hpp"
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace molmesh::density {
+namespace {
+
+/// The smallest float >= v: comparing floats with it is comparing them with v.
+float float_at_least(double v) {
+  const auto f = static_cast<float>(v);
+  return f >= v ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
+}
+
+/// What G is multiplied with from a point to the next, at most, in all but a few places: near the surface the atoms
+/// that matter are 2 Å away.
+float usual_step(const Field& f, double h) {
+  return static_cast<float>(std::exp(std::min(40.0, 4 * f.decay * f.steepest * h)));
+}
+
+/// Points of the block that belong to the grid.
+int64_t points_in_grid(const GridFrame& frame, Vec3i corner) {
+  int64_t n = 1;
+  for (int a = 0; a < 3; ++a)
+    n *= std::min(corner[a] + 8, frame.lower[a] + frame.points[a]) - std::max(corner[a], frame.lower[a]);
+  return n;
+}
+
+} // namespace
+
+NodeSearch::NodeSearch(const Field& f, const GridFrame& frame, const SearchOptions& o, const NodeList& nodes)
+    : f_(f), frame_(frame), nodes_(nodes), full_(o.full), lower_(float_at_least(o.band_lower)),
+      upper_(-float_at_least(-o.band_upper)), far_below_(lower_ / usual_step(f, frame.spacing)),
+      far_above_(upper_ * usual_step(f, frame.spacing)) {
+  if (const double digits = budget_for(o).digits; digits > 0)
+    dropped_bits_ = std::clamp(24 + static_cast<int>(std::floor(std::log2(digits))), 0, 20);
+}
+
+/// Values of a block from the selection made for it.
+void NodeSearch::evaluate(Vec3i corner, Workspace& w, float* value) const {
+  w.evaluator.evaluate(f_, w.selection, middle_of(corner, 1), frame_.spacing, value);
+  if (dropped_bits_ > 0)
+    round_values(value, dropped_bits_);
+  ++w.counts.blocks_evaluated;
+  w.counts.group_visits += w.selection.units;
+  w.counts.atom_visits += w.selection.atoms;
+  w.points += points_in_grid(frame_, 8 * corner);
+}
+
+void NodeSearch::work_through_block(int b, int octant, Vec3i corner, NodeState& s, Workspace& w) const {
+  const uint64_t bit = uint64_t{1} << b;
+  ++w.counts.blocks_visited;
+  w.selection.select(octant, !full_);
+  if (w.selection.side == Side::inside)
+    s.inside |= bit;
+  if (w.selection.side != Side::mixed)
+    return;
+  float* const value = w.value[b];
+  evaluate(corner, w, value);
+  uint64_t *const below = w.below.word[b], *const above = w.above.word[b];
+  classify_points(value, lower_, upper_, below, above);
+  const auto all = [](const uint64_t* word) { return std::all_of(word, word + 8, [](uint64_t v) { return !~v; }); };
+  if (full_ && (all(below) || all(above))) { // as bounds would have it
+    s.inside |= all(above) ? bit : 0;
+    return;
+  }
+  classify_points(value, far_below_, far_above_, w.far_below.word[b], w.far_above.word[b]);
+  s.known |= bit;
+}
+
+void NodeSearch::work_through(const Node& node, NodeState& s, Workspace& w) const {
+  for (NodeWords* const words : {&w.below, &w.far_below})
+    std::fill_n(&words->word[0][0], 8 * blocks_a_node, every_block);
+  for (NodeWords* const words : {&w.above, &w.far_above})
+    std::fill_n(&words->word[0][0], 8 * blocks_a_node, 0);
+  w.selection.enter(middle_of(node.corner, node_blocks), nodes_.clusters(node));
+  for (int octant = 0; octant < 8; ++octant) {
+    const Vec3i part = 2 * Vec3i{octant >> 2, octant >> 1 & 1, octant & 1};
+    if (!in_grid(frame_, node.corner + part) ||
+        (!w.selection.narrow(middle_of(node.corner + part, 2), frame_.spacing) && !full_))
+      continue;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3i at = part + Vec3i{i >> 2, i >> 1 & 1, i & 1};
+      if (in_grid(frame_, node.corner + at))
+        work_through_block(16 * at.x + 4 * at.y + at.z, i, node.corner + at, s, w);
+    }
+  }
+  settle(s, w);
+  need_neighbors(s);
+}
+
+/// Sides by rows, where the node lies on more than one.
+void NodeSearch::settle(NodeState& s, Workspace& w) const {
+  if (s.known == 0 && (s.inside == 0 || s.inside == every_block))
+    return;
+  for (int b = 0; b < blocks_a_node; ++b)
+    if (s.inside >> b & 1)
+      for (const auto& [below, above] : {std::pair{&w.below, &w.above}, std::pair{&w.far_below, &w.far_above}}) {
+        std::fill_n(below->word[b], 8, 0);
+        std::fill_n(above->word[b], 8, every_block);
+      }
+  s.sides = std::make_unique_for_overwrite<NodePoints>();
+  rows_from_words(w.below, s.sides->below);
+  rows_from_words(w.above, s.sides->above);
+  if (s.known)
+    store(s, w);
+}
+
+/// Packs what looks like band while it is at hand: two thirds of the values never leave the processor's cache.
+void NodeSearch::store(NodeState& s, Workspace& w) const {
+  NodePoints& to = *s.sides;
+  rows_from_words(w.far_below, w.beyond.below);
+  rows_from_words(w.far_above, w.beyond.above);
+  likely_band_points(to, w.beyond, cells_of(s.corner), to.stored);
+  words_from_rows(to.stored, w.stored);
+  for (uint64_t left = s.known; left; left &= left - 1) {
+    const int b = std::countr_zero(left);
+    to.value[b] = w.packed.take(512 + 16);
+    w.packed.keep(static_cast<size_t>(pack_active(w.value[b], w.stored.word[b], to.value[b])));
+  }
+}
+
+void NodeSearch::need_neighbors(NodeState& s) const {
+  const unsigned open = open_faces(s);
+  for (int n = 0; open && n < 27; n += 3) {
+    const Vec3i row = direction(n + 1);
+    if ((row.x && !(open >> (row.x > 0) & 1)) || (row.y && !(open >> (2 + (row.y > 0)) & 1)))
+      continue;
+    const Vec3i first = s.corner + node_blocks * direction(n);
+    auto at = std::lower_bound(nodes_.node.begin(), nodes_.node.end(), first,
+                               [](const Node& a, Vec3i c) { return a.corner < c; });
+    for (int z = -1; z <= 1; ++z) {
+      const Vec3i corner = s.corner + node_blocks * direction(n + z + 1);
+      if (at != nodes_.node.end() && at->corner == corner)
+        ++at;
+      else if ((z == 0 || open >> (4 + (z > 0)) & 1) && in_grid(frame_, corner))
+        s.needed.push_back(corner);
+    }
+  }
+}
+
+CellRange NodeSearch::cells_of(Vec3i corner) const {
+  CellRange c;
+  for (int a = 0; a < 3; ++a) {
+    const int64_t begin = 8 * int64_t{corner[a]};
+    c.first[a] = static_cast<int32_t>(std::max<int64_t>(-1, frame_.lower[a] - begin));
+    c.end[a] =
+        static_cast<int32_t>(std::min<int64_t>(node_edge, int64_t{frame_.lower[a]} + frame_.points[a] - 1 - begin));
+  }
+  return c;
+}
+
+/// Active points of a node among its neighbors, packed.
+void NodeSearch::finish(NodeState& s, const NodeBits* const* below, const NodeBits* const* above,
+                        Workspace& w) const {
+  band_points(below, above, cells_of(s.corner), w.rows);
+  words_from_rows(w.rows, w.active);
+  words_from_rows(*above[13], w.above);
+  if (s.known)
+    words_from_rows(s.sides->stored, w.stored);
+  bool entered = false;
+  s.band.reserve(static_cast<size_t>(std::popcount(s.known)) + 4);
+  for (int b = 0; b < blocks_a_node; ++b) {
+    const uint64_t *const active = w.active.word[b], bit = uint64_t{1} << b;
+    if (std::all_of(active, active + 8, [](uint64_t v) { return v == 0; })) {
+      s.closed |= s.known & bit && w.above.word[b][0] & 1 ? bit : 0;
+      continue;
+    }
+    const Vec3i corner = s.corner + block_at(b);
+    const uint64_t* const stored = w.stored.word[b];
+    const bool at_hand =
+        s.known & bit && std::equal(active, active + 8, stored, [](uint64_t a, uint64_t v) { return !(a & ~v); });
+    float* value;
+    int32_t n = 0;
+    if (at_hand) {
+      value = s.sides->value[b];
+      n = keep_active(value, stored, active);
+    } else {
+      // Bounds left it out: its points are on corners of band cells, and lie where the bounds say. Or its values
+      // were not kept.
+      if (!entered)
+        w.selection.enter(middle_of(s.corner, node_blocks), nodes_.clusters_at(s.corner));
+      entered = true;
+      const Vec3i in_node = block_at(b), part{in_node.x & 2, in_node.y & 2, in_node.z & 2},
+                  in_part = in_node - part;
+      w.selection.narrow(middle_of(s.corner + part, 2), frame_.spacing);
+      ++w.counts.blocks_visited;
+      w.selection.select(4 * in_part.x + 2 * in_part.y + in_part.z, false);
+      evaluate(corner, w, w.value[0]);
+      value = w.packed.take(512 + 16);
+      n = pack_active(w.value[0], active, value);
+      w.packed.keep(static_cast<size_t>(n));
+    }
+    s.closed &= ~bit;
+    s.kept |= bit;
+    w.counts.active_points += n;
+    BandBlock& to = s.band.emplace_back();
+    to.corner = 8 * corner;
+    std::copy_n(active, 8, to.active.begin());
+    std::copy_n(w.above.word[b], 8, to.above.begin());
+    to.value = value;
+  }
+}
+
+} // namespace molmesh::density

@@ -1,0 +1,21 @@
+// values_kernel.hpp — the 512 values of a block: rounded, put on sides of the band, packed; vectorized for the best
+// instruction set of this machine. Masks [8]: bit 8·j + k of word i.
+#pragma once
+#include <cstdint>
+
+namespace molmesh::density {
+
+/// Rounds v[512] to nearest with the last `bits` (1 to 20) bits zero, for files that compress: a relative error of
+/// at most 2^(bits - 24).
+void round_values(float* v, int bits);
+
+/// Bit 8·j + k of word i of below and above, of the 512 values of a block: v < lower, v > upper.
+void classify_points(const float* v, float lower, float upper, uint64_t* below, uint64_t* above);
+
+/// Copies the v whose bit of active[8] is set to out, in order; may write up to 16 values more. Returns how many.
+int32_t pack_active(const float* v, const uint64_t* active, float* out);
+
+/// v: the values of the points stored[8], in order. Keeps those of active[8], a subset. Returns how many.
+int32_t keep_active(float* v, const uint64_t* stored, const uint64_t* active);
+
+} // namespace molmesh::density
