@@ -158,7 +158,7 @@ bool take_units_simd(const LocalClusters& node, const NearUnits& from, const int
   const float last = safe(16 * std::max(1, slots * n));
   for (float least = std::max(last, log2_within - 4);; least = std::max(last, least - 2)) {
     const bool holds = absolute(node, from, list, n, block, decay, middle, log2_upper, least, to, dropped);
-    if (dropped <= within || least <= last)
+    if (1.001f * dropped <= within || least <= last)
       return holds;
   }
 }
