@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The default surface beside the solvent-excluded one: volumes and Euler numbers (design.md §4), from our own output.
 
-    surface_table.py BIN FILE... [--spacing H] [--setting 'P_R P_C DECAY']...
+    surface_table.py BIN FILE... [--spacing H] [--setting 'P_R P_C DECAY [ISOVALUE]']...
 
 BIN: folder of the tools. The solvent-excluded volume is that of what is farther than the probe's radius, 1.4 Å, from every place
 where its centre can be; summed on grids of 0.35 and 0.25 Å and extrapolated to none, since its error is proportional to the
@@ -61,9 +61,9 @@ def tool(folder, name, *arguments):
     subprocess.run([f"{folder}/{name}", "-q", "-t", "1", *arguments], check=True)
 
 
-def surface(folder, hier, spacing, decay, scratch):
+def surface(folder, hier, spacing, decay, isovalue, scratch):
     vdb, vtu = f"{scratch}/s.vdb", f"{scratch}/s.vtu"
-    tool(folder, "hier2density", "--spacing", str(spacing), "--decay", str(decay), hier, "-o", vdb)
+    tool(folder, "hier2density", "--spacing", str(spacing), "--decay", decay, "--isovalue", isovalue, hier, "-o", vdb)
     tool(folder, "density2tet", "--adapt", "0", "--region", "interior", vdb, "-o", vtu)
     text = subprocess.run([f"{folder}/tetstat", "--json", vtu], capture_output=True, text=True).stdout
     found = json.loads(text)["surface"]
@@ -97,7 +97,7 @@ def main():
                         atoms[:, 3] = [radius_with_hydrogens(w[1], w[2], float(w[6])) for w in words]
                         excluded[1] = solvent_excluded_volume(atoms)
                     line = f"| {name} | {len(atoms):,} | {hydrogens:,} | {excluded[0]:,.0f} | {excluded[1]:,.0f} |"
-                volume, euler, components = surface(o.bin, hier, o.spacing, s[2], scratch)
+                volume, euler, components = surface(o.bin, hier, o.spacing, s[2], s[3] if len(s) > 3 else "1", scratch)
                 deviation = [100 * (volume / e - 1) for e in excluded]
                 for kind in (0, 1):
                     ratio[s][kind].append(deviation[kind])
