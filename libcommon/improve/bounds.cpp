@@ -69,14 +69,48 @@ void Editor::add_sail(const Element& e, size_t face, int32_t from) {
   sails_.push_back(s);
 }
 
-bool Editor::sails_fit(Vec3d x, double limit) const {
+Fit Editor::fit_of_sails() const {
+  Fit fit;
+  for (const Sail& s : sails_)
+    fit.add(misfit(s.p[0], s.p[1], s.p[2]));
+  return fit;
+}
+
+Fit Editor::fit_of_sails(Vec3d x) const {
+  Fit fit;
   for (const Sail& s : sails_) {
     auto p = s.p;
     p[size_t(s.moving)] = x;
-    if (misfit(p[0], p[1], p[2]) > limit)
+    fit.add(misfit(p[0], p[1], p[2]));
+  }
+  return fit;
+}
+
+bool Editor::sails_fit(Vec3d x, const Fit& before) const {
+  Fit now;
+  for (const Sail& s : sails_) {
+    auto p = s.p;
+    p[size_t(s.moving)] = x;
+    now.add(misfit(p[0], p[1], p[2]));
+    if (!fits(now, before))
       return false;
   }
-  return true;
+  return fits(now, before);
+}
+
+bool Editor::bent(int32_t t, size_t face) const {
+  const Element& e = m_.element[size_t(t)];
+  return e.label[face] != 0 && (e.n[face] < 0 || m_.element[size_t(e.n[face])].region > e.region) &&
+         misfit_face(e, face, -1, {}) > 1;
+}
+
+double Editor::off(int32_t v) const {
+  double distance;
+  Vec3d normal;
+  if (m_.vertex[size_t(v)].kind != Kind::surface || !target_ ||
+      !target_->probe(m_.point[size_t(v)], distance, normal))
+    return 0;
+  return std::abs(distance) / (0.02 * target_->spacing());
 }
 
 bool Editor::crowded(const std::array<int32_t, 3>& t) const {

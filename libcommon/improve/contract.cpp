@@ -101,7 +101,7 @@ bool Editor::contract(int32_t e, int i, int j) {
   if (!may_contract(ka, m_.vertex[size_t(b)]) || !star(a, star_))
     return false;
   const bool tiny = yield < 1 && is_tiny(e, i, j);
-  const float before = worst(star_), above = (tiny ? yield : 1.f) * (before + 1e-9f + 0.01f * before);
+  const float before = worst(star_), above = (tiny ? yield : 1.f) * demand(before);
   now_.clear();
   for (const int32_t t : star_) {
     const Element& el = m_.element[size_t(t)];
@@ -119,11 +119,12 @@ bool Editor::contract(int32_t e, int i, int j) {
   if (lack(now_) > (tiny ? 0.9f : 1.f) * lack(star_))
     return false;
   if (ka.kind != Kind::interior) {
-    double length, limit;
-    gather(star_, a, length, limit);
+    double length;
+    Fit fit;
+    gather(star_, a, length, fit);
     const Vec3d pb = m_.point[size_t(b)];
     std::erase_if(sails_, [&](const Sail& s) { return s.p[0] == pb || s.p[1] == pb || s.p[2] == pb; });
-    if (!sails_fit(pb, limit) || !borders_allow(e, a, b))
+    if (!sails_fit(pb, fit) || !borders_allow(e, a, b))
       return false;
   }
   rim_.clear();
@@ -138,18 +139,22 @@ bool Editor::merge(int32_t e, int i, int j) {
   const Vertex &ka = m_.vertex[size_t(a)], &kb = m_.vertex[size_t(b)];
   if (!may_contract(ka, kb) || kb.kind == Kind::fixed || !star(a, star_) || !star(b, star2_))
     return false;
-  const float before = std::min(worst(star_), worst(star2_)), above = before + 1e-9f + 0.01f * before;
+  const float before = std::min(worst(star_), worst(star2_)), above = demand(before);
   const Vec3d pa = m_.point[size_t(a)], pb = m_.point[size_t(b)];
-  double length, limit, limit_b;
-  gather(star_, a, length, limit);
+  double length;
+  Fit fit, fit_b;
+  gather(star_, a, length, fit);
   const std::vector<Sail> sails_a = sails_;
-  gather(star2_, b, length, limit_b);
-  limit = std::max(limit, limit_b);
+  gather(star2_, b, length, fit_b);
+  fit.worst = std::max(fit.worst, fit_b.worst);
+  fit.excess += fit_b.excess;
   sails_.insert(sails_.end(), sails_a.begin(), sails_a.end());
   std::erase_if(sails_, [&](const Sail& s) { // those on the edge go
     int ends = 0;
     for (const Vec3d& p : s.p)
       ends += (p == pa) + (p == pb);
+    if (ends == 2) // found from either end
+      fit.excess -= 0.5 * std::max(0., misfit(s.p[0], s.p[1], s.p[2]) - 1);
     return ends == 2;
   });
   spokes_.clear(pb);
@@ -184,17 +189,19 @@ bool Editor::merge(int32_t e, int i, int j) {
     if (q > best)
       best = q, x = y;
   }
-  if (!(best > 0.25f * before) || !sails_fit(x, limit))
+  if (!(best > 0.25f * before) || (!straighten && !sails_fit(x, fit)))
     return false;
-  search(kb, x, best, std::max(goal, above), length, limit);
-  if (best <= above || (ka.kind != Kind::interior && !borders_allow(e, a, b)))
+  if (straighten)
+    best = worth(x, above);
+  search(kb, x, best, std::max(goal, above), length, fit, above);
+  if ((straighten ? !sails_fit(x, fit) : best <= above) || (ka.kind != Kind::interior && !borders_allow(e, a, b)))
     return false;
   if (ka.kind == Kind::interior && !star(b, star2_))
     return false;
   m_.point[size_t(b)] = x;
   bool good = true;
   for (size_t c = 0; c < made && good; ++c)
-    good = judge(now_[c], before);
+    good = judge(now_[c], straighten ? above : before);
   float sum = lack(now_), allowed = lack(star_);
   std::vector<float> q;
   std::vector<int32_t> kept;
@@ -203,7 +210,7 @@ bool Editor::merge(int32_t e, int i, int j) {
     if (el.find(a) >= 0)
       continue;
     Candidate c{el.v, el.region, 0, {}};
-    good = judge(c, before);
+    good = judge(c, straighten ? above : before);
     kept.push_back(star2_[t]);
     q.push_back(c.q);
     sum += lack(c.q), allowed += lack(el.q);

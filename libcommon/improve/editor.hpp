@@ -34,6 +34,17 @@ struct Candidate {
   std::array<uint8_t, 4> outside{}; ///< labels of faces that may come to lie on the outside, where they differ
 };
 
+/// How badly triangles fit the target.
+struct Fit {
+  double worst = 1;  ///< misfit, at least 1
+  double excess = 0; ///< sum of what misfits exceed 1 by, and of what a vertex lies off the target
+  void add(double misfit) {
+    worst = misfit > worst ? misfit : worst;
+    excess += misfit > 1 ? misfit - 1 : 0;
+  }
+  float worth() const { return static_cast<float>(1 / (1 + excess)); } ///< 1: nothing to repair
+};
+
 /// Elements around the edge a b: element i is (a, b, vertex i, vertex i + 1), positive.
 struct Ring {
   int32_t a = -1, b = -1;
@@ -52,7 +63,7 @@ public:
          std::vector<uint32_t>& stamp, PartRoom& room, Guard guard);
 
   // Each tries its operation and tells whether it was done: the worst quality among the elements concerned has
-  // risen.
+  // risen. When straightening: their surface triangles fit better, and no element has fallen under the goal.
   bool smooth(int32_t v);                      ///< moves v until its elements reach the goal
   bool remove_edge(int32_t e, int i, int j);   ///< edge v[i] v[j] of element e; flips a surface edge
   bool swap_face(int32_t e, int i);            ///< face i: two elements become three
@@ -60,6 +71,10 @@ public:
   bool merge(int32_t e, int i, int j);         ///< v[i] and v[j] meet where their elements are best
   bool split(int32_t e, int i, int j);         ///< a new vertex near the middle of the edge
   bool is_tiny(int32_t e, int i, int j) const; ///< under a tenth of a spacing
+  /// Whether the face is a surface triangle, counted from this side, that does not keep the guard.
+  bool bent(int32_t e, size_t face) const;
+  /// Of a surface vertex: how far off the target, in units of a fiftieth of a spacing (what I8 allows).
+  double off(int32_t v) const;
   /// Moves a surface vertex onto the target, all the way or part of it; no element falls under `floor`.
   bool settle(int32_t v, float floor);
 
@@ -70,6 +85,7 @@ public:
   Counts counts;
   float goal = 1; ///< quality that elements are missed by in the deficit
   bool worst_first = true;
+  bool straighten = false; ///< operations are to make the surface fit
   float yield = 1;  ///< contractions may lower the worst element to this share where the deficit falls by a tenth
   int32_t time = 1; ///< what operations write to DynamicMesh::touched
 
@@ -104,9 +120,19 @@ private:
     int moving;
   };
   void add_sail(const Element& e, size_t face, int32_t from);
-  bool sails_fit(Vec3d x, double limit) const;
-  void gather(const std::vector<int32_t>& elements, int32_t v, double& length, double& limit);
-  bool search(const Vertex& k, Vec3d& x, float& best, float aim, double length, double limit);
+  Fit fit_of_sails() const;
+  Fit fit_of_sails(Vec3d x) const; ///< with the vertex there
+  bool fits(const Fit& now, const Fit& before) const {
+    return straighten ? now.excess < 0.98 * before.excess : now.worst <= before.worst;
+  }
+  bool sails_fit(Vec3d x, const Fit& before) const;
+  /// What new elements must be better than.
+  float demand(float before) const {
+    return straighten ? 0.999999f * (before < goal ? before : goal) : before + 1e-9f + 0.01f * before;
+  }
+  void gather(const std::vector<int32_t>& elements, int32_t v, double& length, Fit& before);
+  float worth(Vec3d x, float above);
+  bool search(const Vertex& k, Vec3d& x, float& best, float aim, double length, const Fit& before, float above);
   bool take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above, float allowed);
   bool may_contract(const Vertex& a, const Vertex& b) const;
   bool finish_contraction(int32_t a, int32_t b);

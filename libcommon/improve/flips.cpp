@@ -1,17 +1,11 @@
 // flips.cpp — edges and faces go: edge removal (3-2, 4-4, any ring), surface flips with it, 2-3 swaps.
 #include "improve/editor.hpp"
-#include <algorithm>
 #include <array>
 
 namespace molmesh::improve {
 namespace {
 
 constexpr int longest = 8; // vertices of a chain: an edge with a longer ring rarely goes with profit
-
-// A rise worth an operation.
-float aim(float before) {
-  return before + 1e-9f + 0.01f * before;
-}
 
 // Best triangulation of the polygon of a chain of vertices, by its worst element (Klincsek's recursion).
 class Polygon {
@@ -89,7 +83,7 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
     return false;
   if (!surface && (m < 3 || m > longest))
     return false;
-  const float above = aim(worst(ring_.element));
+  const float above = demand(worst(ring_.element));
   const auto vertex = [&](int k) { return ring_.vertex[size_t(k % m)]; };
   const auto element = [&](int k) -> const Element& { return m_.element[size_t(ring_.element[size_t(k % m)])]; };
   const auto pair_of = [&](int first, int x, int y, int z) {
@@ -129,12 +123,14 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
     if (label.curved()) {
       if (!target_)
         return false;
-      const double limit = std::max({1., misfit_face(after, face_s, -1, {}), misfit_face(before, face_t, -1, {})});
+      Fit old_fit, fit;
+      old_fit.add(misfit_face(after, face_s, -1, {}));
+      old_fit.add(misfit_face(before, face_t, -1, {}));
       const auto p = [&](int32_t v) { return m_.point[size_t(v)]; };
       const bool out = outward(after, face_s);
-      const double fit = out ? std::max(misfit(p(vs), p(b), p(vt)), misfit(p(vs), p(vt), p(a)))
-                             : std::max(misfit(p(vt), p(b), p(vs)), misfit(p(vt), p(vs), p(a)));
-      if (fit > limit)
+      fit.add(out ? misfit(p(vs), p(b), p(vt)) : misfit(p(vt), p(b), p(vs)));
+      fit.add(out ? misfit(p(vs), p(vt), p(a)) : misfit(p(vt), p(vs), p(a)));
+      if (!fits(fit, old_fit))
         return false;
     }
     // Where one side has a single element it goes altogether: its other faces must be free to take the label.
@@ -173,7 +169,7 @@ bool Editor::swap_face(int32_t e, int i) {
   for (size_t k = 0; k < 4; ++k)
     if (other.n[k] == e)
       b = other.v[k];
-  const float above = aim(std::min(el.q, other.q));
+  const float above = demand(std::min(el.q, other.q));
   now_.clear();
   for (size_t k = 0; k < 3; ++k) {
     const auto& o = outward_face[size_t(i)];

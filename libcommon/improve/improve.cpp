@@ -54,7 +54,7 @@ std::vector<uint8_t> curved_triangles(const DynamicMesh& m, const TetMesh& mesh)
 // The goal rises by steps: what is far below it gets room before its neighbors ask for it. The guard is released
 // late, when few elements are left; where the surface has features far smaller than the grid, points may leave it
 // at the very end.
-const Guard kept, released{60, 0.24, 1, 0}, lifted{180, 1e3, 1, 0.15};
+const Guard kept, released{44, 0.24, 1, 0}, lifted{180, 1e3, 1, 0.15};
 struct Stage {
   double share; // of the goal's sine
   int effort;
@@ -70,6 +70,12 @@ const Stage stages[] = {
     {0.97, 1, 32, true, lifted},
 };
 constexpr size_t refresh_offset = 4;
+
+// The surface is made to fit in the first rounds, while elements may still be bad: what stands on it is healed
+// later, but a bent triangle between good elements has nowhere to go.
+constexpr size_t straighten_first = 1, straighten_last = 4;
+constexpr double straighten_share = 0.1;
+const Guard straight{40, 0.24, 0.5, 0};
 
 } // namespace
 
@@ -109,7 +115,8 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   for (int round = 0; round < options.iterations && schedule.worst() < goal; ++round) {
     const Stage& stage = stages[std::min<size_t>(size_t(round), std::size(stages) - 1)];
     Pass pass;
-    pass.goal = static_cast<float>(stage.share * stage.share * goal);
+    const auto rising = static_cast<float>(stage.share * stage.share * goal);
+    pass.goal = rising;
     pass.effort = stage.effort;
     pass.cell = stage.cell;
     pass.worst_first = stage.worst_first;
@@ -127,13 +134,18 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
       result.counts += c;
       done += c.total();
     }
+    if (density && size_t(round) >= straighten_first && size_t(round) <= straighten_last) {
+      pass.goal = static_cast<float>(straighten_share * straighten_share * goal);
+      pass.guard = straight;
+      result.counts += schedule.straighten(pass);
+    }
     ++result.rounds;
     if (density && round == 0) // not before: what is squeezed between surface and grid is gone now
       settle();
     if (density) {
       if (size_t(round) + 1 == refresh_offset)
         isosurface->set_offset(isosurface->offset() + chord_offset(m, *isosurface, options.threads));
-      result.counts += schedule.settle(size_t(round) < refresh_offset ? pass.goal : goal, kept);
+      result.counts += schedule.settle(size_t(round) < refresh_offset ? rising : goal, kept);
     }
     if (done == 0 && size_t(round) + 1 >= std::size(stages))
       break;

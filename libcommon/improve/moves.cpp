@@ -31,20 +31,35 @@ int basis_of(const Vertex& k, const Target* target, bool lifted, Vec3d x, Vec3d 
 
 } // namespace
 
-bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double length, double limit) {
+// Of the sails with the vertex at x, where no element is as bad as `above`: what a search raises to make the
+// surface fit.
+float Editor::worth(Vec3d x, float above) {
+  return spokes_.worst(x, above) > above ? fit_of_sails(x).worth() : 0;
+}
+
+bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double length, const Fit& before,
+                    float above) {
   Vec3d basis[3];
   const int dimensions = basis_of(k, target_, guard_.lift > 0, x, basis);
   if (dimensions == 0)
     return false;
   const Vec3d from = x;
-  return pattern_search(
-      spokes_, x, best, aim, length, basis, dimensions,
-      [&](Vec3d& y) { return constrain(k, from, y, guard_.reach * length); },
-      [&](Vec3d y) { return sails_fit(y, limit); });
+  const auto bind = [&](Vec3d& y) { return constrain(k, from, y, guard_.reach * length); };
+  if (straighten) {
+    struct {
+      Editor& editor;
+      float above;
+      float worst(Vec3d y, float) { return editor.worth(y, above); }
+      Vec3d ascent(Vec3d, double) { return {}; }
+    } straightness{*this, above};
+    return pattern_search(straightness, x, best, 1, length, basis, dimensions, bind, [](Vec3d) { return true; });
+  }
+  return pattern_search(spokes_, x, best, aim, length, basis, dimensions, bind,
+                        [&](Vec3d y) { return sails_fit(y, before); });
 }
 
-// Spokes and sails of v's star; the mean length of its edges, and the worst misfit now.
-void Editor::gather(const std::vector<int32_t>& elements, int32_t v, double& length, double& limit) {
+// Spokes and sails of v's star; the mean length of its edges, and how it fits now.
+void Editor::gather(const std::vector<int32_t>& elements, int32_t v, double& length, Fit& before) {
   const Vec3d from = m_.point[size_t(v)];
   spokes_.clear(from);
   sails_.clear();
@@ -64,9 +79,9 @@ void Editor::gather(const std::vector<int32_t>& elements, int32_t v, double& len
           add_sail(e, f, v);
   }
   length /= 3. * double(elements.size());
-  limit = 1;
-  for (const Sail& s : sails_)
-    limit = std::max(limit, misfit(s.p[0], s.p[1], s.p[2]));
+  before = fit_of_sails();
+  if (straighten)
+    before.excess += std::max(0., off(v) - 1);
 }
 
 // v is at its new place: takes it when every element of the star is above.
@@ -104,18 +119,21 @@ bool Editor::smooth(int32_t v) {
   const Vertex& k = m_.vertex[size_t(v)];
   if (k.kind == Kind::fixed || !star(v, star_))
     return false;
-  const float before = worst(star_);
-  if (before >= goal)
+  const float before = worst(star_), above = straighten ? demand(before) : before;
+  if (!straighten && before >= goal)
     return false;
-  double length, limit;
-  gather(star_, v, length, limit);
+  double length;
+  Fit fit;
+  gather(star_, v, length, fit);
+  if (straighten && fit.excess == 0)
+    return false;
   const Vec3d from = m_.point[size_t(v)];
   Vec3d x = from;
-  float best = before;
-  if (!search(k, x, best, goal, length, limit))
+  float best = straighten ? fit.worth() : before;
+  if (!search(k, x, best, goal, length, fit, above))
     return false;
   m_.point[size_t(v)] = x;
-  return take(star_, v, from, before, lack(star_));
+  return take(star_, v, from, above, lack(star_));
 }
 
 bool Editor::settle(int32_t v, float floor) {
@@ -128,8 +146,9 @@ bool Editor::settle(int32_t v, float floor) {
     return false;
   if (!star(v, star_))
     return false;
-  double length, limit;
-  gather(star_, v, length, limit);
+  double length;
+  Fit fit;
+  gather(star_, v, length, fit);
   Vec3d to = from;
   if (!target_->project(to, guard_.reach * length))
     return false;
@@ -162,7 +181,7 @@ bool Editor::split(int32_t e, int i, int j) {
       return false;
   }
   const float before = worst(ring_.element), aim = before + 1e-8f + 0.02f * before;
-  double limit = 1;
+  const float above = straighten ? demand(before) : before;
   now_.clear();
   spokes_.clear(0.5 * (m_.point[size_t(a)] + m_.point[size_t(b)]));
   sails_.clear();
@@ -183,23 +202,25 @@ bool Editor::split(int32_t e, int i, int j) {
           add_sail(el, f, end);
     }
   }
-  for (const Sail& s : sails_)
-    limit = std::max(limit, misfit(s.p[0], s.p[1], s.p[2]));
+  Fit fit = fit_of_sails();
+  fit.excess /= 2; // each triangle goes with either end
   const Vec3d pa = m_.point[size_t(a)], pb = m_.point[size_t(b)];
   const double length = norm(pb - pa);
   Vec3d x = 0.5 * (pa + pb);
-  if (!constrain(kind, x, x, guard_.reach * length) || !sails_fit(x, limit))
+  if (!constrain(kind, x, x, guard_.reach * length) || (!straighten && !sails_fit(x, fit)))
     return false;
   float best = spokes_.worst(x, 0.25f * before);
   if (!(best > 0.25f * before))
     return false; // too far from a gain to search for it
-  search(kind, x, best, std::max(goal, aim), length, limit);
-  if (best < aim)
+  if (straighten)
+    best = worth(x, above);
+  search(kind, x, best, std::max(goal, aim), length, fit, above);
+  if (straighten ? !sails_fit(x, fit) : best < aim)
     return false;
   m_.vertex[size_t(v)] = kind;
   m_.point[size_t(v)] = x;
   for (Candidate& c : now_)
-    if (!judge(c, before))
+    if (!judge(c, above))
       return false;
   if (lack(now_) > lack(ring_.element))
     return false;

@@ -1,51 +1,10 @@
-// schedule.cpp — parts, their reserved slots, and the order of operations on one bad element.
+// schedule.cpp — parts, their reserved slots, and the sheets near them.
 #include "improve/schedule.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
 
 namespace molmesh::improve {
-namespace {
-
-constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-
-// One operation on a bad element, the cheap and local ones first. True when something was done.
-bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass& pass) {
-  const auto element = [&]() -> const Element& { return m.element[size_t(t)]; };
-  if (pass.yield < 1)
-    for (const auto& [i, j] : edges)
-      if (editor.is_tiny(t, i, j) && (editor.contract(t, i, j) || editor.contract(t, j, i)))
-        return true;
-  for (const auto& [i, j] : edges)
-    if (editor.remove_edge(t, i, j))
-      return true;
-  for (int f = 0; f < 4; ++f)
-    if (editor.swap_face(t, f))
-      return true;
-  const float q = element().q;
-  bool done = false;
-  for (size_t i = 0; i < 4; ++i) {
-    done |= editor.smooth(element().v[i]);
-    if (element().q >= pass.goal)
-      return true;
-  }
-  if (element().q > 1.05f * q)
-    return true;
-  for (const auto& [i, j] : edges)
-    if (editor.contract(t, i, j) || editor.contract(t, j, i))
-      return true;
-  if (pass.effort >= 1) {
-    for (const auto& [i, j] : edges)
-      if (editor.merge(t, i, j))
-        return true;
-    for (const auto& [i, j] : edges)
-      if (editor.split(t, i, j))
-        return true;
-  }
-  return done;
-}
-
-} // namespace
 
 Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads)
     : m_(mesh), target_(target), cell_(cell), threads_(threads), sheets_(target ? target->spacing() : 1) {
@@ -197,65 +156,6 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
   if (sheets_.records() > 2 * sheets_.alive())
     sheets_.compact();
   return sum;
-}
-
-Counts Schedule::run(const Pass& pass) {
-  if (pass != last_)
-    since_ = time_; // what failed before may work now
-  last_ = pass;
-  set_owners(passes_++, pass.cell * cell_);
-  constexpr int32_t sweeps = 4;
-  const int32_t start = time_, since = since_;
-  time_ += sweeps;
-  const auto worthwhile = [&](int32_t t) {
-    const Element& e = m_.element[size_t(t)];
-    if (!e.alive() || e.q >= pass.goal)
-      return false;
-    const auto& v = e.v;
-    return e.tried <= since || std::max({m_.touched[size_t(v[0])], m_.touched[size_t(v[1])],
-                                         m_.touched[size_t(v[2])], m_.touched[size_t(v[3])]}) >= e.tried;
-  };
-  std::vector<int32_t> items, part;
-  for (size_t e = 0; e < m_.element.size(); ++e)
-    if (worthwhile(static_cast<int32_t>(e))) {
-      items.push_back(static_cast<int32_t>(e));
-      part.push_back(part_of(m_.element[e]));
-    }
-  return for_parts(items, part, pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
-    editor.goal = pass.goal;
-    editor.worst_first = pass.worst_first;
-    editor.yield = pass.yield;
-    for (int32_t sweep = 1; sweep <= sweeps && !list.empty(); ++sweep) {
-      editor.time = start + sweep;
-      std::sort(list.begin(), list.end(), [&](int32_t a, int32_t b) {
-        const float qa = m_.element[size_t(a)].q, qb = m_.element[size_t(b)].q;
-        return qa != qb ? qa < qb : a < b;
-      });
-      list.erase(std::unique(list.begin(), list.end()), list.end());
-      editor.changed.clear();
-      for (const int32_t e : list)
-        if (worthwhile(e) && !improve_element(editor, m_, e, pass))
-          m_.element[size_t(e)].tried = editor.time;
-      list.clear();
-      for (const int32_t e : editor.changed)
-        if (worthwhile(e))
-          list.push_back(e);
-    }
-  });
-}
-
-Counts Schedule::settle(float floor, const Guard& guard) {
-  set_owners(settles_++, cell_);
-  std::vector<int32_t> items, part;
-  for (size_t v = 0; v < m_.point.size(); ++v)
-    if (m_.incident[v] >= 0 && m_.vertex[v].kind == Kind::surface) {
-      items.push_back(static_cast<int32_t>(v));
-      part.push_back(owner_[v]);
-    }
-  return for_parts(items, part, guard, [&](Editor& editor, std::vector<int32_t>& list) {
-    for (const int32_t v : list)
-      editor.settle(v, floor);
-  });
 }
 
 } // namespace molmesh::improve

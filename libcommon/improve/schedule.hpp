@@ -25,6 +25,9 @@ public:
   /// Every part works off its elements below the goal, worst first. Parts are the cells of a coarse lattice,
   /// shifted from pass to pass: what lies across two parts now lies inside one the next time.
   Counts run(const Pass& pass);
+  /// Surface triangles that do not keep the guard, and surface vertices off the target: made to fit, where no
+  /// element falls under the goal.
+  Counts straighten(const Pass& pass);
   /// Puts surface vertices on the target where no element falls under `floor`.
   Counts settle(float floor, const Guard& guard);
   /// Where the mesh ends in a surface, it is kept from crossing itself; at first only near opposed sheets. This

@@ -8,11 +8,11 @@
 
 namespace molmesh::improve {
 
-/// Raises best = spokes.worst(x) by moving x until it reaches the goal or no step helps. `basis`: up to three
+/// Raises best = worth.worst(x) by moving x until it reaches the goal or no step helps. `basis`: up to three
 /// orthonormal directions to search. constrain(y) moves a trial onto what the vertex is bound to, or refuses;
-/// accept(y) has the last word.
-template <class Constrain, class Accept>
-bool pattern_search(Spokes& spokes, Vec3d& x, float& best, float goal, double length, const Vec3d* basis,
+/// accept(y) has the last word. Worth: worst() and ascent() as in Spokes.
+template <class Worth, class Constrain, class Accept>
+bool pattern_search(Worth& worth, Vec3d& x, float& best, float goal, double length, const Vec3d* basis,
                     int dimensions, Constrain constrain, Accept accept) {
   std::array<Vec3d, 14> direction;
   int directions = 0;
@@ -34,7 +34,7 @@ bool pattern_search(Spokes& spokes, Vec3d& x, float& best, float goal, double le
     if (!constrain(y))
       return false;
     const float above = best + 1e-9f + 5e-3f * best;
-    const float q = spokes.worst(y, above);
+    const float q = worth.worst(y, above);
     if (q <= above || !accept(y))
       return false;
     x = y;
@@ -46,7 +46,7 @@ bool pattern_search(Spokes& spokes, Vec3d& x, float& best, float goal, double le
     bool again = true;
     for (int round = 0; again && round < 4 && best < goal; ++round) {
       again = false;
-      const Vec3d g = spokes.ascent(x, 1e-3 * length);
+      const Vec3d g = worth.ascent(x, 1e-3 * length);
       Vec3d tangent;
       for (int a = 0; a < dimensions; ++a)
         tangent += dot(g, basis[a]) * basis[a];

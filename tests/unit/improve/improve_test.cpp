@@ -4,6 +4,7 @@
 #include "improve/isosurface.hpp"
 #include "lattice_mesh.hpp"
 #include <catch2/catch.hpp>
+#include <random>
 
 using namespace molmesh;
 using namespace molmesh::test;
@@ -114,6 +115,58 @@ TEST_CASE("improvement keeps regions, walls and topology, and puts the surface o
   for (const auto& [label, area] : before.area)
     if (label != surface)
       CHECK(after.area.at(label) == Approx(area).epsilon(1e-12));
+}
+
+// Surface vertices pushed about, as far as no element turns over.
+void ruffle(improve::DynamicMesh& m) {
+  std::vector<std::vector<size_t>> star(m.point.size());
+  for (size_t e = 0; e < m.element.size(); ++e)
+    for (const int32_t v : m.element[e].v)
+      star[size_t(v)].push_back(e);
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> push(-0.3 * h, 0.3 * h);
+  for (size_t v = 0; v < m.point.size(); ++v) {
+    if (m.vertex[v].kind != improve::Kind::surface)
+      continue;
+    const Vec3d from = m.point[v];
+    m.point[v] += Vec3d{push(generator), push(generator), push(generator)};
+    for (const size_t e : star[v])
+      if (m.quality(m.element[e].v) < 1e-3f)
+        m.point[v] = from;
+    for (const size_t e : star[v])
+      m.element[e].q = m.quality(m.element[e].v);
+  }
+}
+
+TEST_CASE("a ruffled surface is straightened, and nothing else suffers") {
+  const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  const improve::Isosurface surface_of(grid, 1);
+  improve::DynamicMesh m = improve::build(lattice_mesh(three_atoms, {0, 0, 0}, h, n), 180, 1);
+  ruffle(m);
+  TetMesh mesh = improve::extract(m);
+  const improve::Fidelity before = improve::measure_fidelity(m, surface_of, 1);
+  REQUIRE(before.turned > 30);
+  REQUIRE(before.points_off > 100);
+  improve::Schedule schedule(m, &surface_of, 32 * h, 1);
+  const float worst = schedule.worst();
+  improve::Pass pass;
+  pass.goal = 0.002f;
+  pass.guard.angle = 40;
+  for (int k = 0; k < 3; ++k)
+    schedule.straighten(pass);
+  const improve::Fidelity after = improve::measure_fidelity(m, surface_of, 1);
+  CHECK(after.turned <= before.turned / 10);
+  CHECK(after.points_off < before.points_off / 5);
+  CHECK(schedule.worst() >= 0.9999f * std::min(worst, pass.goal));
+  CHECK(measure(improve::extract(m), nullptr).euler == 2);
+  CHECK_NOTHROW(improve::build(improve::extract(m), 180, 1));
+
+  const improve::Result r = improve::improve(mesh, &grid, {});
+  CHECK(r.fidelity.turned == 0);
+  CHECK(r.fidelity.points_off == 0);
+  CHECK(r.after.min >= 25);
+  CHECK(r.after.max <= 140);
+  CHECK(measure(mesh, &grid).euler == 2);
 }
 
 TEST_CASE("the same mesh at any number of threads") {
