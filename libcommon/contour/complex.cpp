@@ -11,8 +11,8 @@ namespace molmesh::contour {
 
 using detail::at;
 
-Complex::Complex(const Lattice& l, const Octree& t, const std::vector<SurfaceCell>& c,
-                 const std::vector<SurfaceSample>& surface, int threads)
+Complex::Complex(const Lattice& l, const Octree& t, const LargeArray<SurfaceCell>& c,
+                 const LargeArray<SurfaceSample>& surface, int threads)
     : lattice(l), tree(t), cells(c), samples(surface) {
   const int32_t leaves = tree.size();
   first_cell.assign(at(leaves), -1);

@@ -6,6 +6,7 @@
 #include "contour/split_cell.hpp"
 #include "contour/surface_cells.hpp"
 #include "contour/surface_sample.hpp"
+#include "density/large_array.hpp"
 #include <cstdint>
 #include <vector>
 
@@ -14,13 +15,13 @@ namespace molmesh::contour {
 /// Everything known per leaf and per vertex of the complex. Vertex ids: grid points first, then one dual vertex per
 /// leaf (dual0 + leaf), then for each split cell its centre and the dual vertices of its pieces.
 struct Complex {
-  Complex(const Lattice& lattice, const Octree& tree, const std::vector<SurfaceCell>& cells,
-          const std::vector<SurfaceSample>& samples, int threads);
+  Complex(const Lattice& lattice, const Octree& tree, const LargeArray<SurfaceCell>& cells,
+          const LargeArray<SurfaceSample>& samples, int threads);
 
   const Lattice& lattice;
   const Octree& tree;
-  const std::vector<SurfaceCell>& cells;
-  const std::vector<SurfaceSample>& samples; ///< [cells]
+  const LargeArray<SurfaceCell>& cells;
+  const LargeArray<SurfaceSample>& samples; ///< [cells]
 
   std::vector<Side> side;           ///< [leaves]
   std::vector<int32_t> grid_vertex; ///< [8·leaves] vertex id of each corner

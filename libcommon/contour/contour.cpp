@@ -4,10 +4,8 @@
 #include "contour/components.hpp"
 #include "contour/detail/at.hpp"
 #include "contour/elements.hpp"
-#include "contour/octree.hpp"
-#include "contour/refinement.hpp"
+#include "contour/leaves.hpp"
 #include "contour/relax.hpp"
-#include "contour/surface_cells.hpp"
 #include "error.hpp"
 #include "par/par.hpp"
 #include <algorithm>
@@ -123,18 +121,16 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   const int threads = options.threads;
   const bool with_outside = options.meshed != Options::interior;
   on_phase("surface cells");
-  const Lattice lattice(grid, options.box, with_outside);
-  const std::vector<SurfaceCell> cells = surface_cells(lattice, threads);
+  const Lattice lattice(grid, options.box, with_outside, threads);
+  const Surface found = find_surface(lattice, threads);
   on_phase("octree");
   RefineOptions refine_options;
   refine_options.adapt = options.adapt;
   refine_options.inside = options.meshed != Options::exterior;
   refine_options.outside = with_outside;
-  const std::vector<SurfaceSample> samples = surface_samples(cells, lattice.isovalue, threads);
-  const Octree tree(lattice.cells, lattice.top_level, Refinement(lattice, cells, samples, refine_options, threads),
-                    threads);
+  const Octree tree(lattice.cells, select_leaves(lattice, found, refine_options, threads));
   on_phase("dual vertices");
-  Complex complex(lattice, tree, cells, samples, threads);
+  Complex complex(lattice, tree, found.cells, found.samples, threads);
   refuse_surface_at_wall(complex);
   on_phase("elements");
   const bool on_inside = refine_options.inside || options.drop_below > 0,
@@ -156,7 +152,7 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   mesh.source = grid.info.source;
 
   summary.leaves = tree.size();
-  summary.surface_cells = static_cast<int64_t>(cells.size());
+  summary.surface_cells = static_cast<int64_t>(found.cells.size());
   for (int32_t leaf = 0; leaf < tree.size(); ++leaf)
     summary.split_cells += complex.is_split(leaf);
   summary.face_points = elements.face_points;

@@ -1,6 +1,8 @@
 // lattice.cpp — where the walls go, and what lies between them.
 #include "contour/lattice.hpp"
 #include "error.hpp"
+#include "geom/bits.hpp"
+#include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -20,35 +22,61 @@ int level_for(double extent) {
   return level;
 }
 
-} // namespace
-
-bool surface_bounds(const BlockGrid& grid, Vec3i& lower, Vec3i& upper) {
-  const float iso = static_cast<float>(grid.info.isovalue);
-  bool any = false;
-  for (size_t b = 0; b < grid.corner.size(); ++b)
-    for (int s = 0; s < 512; ++s) {
-      if (!(grid.active[8 * b + static_cast<size_t>(s >> 6)] >> (s & 63) & 1) ||
-          !(grid.value[512 * b + static_cast<size_t>(s)] > iso))
-        continue;
-      const Vec3i p = grid.corner[b] + Vec3i{s >> 6, s >> 3 & 7, s & 7};
-      if (!any)
-        lower = upper = p;
-      any = true;
-      for (int a = 0; a < 3; ++a) {
-        lower[a] = std::min(lower[a], p[a]);
-        upper[a] = std::max(upper[a], p[a]);
-      }
-    }
-  // Inside points are at least one step within the surface's bounding box.
-  lower = lower - Vec3i{1, 1, 1};
-  upper = upper + Vec3i{1, 1, 1};
-  return any;
+struct IndexBox {
+  Vec3i lower{most_cells, most_cells, most_cells}, upper{-most_cells, -most_cells, -most_cells};
+  bool empty() const { return lower.x > upper.x; }
+};
+IndexBox both(IndexBox a, const IndexBox& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    a.lower[axis] = std::min(a.lower[axis], b.lower[axis]);
+    a.upper[axis] = std::max(a.upper[axis], b.upper[axis]);
+  }
+  return a;
 }
 
-Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls)
-    : isovalue(static_cast<float>(grid.info.isovalue)), grid_(grid), index_(grid) {
-  Vec3i first, last;
-  if (!surface_bounds(grid, first, last))
+/// Grid indices of the cells that the surface crosses.
+IndexBox surface_bounds(const BlockGrid& grid, const uint64_t* inside_words, int threads) {
+  const auto of_block = [&](int64_t b) {
+    IndexBox box;
+    uint64_t any = 0;
+    for (int x = 0; x < 8; ++x) {
+      const auto word = static_cast<size_t>(8 * b + x);
+      const uint64_t bits = inside_words[word] & grid.active[word];
+      any |= bits;
+      if (bits)
+        box = both(box, {{x, 0, 0}, {x, 0, 0}});
+    }
+    if (!any)
+      return box;
+    uint32_t columns = 0;
+    box.lower.y = lowest_bit(any) >> 3;
+    for (int y = 0; y < 8; ++y)
+      if (const auto row = static_cast<uint32_t>(any >> 8 * y) & 0xFF) {
+        box.upper.y = y;
+        columns |= row;
+      }
+    box.lower.z = lowest_bit(columns);
+    for (int z = 0; z < 8; ++z)
+      box.upper.z = columns >> z & 1 ? z : box.upper.z;
+    const Vec3i corner = grid.corner[static_cast<size_t>(b)];
+    return IndexBox{corner + box.lower, corner + box.upper};
+  };
+  IndexBox box = par::reduce(static_cast<int64_t>(grid.corner.size()), threads, IndexBox{}, of_block, both);
+  // Inside points are at least one step within the surface's bounding box.
+  box.lower = box.lower - Vec3i{1, 1, 1};
+  box.upper = box.upper + Vec3i{1, 1, 1};
+  return box;
+}
+
+} // namespace
+
+Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls, int threads)
+    : isovalue(static_cast<float>(grid.info.isovalue)), grid_(grid), index_(grid),
+      inside_words_(grid.active.size()) {
+  par::for_n(static_cast<int64_t>(inside_words_.size()), threads,
+             SetInsideWords{grid.value.data(), isovalue, inside_words_.data()});
+  const IndexBox surface = surface_bounds(grid, inside_words_.data(), threads);
+  if (surface.empty())
     fail(Status::failed,
          "the density has no surface at isovalue " + std::to_string(grid.info.isovalue) + ": nothing to mesh");
   const GridFrame& frame = grid.frame;
@@ -62,8 +90,8 @@ Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls)
     upper = request.upper;
   } else if (!to_grid) {
     const double scale = request.kind == BoxRequest::factor ? request.scale : 2;
-    const Vec3d centre = 0.5 * (frame.position(first) + frame.position(last));
-    const Vec3d half = 0.5 * scale * (frame.position(last) - frame.position(first));
+    const Vec3d centre = 0.5 * (frame.position(surface.lower) + frame.position(surface.upper));
+    const Vec3d half = 0.5 * scale * (frame.position(surface.upper) - frame.position(surface.lower));
     for (int a = 0; a < 3; ++a) { // never through the grid unasked
       lower[a] = std::min(lower[a], centre[a] - half[a]);
       upper[a] = std::max(upper[a], centre[a] + half[a]);
@@ -101,10 +129,17 @@ Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls)
   view_.inside_value = static_cast<float>(grid.info.inside_value);
   view_.index = index_.view();
   view_.grid = grid.value.data();
+  view_.active_words = grid.active.data();
+  view_.inside_words = inside_words_.data();
+  view_.spacing = h;
+  view_.grid_first = frame.lower - base_;
+  view_.grid_last = grid_last - base_;
   for (size_t a = 0; a < 3; ++a) {
     view_.axis[a] = axis_[a].data();
-    for (size_t side = 0; side < 2; ++side)
+    for (size_t side = 0; side < 2; ++side) {
       view_.cut[a][side] = cut_[a][side];
+      view_.any_cut = view_.any_cut || cut_[a][side].cuts;
+    }
   }
 }
 
@@ -158,13 +193,6 @@ bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
   x.front() = lower; // to the last bit
   x.back() = upper;
   return true;
-}
-
-bool Lattice::cuts() const {
-  for (int a = 0; a < 3; ++a)
-    if (cuts(a, 0) || cuts(a, 1))
-      return true;
-  return false;
 }
 
 } // namespace molmesh::contour

@@ -28,8 +28,13 @@ struct LatticeView {
   float isovalue = 1, inside_value = 0;
   const double* axis[3] = {}; ///< [cells + 1] positions, Å
   Cut cut[3][2];              ///< axis; lower, upper side
+  bool any_cut = false;
   BlockIndexView index{};
-  const float* grid = nullptr; ///< BlockGrid::value
+  const float* grid = nullptr;            ///< BlockGrid::value
+  const uint64_t* active_words = nullptr; ///< BlockGrid::active
+  const uint64_t* inside_words = nullptr; ///< laid out alike: values above the isovalue
+  double spacing = 0;                     ///< of the grid, Å
+  Vec3i grid_first, grid_last;            ///< lattice points; outside the lattice where a wall cuts the grid
 
   HD float grid_value(Vec3i p) const {
     const int64_t b = index.find(p);
@@ -45,7 +50,36 @@ struct LatticeView {
         }
     return grid_value(base + p);
   }
-  HD bool inside(Vec3i p) const { return value(p) > isovalue; }
+  HD bool on_cut(Vec3i p) const {
+    for (int a = 0; a < 3; ++a)
+      if ((cut[a][0].cuts && p[a] == 0) || (cut[a][1].cuts && p[a] == cells[a]))
+        return true;
+    return false;
+  }
+  HD bool inside(Vec3i p) const {
+    if (any_cut && on_cut(p))
+      return value(p) > isovalue;
+    const int64_t b = index.find(base + p);
+    return b == BlockIndexView::inside || (b >= 0 && bit(inside_words, b, base + p));
+  }
+  /// Whether the grid holds G there, not only the side.
+  HD bool active(Vec3i p) const {
+    const int64_t b = index.find(base + p);
+    return b >= 0 && bit(active_words, b, base + p);
+  }
+  /// At the corners c = x + 2 y + 4 z of the fine cell at p.
+  HD void corner_values(Vec3i p, float v[8]) const {
+    const Vec3i q = base + p;
+    if (!any_cut && (q.x & 7) < 7 && (q.y & 7) < 7 && (q.z & 7) < 7)
+      if (const int64_t b = index.find(q); b >= 0) {
+        const float* first = grid + 512 * b + slot(q);
+        for (int c = 0; c < 8; ++c)
+          v[c] = first[(c & 1) << 6 | (c >> 1 & 1) << 3 | c >> 2];
+        return;
+      }
+    for (int c = 0; c < 8; ++c)
+      v[c] = value(p + Vec3i{c & 1, c >> 1 & 1, c >> 2});
+  }
   HD Vec3d position(Vec3i p) const { return {axis[0][p.x], axis[1][p.y], axis[2][p.z]}; }
   /// Between lattice points, each axis by itself; p within 0 … cells.
   HD Vec3d between(Vec3d p) const {
@@ -56,6 +90,12 @@ struct LatticeView {
       x[a] = axis[a][i] + (p[a] - static_cast<double>(i)) * (axis[a][i + 1] - axis[a][i]);
     }
     return x;
+  }
+
+  /// Of BlockGrid::active or what is laid out like it.
+  HD static bool bit(const uint64_t* words, int64_t block, Vec3i grid_point) {
+    const int s = slot(grid_point);
+    return words[8 * block + (s >> 6)] >> (s & 63) & 1;
   }
 
 private:
@@ -71,6 +111,24 @@ private:
   }
 };
 
+/// Word i of inside_words.
+struct SetInsideWords {
+  const float* grid;
+  float isovalue;
+  uint64_t* words;
+  HD void operator()(int64_t i) const {
+    const float* v = grid + 64 * i;
+    uint64_t word = 0;
+    for (int row = 0; row < 8; ++row) {
+      uint32_t byte = 0;
+      for (int z = 0; z < 8; ++z)
+        byte |= uint32_t{v[8 * row + z] > isovalue} << z;
+      word |= uint64_t{byte} << 8 * row;
+    }
+    words[i] = word;
+  }
+};
+
 /// A box of fine cells. Lattice point p (0 … cells, per axis) is grid index base + p. Within the grid its position
 /// is the grid's own; beyond it spacings stretch evenly so that the walls lie where they were asked to. A wall that
 /// cuts through the grid lies between grid planes: its points take the density interpolated there.
@@ -79,7 +137,7 @@ public:
   /// request.kind automatic: with `walls` at least twice the surface's extents, else at least the grid; the other
   /// kinds are met exactly. Throws Error(failed) when the grid has no surface, Error(usage) when the box is empty
   /// or not larger than a few cells.
-  Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls);
+  Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls, int threads);
   Lattice(const Lattice&) = delete;
   Lattice& operator=(const Lattice&) = delete;
 
@@ -88,9 +146,8 @@ public:
   float isovalue = 1;
 
   float value(Vec3i p) const { return view_.value(p); }
-  /// Whether the grid holds G there, not only the side.
-  bool active(Vec3i p) const { return is_active(grid_, index_, base_ + p); }
-  bool inside(Vec3i p) const { return value(p) > isovalue; }
+  bool active(Vec3i p) const { return view_.active(p); }
+  bool inside(Vec3i p) const { return view_.inside(p); }
   Vec3d position(Vec3i p) const { return view_.position(p); }
   /// Between lattice points, each axis by itself; p within 0 … cells.
   Vec3d between(Vec3d p) const { return view_.between(p); }
@@ -99,9 +156,6 @@ public:
   const BlockGrid& grid() const { return grid_; }
   const BlockIndex& index() const { return index_; }
   Vec3i base() const { return base_; }
-  /// A wall through the grid, lower (0) or upper (1) side of the axis: its plane is interpolated.
-  bool cuts(int axis, int side) const { return cut_[axis][side].cuts; }
-  bool cuts() const;
   /// The walls were asked for as coordinates: a surface that meets them is meant to.
   bool cut_allowed() const { return cut_allowed_; }
 
@@ -112,14 +166,12 @@ private:
 
   const BlockGrid& grid_;
   BlockIndex index_;
+  LargeArray<uint64_t> inside_words_;
   Vec3i base_;
   std::array<std::vector<double>, 3> axis_;
   std::array<std::array<Cut, 2>, 3> cut_{};
   bool cut_allowed_ = false;
   LatticeView view_;
 };
-
-/// Index box (lowest and highest grid index) of the cells that the surface crosses. False when there is none.
-bool surface_bounds(const BlockGrid& grid, Vec3i& lower, Vec3i& upper);
 
 } // namespace molmesh::contour

@@ -1,46 +1,103 @@
 // octree.hpp — a strongly balanced linear octree over the lattice: leaves along the Z-order curve.
 // Section 4.1 of Liao et al. 2013. Neighbours across faces, edges and corners differ by one level at most.
 #pragma once
+#include "density/large_array.hpp"
+#include "geom/bits.hpp"
+#include "geom/morton.hpp"
 #include "geom/vec.hpp"
-#include <array>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 namespace molmesh::contour {
 
-/// Called once for each level 1 … top, with the nodes of that level that have children already for balance: Morton
-/// keys of the lower corner shifted right by 3·level. Appends those that must have them too.
-using Refine = std::function<void(int level, std::vector<uint64_t>& nodes)>;
+/// An octree as plain arrays. Host and device.
+struct OctreeView {
+  struct Block { ///< 8³ fine cells that hold leaves below level 3
+    uint64_t key;
+    int32_t first;     ///< first leaf
+    uint64_t start[8]; ///< bit m: a leaf starts at Morton position m within the block
+    uint16_t rank[8];  ///< leaves that start in the words before
+  };
+  const uint64_t* key = nullptr;  ///< [leaves] ascending; Morton code of the lower corner
+  const uint8_t* level = nullptr; ///< [leaves] 0: fine cell
+  int32_t leaves = 0;
+  Vec3i cells;
+  const Block* block = nullptr;
+  const int32_t* slot = nullptr; ///< [mask + 1] open addressing into block, -1 free
+  uint64_t mask = 0;
+  const int32_t* large = nullptr; ///< [large_leaves] leaves of level 3 and more, ascending
+  int32_t large_leaves = 0;
+
+  HD int32_t size() const { return leaves; }
+  HD Vec3i corner(int32_t leaf) const { return morton_point(key[leaf]); } ///< lower corner, lattice point
+  HD int32_t extent(int32_t leaf) const { return 1 << level[leaf]; }      ///< fine cells along an edge
+  /// Whether the fine cell of Morton code k, reached from the domain, lies before its end along the axis.
+  HD bool before_end(uint64_t k, int axis) const {
+    return (k & morton_axis(axis)) < morton_spread(static_cast<uint32_t>(cells[axis])) << axis;
+  }
+  /// The leaf that holds fine cell p, or -1 beyond the domain.
+  HD int32_t find(Vec3i p) const {
+    const bool beyond = p.x < 0 || p.y < 0 || p.z < 0 || p.x >= cells.x || p.y >= cells.y || p.z >= cells.z;
+    return beyond ? -1 : find_key(morton(p));
+  }
+  /// The leaf that holds the fine cell of Morton code k, which lies in the domain.
+  HD int32_t find_key(uint64_t k) const {
+    for (uint64_t s = mix(k >> 9) & mask; slot[s] >= 0; s = (s + 1) & mask) {
+      const Block& b = block[slot[s]];
+      if (b.key != k >> 9)
+        continue;
+      const auto word = static_cast<unsigned>(k >> 6 & 7);
+      return b.first + b.rank[word] + count_bits(b.start[word] & (~uint64_t{0} >> (63 - (k & 63)))) - 1;
+    }
+    int32_t begin = 0, end = large_leaves; // the last key that is not above k
+    while (end - begin > 1) {
+      const int32_t middle = begin + (end - begin) / 2;
+      (key[large[middle]] <= k ? begin : end) = middle;
+    }
+    return large[begin];
+  }
+  HD static uint64_t mix(uint64_t k) {
+    k *= 0x9E3779B97F4A7C15u;
+    return k ^ k >> 32;
+  }
+};
+
+inline constexpr int64_t most_leaves = int64_t{1} << 28; ///< their corners are numbered in 31 bits
+
+/// What OctreeView points to, but for the hash.
+struct LeafList {
+  LargeArray<uint64_t> key;
+  LargeArray<uint8_t> level;
+  LargeArray<OctreeView::Block> block; ///< ascending
+  LargeArray<int32_t> large;
+};
 
 class Octree {
 public:
   /// cells: size of the domain in fine cells; leaves never reach beyond it.
-  Octree(Vec3i cells, int top_level, const Refine& refine, int threads);
+  Octree(Vec3i cells, LeafList leaves);
+  Octree(const Octree&) = delete;
+  Octree& operator=(const Octree&) = delete;
 
-  int32_t size() const { return static_cast<int32_t>(key.size()); }
+  int32_t size() const { return view_.leaves; }
   /// The leaf that holds fine cell p, or -1 beyond the domain.
-  int32_t find(Vec3i p) const;
-  Vec3i corner(int32_t leaf) const { return corner_[static_cast<size_t>(leaf)]; } ///< lower corner, lattice point
-  int32_t extent(int32_t leaf) const { return 1 << level[static_cast<size_t>(leaf)]; } ///< fine cells along an edge
+  int32_t find(Vec3i p) const { return view_.find(p); }
+  Vec3i corner(int32_t leaf) const { return view_.corner(leaf); } ///< lower corner, lattice point
+  int32_t extent(int32_t leaf) const { return view_.extent(leaf); }
+  /// Points into the tree.
+  const OctreeView& view() const { return view_; }
+  const LargeArray<OctreeView::Block>& blocks() const { return block_; }
+  const std::vector<int32_t>& slots() const { return slot_; }
+  const LargeArray<int32_t>& large_leaves() const { return large_; }
 
-  std::vector<uint64_t> key;  ///< ascending; Morton code of the lower corner
-  std::vector<uint8_t> level; ///< 0: fine cell
+  const LargeArray<uint64_t> key;  ///< ascending; Morton code of the lower corner
+  const LargeArray<uint8_t> level; ///< 0: fine cell
 
 private:
-  struct Block { ///< 8³ fine cells that hold leaves below level 3
-    uint64_t key;
-    int32_t first;                 ///< first leaf
-    std::array<uint64_t, 8> start; ///< bit m: a leaf starts at Morton position m within the block
-    std::array<uint16_t, 8> rank;  ///< leaves that start in the words before
-  };
-  void index_leaves();
-  Vec3i cells_;
-  std::vector<Vec3i> corner_; ///< [leaves]
-  std::vector<Block> block_;
-  std::vector<int32_t> slot_; ///< open addressing into block_, -1 free
-  uint64_t mask_ = 0;
-  std::vector<int32_t> large_; ///< leaves of level 3 and more, ascending
+  LargeArray<OctreeView::Block> block_;
+  LargeArray<int32_t> large_;
+  std::vector<int32_t> slot_;
+  OctreeView view_;
 };
 
 } // namespace molmesh::contour

@@ -3,7 +3,6 @@
 #include "contour/surface_cells.hpp"
 #include "geom/log.hpp"
 #include "geom/vec.hpp"
-#include <vector>
 
 namespace molmesh::contour {
 
@@ -12,9 +11,6 @@ namespace molmesh::contour {
 struct SurfaceSample {
   Vec3d point, normal;
 };
-
-/// One per cell, in the same order.
-std::vector<SurfaceSample> surface_samples(const std::vector<SurfaceCell>& cells, float isovalue, int threads);
 
 /// Crossing of the surface with the straight line between two neighbouring values, as a share of the way from a to
 /// b: log G is interpolated, since G falls exponentially. Kept away from both ends.

@@ -35,4 +35,18 @@ HD constexpr Vec3i morton_point(uint64_t key) {
           static_cast<int32_t>(morton_gather(key >> 2))};
 }
 
+/// The places of one axis in a key.
+HD constexpr uint64_t morton_axis(int axis) {
+  return uint64_t{0x1249249249249249} << axis;
+}
+/// The key of the point 2^level further along the axis, and of the one just before, which must be there.
+HD constexpr uint64_t morton_after(uint64_t key, int axis, int level) {
+  const uint64_t m = morton_axis(axis);
+  return (((key | ~m) + (uint64_t{1} << (3 * level + axis))) & m) | (key & ~m);
+}
+HD constexpr uint64_t morton_before(uint64_t key, int axis) {
+  const uint64_t m = morton_axis(axis);
+  return (((key & m) - (uint64_t{1} << axis)) & m) | (key & ~m);
+}
+
 } // namespace molmesh

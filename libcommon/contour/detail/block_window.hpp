@@ -1,0 +1,50 @@
+// block_window.hpp — which of the 9³ points of 8³ cells of the lattice are inside, or active, as rows of bits.
+#pragma once
+#include "contour/lattice.hpp"
+
+namespace molmesh::contour::detail {
+
+class BlockWindow {
+public:
+  /// corner: lattice point
+  HD BlockWindow(const LatticeView& lattice, Vec3i corner) : lattice_(lattice), corner_(corner) {
+    const Vec3i first = lattice.base + corner;
+    offset_ = {first.x & 7, first.y & 7, first.z & 7};
+    for (int n = 0; n < 8; ++n)
+      block_[n] = lattice.index.find(first + 8 * Vec3i{n & 1, n >> 1 & 1, n >> 2});
+  }
+  /// No block of the grid holds one of the points, and all are on one side.
+  HD bool one_sided() const {
+    for (int n = 0; n < 8; ++n)
+      if (block_[n] >= 0 || block_[n] != block_[0])
+        return false;
+    return !lattice_.any_cut;
+  }
+  /// Bit z of row (x, y), each 0 … 8.
+  HD uint32_t inside(int x, int y) const {
+    uint32_t bits = row(lattice_.inside_words, x, y, true);
+    if (lattice_.any_cut)
+      for (int z = 0; z < 9; ++z)
+        if (const Vec3i p = corner_ + Vec3i{x, y, z}; lattice_.on_cut(p))
+          bits = (bits & ~(1u << z)) | uint32_t{lattice_.value(p) > lattice_.isovalue} << z;
+    return bits;
+  }
+  HD uint32_t active(int x, int y) const { return row(lattice_.active_words, x, y, false); }
+
+private:
+  /// `constant`: what points of inside blocks have.
+  HD uint32_t row(const uint64_t* words, int x, int y, bool constant) const {
+    const int px = offset_.x + x, py = offset_.y + y, n = px >> 3 | py >> 3 << 1;
+    const auto byte = [&](int64_t block) {
+      return block >= 0 ? static_cast<uint32_t>(words[8 * block + (px & 7)] >> 8 * (py & 7)) & 0xFF
+             : constant && block == BlockIndexView::inside ? 0xFFu
+                                                           : 0u;
+    };
+    return (byte(block_[n]) | byte(block_[n | 4]) << 8) >> offset_.z & 0x1FF;
+  }
+  const LatticeView& lattice_;
+  Vec3i corner_, offset_;
+  int64_t block_[8];
+};
+
+} // namespace molmesh::contour::detail

@@ -1,0 +1,189 @@
+// node_items.hpp — the octree's nodes that hold surface cells: which of them may be one cell.
+#pragma once
+#include "contour/cube.hpp"
+#include "contour/detail/node_mask.hpp"
+#include "contour/lattice.hpp"
+#include "contour/surface_cells.hpp"
+
+namespace molmesh::contour::detail {
+
+/// A node is one plain sheet and may be one cell; else it has children.
+inline constexpr uint8_t whole = 1 << 6;
+// Bit f of a whole node: the middle of its surface is near face f.
+
+/// Nodes of one level with surface cells, ascending. Level 0: the cells themselves, each its own node.
+struct SurfaceNodes {
+  const uint64_t* key = nullptr;  ///< Morton code / 8^level
+  const int32_t* child = nullptr; ///< first node of the level below; its nodes follow each other. Level 0: null
+  const int32_t* cell = nullptr;  ///< first surface cell. Level 0: null
+  uint8_t* flags = nullptr;       ///< `whole` and near faces
+  int64_t n = 0, below = 0, cells = 0; ///< nodes here, of the level below, surface cells
+
+  HD int64_t child_begin(int64_t i) const { return i < n ? child[i] : below; }
+  HD int64_t cell_begin(int64_t i) const { return i >= n ? cells : cell ? cell[i] : i; }
+};
+
+/// The surface within the cell is one disc and no face is ambiguous: inside and outside corners are each joined by
+/// edges, and so are those of each face.
+HD inline bool one_disc(uint32_t inside) {
+  const auto joined = [](uint32_t set) {
+    uint32_t part = set & ~(set - 1);
+    for (int step = 0; step < 7; ++step)
+      part |= ((part & 0x55) << 1 | (part & 0xAA) >> 1 | (part & 0x33) << 2 | (part & 0xCC) >> 2 |
+               (part & 0x0F) << 4 | (part & 0xF0) >> 4) &
+              set;
+    return part == set;
+  };
+  for (int f = 0; f < 6; ++f) {
+    const auto in = [&](int i) { return inside >> face_corner_of(f, i) & 1; };
+    if (in(0) == in(2) && in(1) == in(3) && in(0) != in(1))
+      return false;
+  }
+  return inside != 0 && inside != 0xFF && joined(inside) && joined(~inside & 0xFF);
+}
+
+struct StartFromCells {
+  const SurfaceCell* from;
+  float isovalue;
+  uint64_t* key;
+  uint8_t* flags;
+  HD void operator()(int64_t i) const {
+    key[i] = from[i].key;
+    uint32_t inside = 0;
+    for (int c = 0; c < 8; ++c)
+      inside |= uint32_t{from[i].value[c] > isovalue} << c;
+    flags[i] = one_disc(inside) ? whole : uint8_t{0};
+  }
+};
+
+/// First of the nodes with one parent.
+struct FirstChildren {
+  const uint64_t* key;
+  HD int64_t operator()(int64_t i, int32_t* out) const {
+    if (i > 0 && key[i] >> 3 == key[i - 1] >> 3)
+      return 0;
+    if (out)
+      *out = static_cast<int32_t>(i);
+    return 1;
+  }
+};
+struct MakeParents {
+  SurfaceNodes below;
+  const int32_t* child;
+  uint64_t* key;
+  int32_t* cell;
+  HD void operator()(int64_t i) const {
+    key[i] = below.key[child[i]] >> 3;
+    cell[i] = static_cast<int32_t>(below.cell_begin(child[i]));
+  }
+};
+
+/// Sets the flags of node i: whole when its children are, its surface is nearly plane, and merging keeps the
+/// topology: the signs at the middles of its edges, faces and volume each agree with a corner of that edge, face or
+/// volume (Ju et al. 2002, the paper's reference 22).
+struct MergeNodes {
+  static constexpr double least_cosine = 0.82; // normals within 35° of their mean: one sheet, no crease
+  /// Of the surface's middle from a face with smaller cells behind, in the node's edge length: seen from nearer,
+  /// those cells' faces are aslant, and their elements flat.
+  static constexpr double least_margin = 0.2;
+
+  LatticeView l;
+  const SurfaceSample* sample;
+  SurfaceNodes nodes;
+  const uint8_t* child_flags;
+  int level;
+  double tolerance; ///< distance of the samples from their mean plane, fine spacings
+
+  HD void operator()(int64_t i) const {
+    uint8_t& flags = nodes.flags[i];
+    flags = 0;
+    const Vec3i corner = morton_point(nodes.key[i] << 3 * level);
+    const int32_t extent = 1 << level;
+    if (corner.x + extent > l.cells.x || corner.y + extent > l.cells.y || corner.z + extent > l.cells.z)
+      return;
+    for (int64_t c = nodes.child_begin(i); c < nodes.child_begin(i + 1); ++c)
+      if (!(child_flags[c] & whole))
+        return;
+    const SurfaceSample *const begin = sample + nodes.cell_begin(i), *const end = sample + nodes.cell_begin(i + 1);
+    Vec3d normal, middle;
+    for (const SurfaceSample* s = begin; s < end; ++s) {
+      normal += s->normal;
+      middle += s->point;
+    }
+    middle = middle / double(end - begin);
+    if (nearly_plane(begin, end, normal, middle) && keeps_topology(corner, extent / 2))
+      flags = static_cast<uint8_t>(whole | near_faces(middle, corner, extent));
+  }
+
+private:
+  HD bool nearly_plane(const SurfaceSample* begin, const SurfaceSample* end, Vec3d normal, Vec3d middle) const {
+    const double length = norm(normal);
+    if (length == 0)
+      return false;
+    normal = normal / length;
+    for (const SurfaceSample* s = begin; s < end; ++s)
+      if (!(dot(s->normal, normal) >= least_cosine && std::fabs(dot(s->point - middle, normal)) <= tolerance))
+        return false;
+    return true;
+  }
+  /// By the signs of the 27 corners of the children, `half` apart.
+  HD bool keeps_topology(Vec3i corner, int32_t half) const {
+    uint32_t corners = 0;
+    for (int c = 0; c < 8; ++c)
+      corners |= uint32_t{l.inside(corner + 2 * half * Vec3i{c & 1, c >> 1 & 1, c >> 2})} << c;
+    if (!one_disc(corners))
+      return false;
+    for (int n = 0; n < 27; ++n) {
+      const int at[3] = {n % 3, n / 3 % 3, n / 9};
+      // Corners of the edge, face or cell whose middle is n: either way along each axis where n is half-way.
+      uint32_t around = 0;
+      for (int c = 0; c < 8; ++c) {
+        int m = 0;
+        for (int a = 0; a < 3; ++a)
+          m |= (at[a] == 1 ? c >> a & 1 : at[a] >> 1) << a;
+        around |= 1u << m;
+      }
+      if ((around & (around - 1)) == 0)
+        continue; // a corner
+      const uint32_t inside = corners & around;
+      if (inside != 0 && inside != around)
+        continue; // agrees with one of them either way
+      if (l.inside(corner + half * Vec3i{at[0], at[1], at[2]}) != (inside != 0))
+        return false;
+    }
+    return true;
+  }
+  HD static uint8_t near_faces(Vec3d middle, Vec3i corner, int32_t extent) {
+    uint8_t faces = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double share = (middle[a] - corner[a]) / extent;
+      faces =
+          static_cast<uint8_t>(faces | (share < least_margin) << 2 * a | (share > 1 - least_margin) << (2 * a + 1));
+    }
+    return faces;
+  }
+};
+
+/// Surface nodes of one level by blocks of 4³: block i is node i two levels up. word: those that have children.
+struct SurfaceBlocks {
+  SurfaceNodes nodes, parents, blocks;
+  KeyedWord* refined;
+  uint64_t* near; ///< [6 blocks] nodes near face f
+  HD void operator()(int64_t i) const {
+    uint64_t children = 0, near_face[6] = {};
+    const int64_t begin = parents.child_begin(blocks.child_begin(i)),
+                  end = parents.child_begin(blocks.child_begin(i + 1));
+    for (int64_t k = begin; k < end; ++k) {
+      const uint64_t bit = uint64_t{1} << (nodes.key[k] & 63);
+      const uint8_t flags = nodes.flags[k];
+      children |= flags & whole ? 0 : bit;
+      for (int f = 0; f < 6; ++f)
+        near_face[f] |= flags >> f & 1 ? bit : 0;
+    }
+    refined[i] = {blocks.key[i], children};
+    for (int f = 0; f < 6; ++f)
+      near[6 * i + f] = near_face[f];
+  }
+};
+
+} // namespace molmesh::contour::detail
