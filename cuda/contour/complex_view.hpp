@@ -2,6 +2,7 @@
 #pragma once
 #include "contour/complex.hpp"
 #include "contour/detail/complex_queries.hpp"
+#include "cuda/contour/device_lattice.hpp"
 #include "geom/morton.hpp"
 
 namespace molmesh::cuda {
@@ -73,19 +74,9 @@ class DeviceComplex {
   using Array = typename Backend::template Array<T>;
 
 public:
-  DeviceComplex(Backend& b, const contour::Complex& c) : b_(b) {
+  DeviceComplex(Backend& b, const contour::Complex& c) : b_(b), lattice_(b, c.lattice) {
     ComplexView& v = view;
-    v.lattice = c.lattice.view();
-    const BlockGrid& grid = c.lattice.grid();
-    v.lattice.grid = up(grid_, grid.value);
-    key_ = b.upload(v.lattice.index.key, c.lattice.index().capacity());
-    block_ = b.upload(v.lattice.index.block, c.lattice.index().capacity());
-    v.lattice.index.key = key_.data();
-    v.lattice.index.block = block_.data();
-    for (int a = 0; a < 3; ++a) {
-      axis_[a] = b.upload(v.lattice.axis[a], int64_t{v.lattice.cells[a]} + 1);
-      v.lattice.axis[a] = axis_[a].data();
-    }
+    v.lattice = lattice_.view;
     v.tree = {up(leaf_key_, c.tree.key), up(level_, c.tree.level), c.tree.size(), c.lattice.cells};
     v.samples = up(samples_, c.samples);
     v.side = up(side_, c.side);
@@ -116,10 +107,9 @@ private:
     return store.data();
   }
   Backend& b_;
-  Array<float> grid_, value_, distance_;
-  Array<Vec3i> key_, point_;
-  Array<int64_t> block_;
-  Array<double> axis_[3];
+  DeviceLattice<Backend> lattice_;
+  Array<float> value_, distance_;
+  Array<Vec3i> point_;
   Array<uint64_t> leaf_key_;
   Array<uint8_t> level_, moved_;
   Array<contour::SurfaceSample> samples_;

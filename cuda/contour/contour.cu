@@ -1,6 +1,7 @@
-// contour.cu — the elements on the GPU.
+// contour.cu — surface cells, leaves and elements on the GPU.
 #include "cuda/contour/contour.hpp"
 #include "cuda/contour/elements.hpp"
+#include "cuda/contour/selection.hpp"
 #include "cuda/par/device.cuh"
 
 namespace molmesh::cuda {
@@ -8,10 +9,16 @@ namespace molmesh::cuda {
 TetMesh contour_mesh(const BlockGrid& grid, const contour::Options& options, contour::Summary& summary,
                      const std::function<void(const std::string&)>& on_phase, DeviceReport& report) {
   DeviceBackend backend;
+  Selection<DeviceBackend> selection(backend);
   ElementMaker<DeviceBackend> maker(backend);
-  TetMesh mesh = contour::contour(
-      grid, options, summary, on_phase,
-      [&](const contour::Complex& c, bool inside, bool outside, int) { return maker(c, inside, outside); });
+  contour::Stages stages;
+  stages.find_surface = [&](const contour::Lattice& l, int) { return selection.find_surface(l); };
+  stages.select_leaves = [&](const contour::Lattice& l, const contour::Surface&, const contour::RefineOptions& o,
+                             int) { return selection.select_leaves(l, o); };
+  stages.make_elements = [&](const contour::Complex& c, bool inside, bool outside, int) {
+    return maker(c, inside, outside);
+  };
+  TetMesh mesh = contour::contour(grid, options, summary, on_phase, stages);
   report = {device_name(), backend.most_used(), backend.times()};
   return mesh;
 }

@@ -117,18 +117,18 @@ void refuse_surface_at_wall(const Complex& complex) {
 } // namespace
 
 TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
-                const std::function<void(const std::string&)>& on_phase, const ElementFunction& make) {
+                const std::function<void(const std::string&)>& on_phase, const Stages& stages) {
   const int threads = options.threads;
   const bool with_outside = options.meshed != Options::interior;
   on_phase("surface cells");
   const Lattice lattice(grid, options.box, with_outside, threads);
-  const Surface found = find_surface(lattice, threads);
+  const Surface found = stages.find_surface(lattice, threads);
   on_phase("octree");
   RefineOptions refine_options;
   refine_options.adapt = options.adapt;
   refine_options.inside = options.meshed != Options::exterior;
   refine_options.outside = with_outside;
-  const Octree tree(lattice.cells, select_leaves(lattice, found, refine_options, threads));
+  const Octree tree(lattice.cells, stages.select_leaves(lattice, found, refine_options, threads));
   on_phase("dual vertices");
   Complex complex(lattice, tree, found.cells, found.samples, threads);
   refuse_surface_at_wall(complex);
@@ -136,7 +136,7 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   const bool on_inside = refine_options.inside || options.drop_below > 0,
              on_outside = with_outside || options.fill_cavities;
   summary.restored_points = restore_spoiling(complex, threads);
-  Elements elements = make(complex, on_inside, on_outside, threads);
+  Elements elements = stages.make_elements(complex, on_inside, on_outside, threads);
   on_phase("relaxation");
   summary.relaxed_points = relax(elements, complex.lattice_classes(), threads);
   on_phase("regions");

@@ -3,6 +3,7 @@
 #pragma once
 #include "contour/elements.hpp"
 #include "contour/lattice.hpp"
+#include "contour/leaves.hpp"
 #include "density/block_grid.hpp"
 #include "mesh/tet_mesh.hpp"
 #include <functional>
@@ -27,13 +28,18 @@ struct Summary {
   int64_t dropped_parts = 0, filled_cavities = 0;
 };
 
-/// Makes the elements of a complex: make_elements, or what does the same on a device.
-using ElementFunction = std::function<Elements(const Complex&, bool inside, bool outside, int threads)>;
+/// The stages that a device does too.
+struct Stages {
+  std::function<Surface(const Lattice&, int threads)> find_surface = contour::find_surface;
+  std::function<LeafList(const Lattice&, const Surface&, const RefineOptions&, int threads)> select_leaves =
+      contour::select_leaves;
+  std::function<Elements(const Complex&, bool inside, bool outside, int threads)> make_elements =
+      contour::make_elements;
+};
 
 /// on_phase is called with the name of each phase as it starts. Throws Error(failed) when the grid has no surface
 /// or the surface meets a wall that was not asked to cut it.
 TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
-                const std::function<void(const std::string&)>& on_phase,
-                const ElementFunction& make = make_elements);
+                const std::function<void(const std::string&)>& on_phase, const Stages& stages = {});
 
 } // namespace molmesh::contour

@@ -57,9 +57,14 @@ struct LatticeView {
     return false;
   }
   HD bool inside(Vec3i p) const {
+    BlockIndexView::Last last;
+    return inside(p, last);
+  }
+  /// For points close to each other: `last` is theirs.
+  HD bool inside(Vec3i p, BlockIndexView::Last& last) const {
     if (any_cut && on_cut(p))
       return value(p) > isovalue;
-    const int64_t b = index.find(base + p);
+    const int64_t b = index.find(base + p, last);
     return b == BlockIndexView::inside || (b >= 0 && bit(inside_words, b, base + p));
   }
   /// Whether the grid holds G there, not only the side.

@@ -79,6 +79,16 @@ struct BlockIndexView {
         return block[i];
     return outside;
   }
+  /// The block found last: asking for it again costs nothing.
+  struct Last {
+    Vec3i corner{1, 1, 1}; ///< no block's
+    int64_t block = outside;
+  };
+  HD int64_t find(Vec3i p, Last& last) const {
+    if (const Vec3i corner = block_corner(p); !(corner == last.corner))
+      last = {corner, find(p)};
+    return last.block;
+  }
 };
 
 /// Finds the block of a grid point: O(1), built in O(n). Keeps no reference to the grid.

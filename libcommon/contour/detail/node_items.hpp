@@ -3,7 +3,7 @@
 #include "contour/cube.hpp"
 #include "contour/detail/node_mask.hpp"
 #include "contour/lattice.hpp"
-#include "contour/surface_cells.hpp"
+#include "contour/surface_sample.hpp"
 
 namespace molmesh::contour::detail {
 
@@ -23,30 +23,41 @@ struct SurfaceNodes {
   HD int64_t cell_begin(int64_t i) const { return i >= n ? cells : cell ? cell[i] : i; }
 };
 
-/// The surface within the cell is one disc and no face is ambiguous: inside and outside corners are each joined by
-/// edges, and so are those of each face.
-HD inline bool one_disc(uint32_t inside) {
-  const auto joined = [](uint32_t set) {
+/// Of each set of inside corners: whether the surface within the cell is one disc and no face is ambiguous, that
+/// is, inside and outside corners are each joined by edges, and so are those of each face.
+struct OneDisc {
+  uint64_t of_set[4] = {};
+  constexpr OneDisc() {
+    for (uint32_t set = 1; set < 0xFF; ++set) {
+      bool plain = joined(set) && joined(~set & 0xFF);
+      for (int f = 0; f < 6; ++f) {
+        const auto in = [&](int i) { return set >> face_corner_of(f, i) & 1; };
+        plain = plain && !(in(0) == in(2) && in(1) == in(3) && in(0) != in(1));
+      }
+      of_set[set >> 6] |= uint64_t{plain} << (set & 63);
+    }
+  }
+  HD bool operator()(uint32_t inside_corners) const {
+    return of_set[inside_corners >> 6] >> (inside_corners & 63) & 1;
+  }
+
+private:
+  static constexpr bool joined(uint32_t set) {
     uint32_t part = set & ~(set - 1);
     for (int step = 0; step < 7; ++step)
       part |= ((part & 0x55) << 1 | (part & 0xAA) >> 1 | (part & 0x33) << 2 | (part & 0xCC) >> 2 |
                (part & 0x0F) << 4 | (part & 0xF0) >> 4) &
               set;
     return part == set;
-  };
-  for (int f = 0; f < 6; ++f) {
-    const auto in = [&](int i) { return inside >> face_corner_of(f, i) & 1; };
-    if (in(0) == in(2) && in(1) == in(3) && in(0) != in(1))
-      return false;
   }
-  return inside != 0 && inside != 0xFF && joined(inside) && joined(~inside & 0xFF);
-}
+};
 
 struct StartFromCells {
   const SurfaceCell* from;
   float isovalue;
   uint64_t* key;
   uint8_t* flags;
+  OneDisc one_disc{};
   HD void operator()(int64_t i) const {
     key[i] = from[i].key;
     uint32_t inside = 0;
@@ -93,6 +104,7 @@ struct MergeNodes {
   const uint8_t* child_flags;
   int level;
   double tolerance; ///< distance of the samples from their mean plane, fine spacings
+  OneDisc one_disc{};
 
   HD void operator()(int64_t i) const {
     uint8_t& flags = nodes.flags[i];
@@ -128,9 +140,10 @@ private:
   }
   /// By the signs of the 27 corners of the children, `half` apart.
   HD bool keeps_topology(Vec3i corner, int32_t half) const {
+    BlockIndexView::Last last;
     uint32_t corners = 0;
     for (int c = 0; c < 8; ++c)
-      corners |= uint32_t{l.inside(corner + 2 * half * Vec3i{c & 1, c >> 1 & 1, c >> 2})} << c;
+      corners |= uint32_t{l.inside(corner + 2 * half * Vec3i{c & 1, c >> 1 & 1, c >> 2}, last)} << c;
     if (!one_disc(corners))
       return false;
     for (int n = 0; n < 27; ++n) {
@@ -148,7 +161,7 @@ private:
       const uint32_t inside = corners & around;
       if (inside != 0 && inside != around)
         continue; // agrees with one of them either way
-      if (l.inside(corner + half * Vec3i{at[0], at[1], at[2]}) != (inside != 0))
+      if (l.inside(corner + half * Vec3i{at[0], at[1], at[2]}, last) != (inside != 0))
         return false;
     }
     return true;

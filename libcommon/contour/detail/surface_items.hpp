@@ -1,7 +1,7 @@
 // surface_items.hpp — the crossed cells of each block of 8³ cells as bits, then as cells with values and samples.
 #pragma once
 #include "contour/detail/block_window.hpp"
-#include "contour/surface_cells.hpp"
+#include "contour/surface_sample.hpp"
 #include "geom/bits.hpp"
 #include "geom/morton.hpp"
 
@@ -116,6 +116,9 @@ struct MakeSamples {
     const float* v = cell[i].value;
     Vec3d sum, gradient;
     int crossings = 0;
+    double logarithm[8];
+    for (int c = 0; c < 8; ++c)
+      logarithm[c] = portable_log(v[c] / isovalue); // anything where v ≤ 0
     for (int axis = 0; axis < 3; ++axis)
       for (int c = 0; c < 8; ++c) {
         const int d = c | 1 << axis;
@@ -125,7 +128,7 @@ struct MakeSamples {
         if ((v[c] > isovalue) == (v[d] > isovalue))
           continue;
         Vec3d p{double(c & 1), double(c >> 1 & 1), double(c >> 2)};
-        p[axis] = crossing_share(v[c], v[d], isovalue);
+        p[axis] = crossing_share(v[c], v[d], logarithm[c], logarithm[d], isovalue);
         sum += p;
         ++crossings;
       }

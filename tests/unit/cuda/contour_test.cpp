@@ -43,16 +43,17 @@ Seen compare(const BlockGrid& grid, const Options& options, int threads = 1,
   cuda::ElementMaker<cuda::HostBackend> maker(backend);
   Seen seen;
   contour::Summary summary;
+  contour::Stages stages;
+  stages.make_elements = [&](const contour::Complex& c, bool inside, bool outside, int) {
+    // As it is asked for, and before grid points went back.
+    const contour::Complex unrestored(c.lattice, c.tree, c.cells, c.samples, 1);
+    cuda::ElementMaker<cuda::HostBackend> other(backend);
+    seen.add(unrestored, other, inside, outside);
+    ++seen.calls;
+    return seen.add(c, maker, inside, outside);
+  };
   contour::contour(
-      grid, options, summary, [](const std::string&) {},
-      [&](const contour::Complex& c, bool inside, bool outside, int) {
-        // As it is asked for, and before grid points went back.
-        const contour::Complex unrestored(c.lattice, c.tree, c.cells, c.samples, 1);
-        cuda::ElementMaker<cuda::HostBackend> other(backend);
-        seen.add(unrestored, other, inside, outside);
-        ++seen.calls;
-        return seen.add(c, maker, inside, outside);
-      });
+      grid, options, summary, [](const std::string&) {}, stages);
   seen.runs = maker.runs();
   seen.most_used = backend.most_used();
   return seen;
