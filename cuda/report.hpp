@@ -14,7 +14,10 @@ inline nlohmann::ordered_json json(const DeviceReport& r) {
                        {"bytes", k.work.bytes},
                        {"multiply_adds", k.work.multiply_adds},
                        {"in_double", k.work.in_double}});
-  return {{"name", r.device}, {"most_bytes", r.most_bytes}, {"kernels", kernels}};
+  nlohmann::ordered_json out = {{"name", r.device}, {"most_bytes", r.most_bytes}, {"kernels", kernels}};
+  if (!r.note.empty())
+    out["note"] = r.note;
+  return out;
 }
 
 } // namespace molmesh::cuda

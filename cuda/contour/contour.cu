@@ -1,6 +1,6 @@
-// contour.cu — surface cells, leaves and elements on the GPU.
+// contour.cu — surface cells, leaves, complex and elements on the GPU.
 #include "cuda/contour/contour.hpp"
-#include "cuda/contour/elements.hpp"
+#include "cuda/contour/dual.hpp"
 #include "cuda/contour/selection.hpp"
 #include "cuda/par/device.cuh"
 
@@ -10,16 +10,15 @@ TetMesh contour_mesh(const BlockGrid& grid, const contour::Options& options, con
                      const std::function<void(const std::string&)>& on_phase, DeviceReport& report) {
   DeviceBackend backend;
   Selection<DeviceBackend> selection(backend);
-  ElementMaker<DeviceBackend> maker(backend);
+  DualMaker<DeviceBackend> maker(backend, selection);
   contour::Stages stages;
   stages.find_surface = [&](const contour::Lattice& l, int) { return selection.find_surface(l); };
   stages.select_leaves = [&](const contour::Lattice& l, const contour::Surface&, const contour::RefineOptions& o,
                              int) { return selection.select_leaves(l, o); };
-  stages.make_elements = [&](const contour::Complex& c, bool inside, bool outside, int) {
-    return maker(c, inside, outside);
-  };
+  stages.make_dual = [&](const contour::DualInput& in, const auto& phase) { return maker(in, phase); };
   TetMesh mesh = contour::contour(grid, options, summary, on_phase, stages);
-  report = {device_name(), backend.most_used(), backend.times()};
+  report = {device_name(), backend.most_used(), backend.times(),
+            maker.on_host() ? "dual vertices and elements did not fit the device: made by the host" : ""};
   return mesh;
 }
 

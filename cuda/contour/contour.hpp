@@ -5,9 +5,10 @@
 
 namespace molmesh::cuda {
 
-/// contour::contour with surface cells, samples, the selection of leaves, and the elements of all faces and of all
-/// sign-change edges on the GPU; dual vertices and the rest stay on options.threads threads of the host. Throws
-/// Error(mode_unavailable) where there is no GPU.
+/// contour::contour with everything up to the relaxation made on the GPU: surface cells, samples, leaves, numbers
+/// of grid points and their distances, dual vertices, points that go back, and all elements. The octree's hash,
+/// relaxation, regions and assembly stay on options.threads threads of the host. Throws Error(mode_unavailable)
+/// where there is no GPU.
 TetMesh contour_mesh(const BlockGrid& grid, const contour::Options& options, contour::Summary& summary,
                      const std::function<void(const std::string&)>& on_phase, DeviceReport& report);
 

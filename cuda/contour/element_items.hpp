@@ -1,12 +1,13 @@
 // element_items.hpp — faces and rings made twice: counted, and written where the counts' sums say. No appends, and
 // the order of the leaves and edges whatever the threads.
 #pragma once
+#include "contour/detail/complex_passes.hpp"
 #include "contour/detail/face_pass.hpp"
 #include "contour/detail/ring_pass.hpp"
-#include "cuda/contour/complex_view.hpp"
 
 namespace molmesh::cuda {
 
+using contour::ComplexView;
 using contour::detail::Link;
 using Sides = std::array<int32_t, 2>;
 
@@ -22,8 +23,16 @@ struct Sink {
   }
 };
 
+/// Vertices that elements without positive volume hang on, as flags.
+struct SpoiledSink {
+  uint8_t* flag;
+  HD void push_back(int32_t vertex) const { contour::detail::raise(flag[vertex]); }
+};
+
 /// contour::detail::Batch for one item.
+template <bool check>
 struct ItemOut {
+  static constexpr bool checks = check;
   Sink<Tet> tet;
   Sink<Tri> tri;
   Sides* tri_sides;
@@ -31,7 +40,7 @@ struct ItemOut {
   Sink<Link> link;
   Sink<Vec3d> point;
   int32_t* wall;
-  Sink<int32_t> spoiled;
+  SpoiledSink spoiled;
   int32_t number; ///< of the item's first new point
   int32_t broken;
 
@@ -53,7 +62,7 @@ struct ItemOut {
 
 /// Per item, then scanned: one more slot each for the total.
 struct ItemCounts {
-  int32_t *tet, *tri, *link, *point, *spoiled, *broken;
+  int32_t *tet, *tri, *link, *point, *broken;
 };
 /// Where a run of items writes; null: nowhere.
 struct ItemPlaces {
@@ -64,7 +73,6 @@ struct ItemPlaces {
   Link* link;
   Vec3d* point;
   int32_t* wall;
-  int32_t* spoiled;
   int32_t number; ///< of the run's first new point
 };
 
@@ -77,53 +85,55 @@ struct RunElements {
   const uint32_t* order;
   ItemCounts count;
   ItemPlaces to;
+  uint8_t* spoiled; ///< [vertices], where elements are only checked
   HD void operator()(int64_t n) const {
     const int64_t i = order[n];
-    ItemOut out{};
+    ItemOut<Make::check> out{};
     out.number = int32_t{1} << 30; // no number of an old vertex, and not negative
-    if (to.tet)
+    if (to.link)
       out = {{to.tet + count.tet[i], 0},   {to.tri + count.tri[i], 0},
              to.tri_sides + count.tri[i],  to.boundary + count.tri[i],
              {to.link + count.link[i], 0}, {to.point + count.point[i], 0},
-             to.wall + count.point[i],     {to.spoiled + count.spoiled[i], 0},
+             to.wall + count.point[i],     {},
              to.number + count.point[i],   0};
+    out.spoiled.flag = spoiled;
     make(first + i, out);
-    if (to.tet)
+    if (to.link)
       return;
     count.tet[i] = out.tet.n;
     count.tri[i] = out.tri.n;
     count.link[i] = out.link.n;
     count.point[i] = out.point.n;
-    count.spoiled[i] = out.spoiled.n;
     count.broken[i] = out.broken;
   }
 };
 
+template <bool only_check>
 struct MakeFaces {
+  static constexpr bool check = only_check;
   ComplexView c;
   bool wanted[2];
-  HD void operator()(int64_t leaf, ItemOut& out) const {
-    contour::detail::make_faces(c, int32_t(leaf), wanted, out);
-  }
+  const int32_t* leaves; ///< null: all
+  HD int32_t leaf(int64_t i) const { return leaves ? leaves[i] : static_cast<int32_t>(i); }
+  HD void operator()(int64_t i, ItemOut<check>& out) const { contour::detail::make_faces(c, leaf(i), wanted, out); }
   /// Leaves of one level, and surface cells apart: similar work (§4.2).
-  HD uint32_t work(int64_t leaf) const {
-    return uint32_t(c.tree.level[leaf]) * 4 + uint32_t(c.side[leaf] == contour::Side::crossed) * 2 +
-           uint32_t(c.is_split(int32_t(leaf)));
+  HD uint32_t work(int64_t i) const {
+    const int32_t l = leaf(i);
+    return uint32_t(c.tree.level[l]) * 4 + uint32_t(c.side[l] == contour::Side::crossed) * 2 +
+           uint32_t(c.is_split(l));
   }
 };
 
 /// Links of edge e: [first[e], first[e + 1]).
+template <bool only_check>
 struct MakeRings {
-  ComplexView c;
+  static constexpr bool check = only_check;
+  contour::detail::RingVertices vertices;
   bool wanted[2];
-  int32_t complex_vertices;
-  const Vec3d* more;
-  const int32_t* wall;
   const Link* link;
   const int64_t* first;
-  HD void operator()(int64_t e, ItemOut& out) const {
-    const contour::detail::RingVertices<ComplexView> v{c, complex_vertices, more, wall};
-    contour::detail::make_ring(v, link + first[e], link + first[e + 1], wanted, out);
+  HD void operator()(int64_t e, ItemOut<check>& out) const {
+    contour::detail::make_ring(vertices, link + first[e], link + first[e + 1], wanted, out);
   }
   HD uint32_t work(int64_t e) const { return uint32_t(first[e + 1] - first[e]); }
 };
@@ -136,6 +146,42 @@ struct WorkKeys {
   HD void operator()(int64_t i) const {
     key[i] = ~make.work(first + i); // most first
     order[i] = uint32_t(i);
+  }
+};
+
+/// Links of edges with both ends among `ends`, ascending, or not grid points.
+struct WholeEdges {
+  const Link* link;
+  const int32_t* ends;
+  int64_t n;
+  int32_t grid_vertices;
+  HD int64_t operator()(int64_t i, Link* out) const {
+    if (!is_end(link[i].inside) || !is_end(link[i].outside))
+      return 0;
+    if (out)
+      *out = link[i];
+    return 1;
+  }
+
+private:
+  HD bool is_end(int32_t v) const { // all faces at a split cell's centre are that cell's
+    int64_t begin = 0, end = n;
+    while (begin < end) {
+      const int64_t middle = (begin + end) / 2;
+      if (ends[middle] < v)
+        begin = middle + 1;
+      else
+        end = middle;
+    }
+    return v >= grid_vertices || (begin < n && ends[begin] == v);
+  }
+};
+struct Flagged {
+  const uint8_t* flag;
+  HD int64_t operator()(int64_t i, int32_t* out) const {
+    if (flag[i] && out)
+      *out = int32_t(i);
+    return flag[i];
   }
 };
 

@@ -6,7 +6,6 @@
 #include "cuda/density/search_items.hpp"
 #include "cuda/par/backend.hpp"
 #include <algorithm>
-#include <memory>
 #include <optional>
 
 namespace molmesh::cuda {
@@ -19,32 +18,34 @@ class ElementMaker {
   using Pending = typename Backend::template Pending<T>;
 
 public:
+  using Ids = contour::detail::List<Backend, int32_t>;
   explicit ElementMaker(Backend& b) : b_(b) {}
 
-  contour::Elements operator()(const contour::Complex& complex, bool inside, bool outside) {
-    complex_.reset();
-    complex_ = std::make_unique<DeviceComplex<Backend>>(b_, complex);
+  /// The elements of the complex whose view this is; more than make_elements only in where they are made.
+  contour::Elements operator()(const ComplexView& view, bool inside, bool outside) {
     contour::Elements out;
-    out.position = complex.position;
+    const int32_t own = view.vertices();
     MoreVertices more;
-    const MakeFaces faces{complex_->view, {outside, inside}};
-    make(faces, int64_t{complex.tree.size()}, out, &more);
+    make(MakeFaces<false>{view, {outside, inside}, nullptr}, int64_t{view.tree.leaves}, own, &out, &more);
     out.face_points = more.points;
-    const auto own = static_cast<int32_t>(complex.position.size());
-    const Array<Link> link = joined(more.link, more.links);
-    const Array<Vec3d> point = joined(more.point, more.points);
-    const Array<int32_t> wall = joined(more.wall, more.points);
-    more = {};
-    const Array<Link> sorted = sort_links(link);
-    int64_t edges = 0;
-    const Array<int64_t> first = first_links(sorted, edges);
-    const MakeRings rings{complex_->view, {outside, inside}, own,         point.data(),
-                          wall.data(),    sorted.data(),     first.data()};
-    make(rings, edges, out, nullptr);
-    out.edge_points = static_cast<int64_t>(out.position.size()) - own - out.face_points;
-    std::sort(out.spoiled.begin(), out.spoiled.end());
-    out.spoiled.erase(std::unique(out.spoiled.begin(), out.spoiled.end()), out.spoiled.end());
+    const Rings rings = join(more);
+    make(MakeRings<false>{vertices(view, rings), {outside, inside}, rings.link.data(), rings.first.data()},
+         rings.edges, own + out.face_points, &out, nullptr);
+    out.edge_points = static_cast<int64_t>(out.position.size()) - out.face_points;
     return out;
+  }
+
+  /// Vertices that elements without positive volume would hang on: of the leaves' faces, and of the rings of edges
+  /// with both ends among `ends` (null: of all edges).
+  Ids spoiled_of(const ComplexView& view, const Ids& leaves, const Ids* ends) {
+    const Array<uint8_t> flag = b_.filled(view.vertices(), uint8_t{0});
+    MoreVertices more;
+    make(MakeFaces<true>{view, {false, false}, leaves.data()}, leaves.n, view.vertices(), nullptr, &more,
+         flag.data());
+    const Rings rings = join(more, ends, view.grid_vertices);
+    make(MakeRings<true>{vertices(view, rings), {false, false}, rings.link.data(), rings.first.data()}, rings.edges,
+         view.vertices(), nullptr, nullptr, flag.data());
+    return contour::detail::gather<int32_t>(b_, "spoiled", view.vertices(), Flagged{flag.data()});
   }
   int64_t runs() const { return runs_; }
 
@@ -54,30 +55,63 @@ private:
     std::vector<Array<Link>> link;
     std::vector<Array<Vec3d>> point;
     std::vector<Array<int32_t>> wall;
+    std::vector<int64_t> link_count, point_count; ///< of each run
     int64_t links = 0, points = 0;
   };
+  /// On its way to the host; empty where elements are only checked.
   struct Result {
-    Pending<Tet> tet;
-    Pending<Tri> tri;
-    Pending<Sides> tri_sides;
-    Pending<int32_t> boundary, spoiled;
-    Pending<Vec3d> point;
+    std::optional<Pending<Tet>> tet;
+    std::optional<Pending<Tri>> tri;
+    std::optional<Pending<Sides>> tri_sides;
+    std::optional<Pending<int32_t>> boundary;
+    std::optional<Pending<Vec3d>> point;
+    int64_t points = 0;
   };
 
+  /// What faces leave for the rings, in order.
+  struct Rings {
+    Array<Link> link;
+    Array<Vec3d> point;
+    Array<int32_t> wall;
+    Array<int64_t> first;
+    int64_t edges = 0;
+  };
+  static contour::detail::RingVertices vertices(const ComplexView& view, const Rings& r) {
+    return {view, view.vertices(), r.point.data(), r.wall.data()};
+  }
+  Rings join(MoreVertices& more, const Ids* ends = nullptr, int32_t grid_vertices = 0) {
+    Rings r;
+    Array<Link> link = joined(more.link, more.link_count, more.links);
+    int64_t links = more.links;
+    if (ends) {
+      auto kept = contour::detail::gather<Link>(b_, "whole edges", links,
+                                                WholeEdges{link.data(), ends->data(), ends->n, grid_vertices});
+      link = std::move(kept.array);
+      links = kept.n;
+    }
+    r.point = joined(more.point, more.point_count, more.points);
+    r.wall = joined(more.wall, more.point_count, more.points);
+    more = {};
+    r.link = sort_links(link, links);
+    r.first = first_links(r.link, links, r.edges);
+    return r;
+  }
+
+  /// number: of the first new point. out: null where elements are only checked.
   template <class Make>
-  void make(const Make& item, int64_t items, contour::Elements& out, MoreVertices* more) {
+  void make(const Make& item, int64_t items, int64_t number, contour::Elements* out, MoreVertices* more,
+            uint8_t* spoiled = nullptr) {
     std::optional<Result> before;
     constexpr int64_t most = int64_t{1} << 25; // counts of a run are 32 bits wide
     int64_t run = std::max<int64_t>(1, std::min({items, b_.room() / 256, most}));
-    int64_t number = static_cast<int64_t>(out.position.size()); // of the next new point
     for (int64_t begin = 0; begin < items;) {
       const int64_t n = std::min(run, items - begin);
       std::optional<Result> result;
       try {
-        result.emplace(make_run(item, begin, n, number, more));
+        result.emplace(make_run(item, begin, n, number, more, spoiled));
       } catch (const OutOfRoom&) {
         if (before) {
-          append(*before, out);
+          append(*before, *out);
           before.reset();
         } else if (n > 1) {
           run = (n + 1) / 2;
@@ -88,96 +122,111 @@ private:
       }
       ++runs_;
       begin += n;
-      number += result->point.size();
+      number += result->points;
       if (before)
-        append(*before, out);
+        append(*before, *out);
       before.reset();
-      before.emplace(std::move(*result));
+      if (out)
+        before.emplace(std::move(*result));
     }
     if (before)
-      append(*before, out);
+      append(*before, *out);
   }
 
   template <class Make>
-  Result make_run(const Make& item, int64_t begin, int64_t n, int64_t number, MoreVertices* more) {
+  Result make_run(const Make& item, int64_t begin, int64_t n, int64_t number, MoreVertices* more,
+                  uint8_t* spoiled) {
     const Array<uint32_t> order = b_.template array<uint32_t>(n);
     {
       const Array<uint32_t> key = b_.template array<uint32_t>(n);
       b_.for_n("estimate work", n, WorkKeys<Make>{item, begin, key.data(), order.data()}, {double(n) * 10});
       b_.sort_pairs("sort by work", key.data(), order.data(), n);
     }
-    Array<int32_t> count[6];
+    Array<int32_t> count[5];
     for (Array<int32_t>& c : count)
       c = b_.template array<int32_t>(n + 1);
-    const ItemCounts at{count[0].data(), count[1].data(), count[2].data(),
-                        count[3].data(), count[4].data(), count[5].data()};
-    b_.for_n(more ? "count faces" : "count rings", n, RunElements<Make>{item, begin, order.data(), at, {}},
-             {double(n) * 200});
-    int32_t total[6];
-    for (int k = 0; k < 6; ++k)
+    const ItemCounts at{count[0].data(), count[1].data(), count[2].data(), count[3].data(), count[4].data()};
+    const char* name = Make::check ? (more ? "check faces" : "check rings") : more ? "count faces" : "count rings";
+    b_.for_n(name, n, RunElements<Make>{item, begin, order.data(), at, {}, spoiled}, {double(n) * 200});
+    int32_t total[5];
+    for (int k = 0; k < 5; ++k)
       total[k] = b_.scan("scan", count[k].data(), n);
-    if (total[5] > 0)
+    if (total[4] > 0)
       fail(Status::failed, "contour: a sign-change edge without a ring");
     if (number + total[3] >= int64_t{1} << 30)
       fail(Status::failed, "--mode cuda: the mesh has more than 2^30 points, use seq or omp");
+    Result result;
+    if (Make::check && !more)
+      return result;
     Array<Tet> tet = b_.template array<Tet>(total[0]);
     Array<Tri> tri = b_.template array<Tri>(total[1]);
     Array<Sides> sides = b_.template array<Sides>(total[1]);
     Array<int32_t> boundary = b_.template array<int32_t>(total[1]);
-    Array<Link> link = b_.template array<Link>(total[2]);
+    Array<Link> link = b_.template array<Link>(total[2] + 1); // not null: it writes
     Array<Vec3d> point = b_.template array<Vec3d>(total[3]);
     Array<int32_t> wall = b_.template array<int32_t>(total[3]);
-    Array<int32_t> spoiled = b_.template array<int32_t>(total[4]);
     b_.for_n(more ? "make faces" : "make rings", n,
              RunElements<Make>{item,
                                begin,
                                order.data(),
                                at,
                                {tet.data(), tri.data(), sides.data(), boundary.data(), link.data(), point.data(),
-                                wall.data(), spoiled.data(), static_cast<int32_t>(number)}},
+                                wall.data(), static_cast<int32_t>(number)},
+                               spoiled},
              {double(n) * 200 + double(total[0]) * 16 + double(total[1]) * 24 + double(total[2]) * 20 +
               double(total[3]) * 28});
+    result.points = total[3];
     if (more) {
+      more->link_count.push_back(total[2]);
+      more->point_count.push_back(total[3]);
       more->links += total[2];
       more->points += total[3];
-      Array<Vec3d> kept = b_.template array<Vec3d>(total[3]);
-      b_.for_n("copy", total[3], CopyItems<Vec3d>{point.data(), kept.data()}, {double(total[3]) * 48});
       more->link.push_back(std::move(link));
-      more->point.push_back(std::move(kept));
       more->wall.push_back(std::move(wall));
+      Array<Vec3d> kept = std::move(point);
+      if (!Make::check) {
+        point = b_.template array<Vec3d>(total[3]);
+        b_.for_n("copy", total[3], CopyItems<Vec3d>{kept.data(), point.data()}, {double(total[3]) * 48});
+      }
+      more->point.push_back(std::move(kept));
     }
-    return {b_.fetch(std::move(tet)),      b_.fetch(std::move(tri)),     b_.fetch(std::move(sides)),
-            b_.fetch(std::move(boundary)), b_.fetch(std::move(spoiled)), b_.fetch(std::move(point))};
+    if (!Make::check) {
+      result.tet.emplace(b_.fetch(std::move(tet)));
+      result.tri.emplace(b_.fetch(std::move(tri)));
+      result.tri_sides.emplace(b_.fetch(std::move(sides)));
+      result.boundary.emplace(b_.fetch(std::move(boundary)));
+      result.point.emplace(b_.fetch(std::move(point)));
+    }
+    return result;
   }
 
   void append(Result& r, contour::Elements& out) const {
     const auto add = [](auto& to, auto& from) {
-      const auto* p = from.get();
-      to.insert(to.end(), p, p + from.size());
+      const auto* p = from->get();
+      to.insert(to.end(), p, p + from->size());
     };
     add(out.tet, r.tet);
     add(out.tri, r.tri);
     add(out.tri_sides, r.tri_sides);
     add(out.boundary, r.boundary);
-    add(out.spoiled, r.spoiled);
     add(out.position, r.point);
   }
 
   template <class T>
-  Array<T> joined(std::vector<Array<T>>& part, int64_t n) {
+  Array<T> joined(std::vector<Array<T>>& part, const std::vector<int64_t>& count, int64_t n) {
     if (part.size() == 1)
       return std::move(part[0]);
     Array<T> all = b_.template array<T>(n);
     int64_t at = 0;
-    for (const Array<T>& p : part) {
-      b_.for_n("copy", p.size(), CopyItems<T>{p.data(), all.data() + at}, {2. * double(p.size()) * sizeof(T)});
-      at += p.size();
+    for (size_t i = 0; i < part.size(); ++i) {
+      b_.for_n("copy", count[i], CopyItems<T>{part[i].data(), all.data() + at},
+               {2. * double(count[i]) * sizeof(T)});
+      at += count[i];
     }
     return all;
   }
 
-  Array<Link> sort_links(const Array<Link>& link) {
-    const int64_t n = link.size();
+  Array<Link> sort_links(const Array<Link>& link, int64_t n) {
     const Array<uint32_t> from = b_.template array<uint32_t>(n), index = b_.template array<uint32_t>(n);
     const Array<uint64_t> edge = b_.template array<uint64_t>(n);
     b_.for_n("link keys", n, LinkFrom{link.data(), from.data(), index.data()}, {double(n) * 28});
@@ -189,8 +238,7 @@ private:
     return sorted;
   }
   /// First link of each edge, then their number.
-  Array<int64_t> first_links(const Array<Link>& link, int64_t& edges) {
-    const int64_t n = link.size();
+  Array<int64_t> first_links(const Array<Link>& link, int64_t n, int64_t& edges) {
     const Array<int64_t> first = b_.template array<int64_t>(n + 1), index = b_.template array<int64_t>(n);
     b_.for_n("first links", n, FirstLink{link.data(), first.data(), index.data()}, {double(n) * 36});
     edges = b_.scan("scan", first.data(), n);
@@ -200,7 +248,6 @@ private:
   }
 
   Backend& b_;
-  std::unique_ptr<DeviceComplex<Backend>> complex_;
   int64_t runs_ = 0;
 };
 

@@ -16,6 +16,7 @@
 #pragma once
 #include "error.hpp"
 #include "geom/hd.hpp"
+#include "par/work.hpp"
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -23,12 +24,7 @@
 
 namespace molmesh::cuda {
 
-/// The least that a launch has to do, for its share of the machine's peak: bytes of memory moved at least once,
-/// multiply-adds in single or double precision.
-struct Work {
-  double bytes = 0, multiply_adds = 0;
-  bool in_double = false;
-};
+using par::Work;
 
 /// All launches of one name.
 struct KernelTime {
@@ -43,6 +39,7 @@ struct DeviceReport {
   std::string device;
   int64_t most_bytes = 0; ///< of device memory at once
   std::vector<KernelTime> kernels;
+  std::string note; ///< what the device did not do, and why; may be empty
 };
 
 /// One thread of a team of `size`. The host's teams are one thread; a GPU's are a warp.

@@ -16,8 +16,8 @@ struct Group {
 };
 using Groups = std::map<int32_t, Group>;
 
-template <class Cell>
-Groups groups(const TetMesh& m, const std::vector<Cell>& cells, const std::vector<int32_t>& label) {
+template <class Cells>
+Groups groups(const TetMesh& m, const Cells& cells, const std::vector<int32_t>& label) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Groups g;
   for (size_t c = 0; c < cells.size(); ++c) {

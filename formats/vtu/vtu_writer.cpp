@@ -21,9 +21,9 @@ struct Array {
 void write_bytes(std::ostream& out, const void* p, size_t n) {
   out.write(static_cast<const char*>(p), static_cast<std::streamsize>(n));
 }
-template <class T>
-void write_vector(std::ostream& out, const std::vector<T>& v) {
-  write_bytes(out, v.data(), v.size() * sizeof(T));
+template <class Vector>
+void write_vector(std::ostream& out, const Vector& v) {
+  write_bytes(out, v.data(), v.size() * sizeof(v[0]));
 }
 /// f(0) … f(n-1), in pieces that fit a cache.
 template <class T, class F>

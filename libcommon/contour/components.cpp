@@ -4,22 +4,29 @@
 #include "geom/tet_measures.hpp"
 #include "par/par.hpp"
 #include <algorithm>
-#include <numeric>
+#include <array>
 
 namespace molmesh::contour {
 
 using detail::at;
 namespace {
 
+/// Union-find over vertices; the lowest of a set names it.
 class Sets {
 public:
-  explicit Sets(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
+  Sets(size_t n, int threads) : parent_(n) {
+    par::for_n(static_cast<int64_t>(n), threads, [&](int64_t i) { parent_[at(i)] = static_cast<int32_t>(i); });
+  }
   int32_t find(int32_t i) {
     while (parent_[at(i)] != i)
       i = parent_[at(i)] = parent_[at(parent_[at(i)])];
     return i;
   }
-  /// The lower vertex names the set.
+  int32_t find(int32_t i) const {
+    while (parent_[at(i)] != i)
+      i = parent_[at(i)];
+    return i;
+  }
   void join(int32_t a, int32_t b) {
     a = find(a), b = find(b);
     if (a != b)
@@ -27,36 +34,65 @@ public:
   }
 
 private:
-  std::vector<int32_t> parent_;
+  LargeArray<int32_t> parent_;
 };
 
-void join_leaf(const Complex& c, int32_t leaf, Sets& sets) {
-  const auto vertex = [&](int k) { return c.grid_vertex[at(int64_t{8} * leaf + k)]; };
+/// Calls join(a, b) for vertices of the leaf that lie in one part.
+template <class Join>
+void join_leaf(const ComplexView& c, int32_t leaf, Join join) {
+  const auto vertex = [&](int k) { return c.corner_vertex(leaf, k); };
   const auto join_if_same = [&](int32_t a, int32_t b) {
     if (c.inside(a) == c.inside(b))
-      sets.join(a, b);
+      join(a, b);
   };
-  if (c.side[at(leaf)] != Side::crossed) {
+  if (c.side[leaf] != Side::crossed) {
     for (int k = 1; k < 8; ++k)
-      sets.join(vertex(0), vertex(k));
+      join(vertex(0), vertex(k));
     return;
   }
   for (int k = 0; k < 8; ++k)
     for (int bit = 1; bit < 8; bit *= 2)
       if (!(k & bit))
         join_if_same(vertex(k), vertex(k | bit));
-  if (c.tree.level[at(leaf)] > 0)
+  if (c.tree.level[leaf] > 0)
     return;
   const CellTopology t = c.topology(leaf);
   for (int f = 0; f < 6; ++f)
     if (t.diagonal[at(f)] != Diagonal::none) {
       const auto [a, b] = diagonal_corners(f, t.diagonal[at(f)]);
-      sets.join(vertex(a), vertex(b));
+      join(vertex(a), vertex(b));
     }
   if (c.is_split(leaf))
     for (int k = 0; k < 8; ++k)
       if (k != t.chop)
-        join_if_same(vertex(k), c.split[at(leaf)]);
+        join_if_same(vertex(k), c.split[leaf]);
+}
+
+/// Runs of leaves side by side, each joining what lies in its own share of the vertices (a leaf's corners are
+/// numbered near its place on the curve); the rest follows.
+Sets join_leaves(const ComplexView& c, int threads) {
+  Sets sets(at(c.vertices()), threads);
+  const int64_t runs = std::max(1, threads), leaves = c.tree.leaves;
+  std::vector<std::vector<std::array<int32_t, 2>>> rest(at(runs));
+  par::for_n(runs, threads, 1, [&](int64_t r) {
+    const auto bound = [&](int64_t run) { // the first vertex of a run
+      const int64_t leaf = leaves * run / runs;
+      return run == 0 ? 0 : leaf == leaves ? c.dual0 : c.corner_vertex(static_cast<int32_t>(leaf), 0);
+    };
+    const int32_t lowest = bound(r), end = bound(r + 1);
+    const auto mine = [&](int32_t v) { return v >= lowest && v < end; };
+    for (int64_t leaf = leaves * r / runs; leaf < leaves * (r + 1) / runs; ++leaf)
+      join_leaf(c, static_cast<int32_t>(leaf), [&](int32_t a, int32_t b) {
+        if (mine(a) && mine(b))
+          sets.join(a, b);
+        else
+          rest[at(r)].push_back({a, b});
+      });
+  });
+  for (const auto& pairs : rest)
+    for (const auto& [a, b] : pairs)
+      sets.join(a, b);
+  return sets;
 }
 
 void assign_regions(Components& found, const Elements& elements, const RegionOptions& options) {
@@ -99,33 +135,29 @@ void assign_regions(Components& found, const Elements& elements, const RegionOpt
 
 } // namespace
 
-Components find_components(const Complex& c, const Elements& elements, const RegionOptions& options) {
-  Sets sets(c.position.size());
-  for (int32_t leaf = 0; leaf < c.tree.size(); ++leaf)
-    join_leaf(c, leaf, sets);
-
+Components find_components(const ComplexView& c, const Elements& elements, const RegionOptions& options,
+                           int threads) {
+  const Sets sets = join_leaves(c, threads);
   Components found;
-  found.of_vertex.assign(c.position.size(), -1);
-  const auto number = [&](int32_t v) {
-    const int32_t root = sets.find(v);
-    int32_t& id = found.of_vertex[at(root)];
-    if (id < 0) {
-      id = static_cast<int32_t>(found.component.size());
-      found.component.push_back({c.inside(root), false, 0, 0});
-    }
-    found.of_vertex[at(v)] = id;
-    return id;
-  };
+  found.of_vertex.resize(at(c.vertices()));
+  // Every part has a grid point, and the lowest vertex of a part names it.
+  const LargeArray<int32_t> root =
+      par::select(c.grid_vertices, threads, [&](int64_t v) { return sets.find(static_cast<int32_t>(v)) == v; });
+  for (int32_t v : root)
+    found.component.push_back({c.inside(v), false, 0, 0});
+  par::for_n(c.vertices(), threads, [&](int64_t i) {
+    const auto v = static_cast<int32_t>(i);
+    const int32_t leaf = c.leaf_of(v);
+    const bool known = leaf < 0 || c.split[leaf] == v; // grid points, centres of split cells
+    found.of_vertex[at(i)] =
+        known ? static_cast<int32_t>(std::lower_bound(root.begin(), root.end(), sets.find(v)) - root.begin()) : -1;
+  });
   const Vec3i cells = c.lattice.cells;
-  for (int32_t v = 0; v < c.grid_vertices; ++v) {
-    Component& part = found.component[at(number(v))];
-    const Vec3i p = c.point[at(v)];
-    for (int a = 0; a < 3; ++a)
-      part.at_wall = part.at_wall || p[a] == 0 || p[a] == cells[a];
-  }
-  for (int32_t leaf = 0; leaf < c.tree.size(); ++leaf)
-    if (c.is_split(leaf))
-      number(c.split[at(leaf)]);
+  for (int32_t v : par::select(c.grid_vertices, threads, [&](int64_t i) {
+         const Vec3i p = c.point[i];
+         return p.x == 0 || p.y == 0 || p.z == 0 || p.x == cells.x || p.y == cells.y || p.z == cells.z;
+       }))
+    found.component[at(found.of_vertex[at(v)])].at_wall = true;
 
   // Volume by the divergence theorem, over the triangles that close the part.
   const Vec3d origin = c.lattice.position({0, 0, 0});

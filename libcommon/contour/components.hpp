@@ -16,7 +16,7 @@ struct Component {
 
 struct Components {
   std::vector<Component> component; ///< ordered by their first vertex
-  std::vector<int32_t> of_vertex;   ///< [vertices of the complex] -1 for dual vertices
+  LargeArray<int32_t> of_vertex;    ///< [vertices of the complex] -1 for dual vertices
 };
 
 struct RegionOptions {
@@ -25,6 +25,7 @@ struct RegionOptions {
 };
 
 /// Parts of one side are joined by edges of the complex. Outside parts that do not reach a wall are cavities.
-Components find_components(const Complex& complex, const Elements& elements, const RegionOptions& options);
+Components find_components(const ComplexView& c, const Elements& elements, const RegionOptions& options,
+                           int threads);
 
 } // namespace molmesh::contour

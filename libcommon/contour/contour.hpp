@@ -1,7 +1,7 @@
 // contour.hpp — density to a conforming tetrahedral mesh of the molecule, its surroundings, or both.
 // Adaptive dual contouring, section 4 of Liao et al. 2013.
 #pragma once
-#include "contour/elements.hpp"
+#include "contour/dual.hpp"
 #include "contour/lattice.hpp"
 #include "contour/leaves.hpp"
 #include "density/block_grid.hpp"
@@ -33,8 +33,7 @@ struct Stages {
   std::function<Surface(const Lattice&, int threads)> find_surface = contour::find_surface;
   std::function<LeafList(const Lattice&, const Surface&, const RefineOptions&, int threads)> select_leaves =
       contour::select_leaves;
-  std::function<Elements(const Complex&, bool inside, bool outside, int threads)> make_elements =
-      contour::make_elements;
+  DualFunction make_dual = contour::make_dual;
 };
 
 /// on_phase is called with the name of each phase as it starts. Throws Error(failed) when the grid has no surface

@@ -12,162 +12,168 @@ namespace molmesh::contour {
 using detail::at;
 namespace {
 
-using detail::Batch;
 using detail::Link;
 
-constexpr int64_t batch_size = 2048; // leaves or links; fixed, so that the result does not know the threads
+/// What faces and rings leave, joined: points and links beside the elements.
+struct Joined {
+  Elements elements; ///< position: the new points alone
+  LargeArray<Link> link;
+  LargeArray<int32_t> wall; ///< [new points] Boundary of a wall point, 0 otherwise
+  LargeArray<int32_t> spoiled;
+};
 
-/// Appends the batches in order and gives their new points the numbers from out.position.size() on.
-void join(std::vector<Batch>& batches, Elements& out, std::vector<Link>& links, std::vector<int32_t>& wall,
-          int threads) {
+template <class T>
+void append(LargeArray<T>& to, size_t n) {
+  if (to.size() + n > to.capacity())
+    to.reserve(2 * (to.size() + n));
+  to.resize(to.size() + n);
+}
+
+/// Appends the batches in order; their new points get the numbers from `first` on, those in out already included.
+template <class Batch>
+void join(const std::vector<Batch>& batches, int32_t first, Joined& out, int threads) {
   struct Start {
-    size_t tet, tri, link, point;
+    size_t tet, tri, link, point, spoiled;
   };
+  Elements& e = out.elements;
   std::vector<Start> start;
-  Start s{out.tet.size(), out.tri.size(), links.size(), out.position.size()};
+  Start s{e.tet.size(), e.tri.size(), out.link.size(), e.position.size(), out.spoiled.size()};
+  const Start before = s;
   for (const Batch& b : batches) {
     start.push_back(s);
     s.tet += b.tet.size();
     s.tri += b.tri.size();
     s.link += b.link.size();
     s.point += b.point.size();
+    s.spoiled += b.spoiled.size();
   }
-  for (const Batch& b : batches)
-    out.spoiled.insert(out.spoiled.end(), b.spoiled.begin(), b.spoiled.end());
-  const size_t own = out.position.size() - wall.size();
-  out.tet.resize(s.tet);
-  out.tri.resize(s.tri);
-  out.tri_sides.resize(s.tri);
-  out.boundary.resize(s.tri);
-  links.resize(s.link);
-  out.position.resize(s.point);
-  wall.resize(s.point - own);
+  append(e.tet, s.tet - before.tet);
+  append(e.tri, s.tri - before.tri);
+  append(e.tri_sides, s.tri - before.tri);
+  append(e.boundary, s.tri - before.tri);
+  append(out.link, s.link - before.link);
+  append(e.position, s.point - before.point);
+  append(out.wall, s.point - before.point);
+  append(out.spoiled, s.spoiled - before.spoiled);
   par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t i) {
-    Batch& b = batches[at(i)];
+    const Batch& b = batches[at(i)];
     const Start& to = start[at(i)];
-    const auto number = [&](int32_t v) {
-      return v >= 0 || v == detail::no_vertex ? v : static_cast<int32_t>(to.point) - 1 - v;
-    };
+    const int32_t zero = first + static_cast<int32_t>(to.point) - 1;
+    const auto number = [&](int32_t v) { return v >= 0 || v == detail::no_vertex ? v : zero - v; };
     for (size_t k = 0; k < b.tet.size(); ++k)
       for (size_t c = 0; c < 4; ++c)
-        out.tet[to.tet + k][c] = number(b.tet[k][c]);
+        e.tet[to.tet + k][c] = number(b.tet[k][c]);
     for (size_t k = 0; k < b.tri.size(); ++k) {
       for (size_t c = 0; c < 3; ++c)
-        out.tri[to.tri + k][c] = number(b.tri[k][c]);
-      out.tri_sides[to.tri + k] = b.tri_sides[k];
-      out.boundary[to.tri + k] = b.boundary[k];
+        e.tri[to.tri + k][c] = number(b.tri[k][c]);
+      e.tri_sides[to.tri + k] = b.tri_sides[k];
+      e.boundary[to.tri + k] = b.boundary[k];
     }
     for (size_t k = 0; k < b.link.size(); ++k) {
-      Link l = b.link[k];
-      links[to.link + k] = {l.inside, l.outside, number(l.from), number(l.via), number(l.to)};
+      const Link& l = b.link[k];
+      out.link[to.link + k] = {l.inside, l.outside, number(l.from), number(l.via), number(l.to)};
     }
-    for (size_t k = 0; k < b.point.size(); ++k) {
-      out.position[to.point + k] = b.point[k];
-      wall[to.point + k - own] = b.point_wall[k];
-    }
-    b = Batch{};
+    std::copy(b.point.begin(), b.point.end(), e.position.begin() + static_cast<std::ptrdiff_t>(to.point));
+    std::copy(b.point_wall.begin(), b.point_wall.end(), out.wall.begin() + static_cast<std::ptrdiff_t>(to.point));
+    std::copy(b.spoiled.begin(), b.spoiled.end(), out.spoiled.begin() + static_cast<std::ptrdiff_t>(to.spoiled));
   });
 }
 
-/// Faces of the leaves that leaf(0 … n - 1) names, into out and links; wall as in join.
-template <class Leaf>
-void add_faces(const Complex& complex, int64_t n, Leaf leaf, const bool wanted[2], Elements& out,
-               std::vector<Link>& links, std::vector<int32_t>& wall, int threads) {
-  std::vector<Batch> batches(at((n + batch_size - 1) / batch_size));
-  par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t b) {
-    for (int64_t i = b * batch_size; i < std::min(n, (b + 1) * batch_size); ++i)
-      detail::make_faces(complex, leaf(i), wanted, batches[at(b)]);
-  });
-  join(batches, out, links, wall, threads);
-}
-
-/// Rings of all the edges in links.
-void add_rings(const Complex& complex, std::vector<Link>& links, const bool wanted[2], Elements& out,
-               std::vector<int32_t>& wall, int threads) {
-  par::sort(links, threads);
-  std::vector<int64_t> first; // link of each sign-change edge
-  for (size_t i = 0; i < links.size(); ++i)
-    if (i == 0 || !links[i].same_edge(links[i - 1]))
-      first.push_back(static_cast<int64_t>(i));
-  const auto edges = static_cast<int64_t>(first.size());
-  first.push_back(static_cast<int64_t>(links.size()));
-  std::vector<Batch> batches(at((edges + batch_size - 1) / batch_size));
-  const auto own = static_cast<int32_t>(complex.position.size());
-  const detail::RingVertices<Complex> vertices{complex, own, out.position.data() + own, wall.data()};
-  par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t b) {
-    for (int64_t e = b * batch_size; e < std::min(edges, (b + 1) * batch_size); ++e)
-      detail::make_ring(vertices, &links[at(first[at(e)])], links.data() + first[at(e + 1)], wanted,
-                        batches[at(b)]);
-  });
-  std::vector<Link> none;
-  join(batches, out, none, wall, threads);
-}
-
-/// [grid vertices] flags the corners of the leaves.
-std::vector<uint8_t> corners(const Complex& complex, const std::vector<int32_t>& leaves) {
-  std::vector<uint8_t> flag(at(complex.grid_vertices), 0);
-  for (int32_t leaf : leaves)
-    for (int c = 0; c < 8; ++c)
-      flag[at(complex.grid_vertex[at(int64_t{8} * leaf + c)])] = 1;
-  return flag;
-}
-
-/// Of the leaves' faces, and of the rings round edges with both ends flagged (all edges without flags): rings of
-/// others may be incomplete.
-std::vector<int32_t> spoiled_of(const Complex& complex, const std::vector<int32_t>& leaves,
-                                const std::vector<uint8_t>* ends, int threads) {
-  const bool none[2] = {false, false};
-  Elements out;
-  out.position = complex.position;
-  std::vector<Link> links;
-  std::vector<int32_t> wall;
-  add_faces(
-      complex, static_cast<int64_t>(leaves.size()), [&](int64_t i) { return leaves[at(i)]; }, none, out, links,
-      wall, threads);
-  if (ends) {
-    const auto partial = [&](const Link& l) { // all faces at a split cell's centre are that cell's
-      const auto end = [&](int32_t v) { return v >= complex.grid_vertices || (*ends)[at(v)]; };
-      return !(end(l.inside) && end(l.outside));
-    };
-    links.erase(std::remove_if(links.begin(), links.end(), partial), links.end());
+/// make(i, out) for i in [0, n), joined. A few batches at a time, so that their memory stays in the caches.
+template <bool check, class Make>
+void run(int64_t n, int32_t first, Joined& out, int threads, Make make) {
+  constexpr int64_t batch_size = 256; // leaves or edges
+  const int64_t all = (n + batch_size - 1) / batch_size, most = int64_t{64} * threads;
+  std::vector<detail::Batch<check>> batches;
+  for (int64_t begin = 0; begin < all; begin += most) {
+    batches.resize(at(std::min(most, all - begin)));
+    par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t b) {
+      batches[at(b)].clear();
+      for (int64_t i = (begin + b) * batch_size, end = std::min(n, i + batch_size); i < end; ++i)
+        make(i, batches[at(b)]);
+    });
+    join(batches, first, out, threads);
   }
-  add_rings(complex, links, none, out, wall, threads);
-  par::sort_unique(out.spoiled, threads);
-  return std::move(out.spoiled);
+}
+
+/// The first link of each run of like ones, then the number of links.
+template <class Like>
+LargeArray<int64_t> firsts(const LargeArray<Link>& links, int threads, Like like) {
+  const auto n = static_cast<int64_t>(links.size());
+  LargeArray<int64_t> first =
+      par::select<int64_t>(n, threads, [&](int64_t i) { return i == 0 || !like(links[at(i - 1)], links[at(i)]); });
+  first.push_back(n);
+  return first;
+}
+
+/// Sorted by edge, then by where they come from; returns the first link of each edge, then their number.
+LargeArray<int64_t> sort_by_edge(LargeArray<Link>& links, int32_t vertices, int threads) {
+  const auto n = static_cast<int64_t>(links.size());
+  LargeArray<Link> sorted;
+  par::place_by(
+      n, vertices, threads, [&](int64_t i) { return links[at(i)].inside; },
+      [&](int64_t slots) { sorted.resize(at(slots)); },
+      [&](int64_t slot, int64_t i) { sorted[at(slot)] = links[at(i)]; });
+  links.swap(sorted);
+  const LargeArray<int64_t> run =
+      firsts(links, threads, [](const Link& a, const Link& b) { return a.inside == b.inside; });
+  par::for_n(static_cast<int64_t>(run.size()) - 1, threads,
+             [&](int64_t r) { std::sort(links.begin() + run[at(r)], links.begin() + run[at(r + 1)]); });
+  return firsts(links, threads, [](const Link& a, const Link& b) { return a.same_edge(b); });
+}
+
+/// Faces of the leaves that leaf(0 … n - 1) names, then the rings of all edges whose links stay(link).
+template <bool check, class Leaf, class Stay>
+Joined make_all(const ComplexView& view, int64_t n, Leaf leaf, const bool wanted[2], int threads, Stay stay) {
+  Joined out;
+  if (!check) { // about what a uniform mesh has: memory is taken when it is written
+    out.elements.tet.reserve(at(12 * n) + 8 * at(view.surface_cells));
+    out.link.reserve(6 * at(view.surface_cells));
+  }
+  run<check>(n, view.vertices(), out, threads,
+             [&](int64_t i, auto& to) { detail::make_faces(view, leaf(i), wanted, to); });
+  out.elements.face_points = static_cast<int64_t>(out.wall.size());
+  if (check)
+    out.link.erase(std::remove_if(out.link.begin(), out.link.end(), [&](const Link& l) { return !stay(l); }),
+                   out.link.end());
+  const LargeArray<int64_t> first = sort_by_edge(out.link, view.vertices(), threads);
+  const LargeArray<Vec3d> point = out.elements.position; // the rings' are appended
+  const LargeArray<int32_t> wall = out.wall;
+  const detail::RingVertices vertices{view, view.vertices(), point.data(), wall.data()};
+  run<check>(static_cast<int64_t>(first.size()) - 1, view.vertices(), out, threads, [&](int64_t e, auto& to) {
+    detail::make_ring(vertices, &out.link[at(first[at(e)])], out.link.data() + first[at(e + 1)], wanted, to);
+  });
+  return out;
 }
 
 } // namespace
 
-std::vector<int32_t> find_spoiled(const Complex& complex, int threads) {
-  // Every face that a surface cell has part in belongs to a leaf with a corner in common.
-  std::vector<int32_t> crossed;
-  for (int32_t leaf = 0; leaf < complex.tree.size(); ++leaf)
-    if (complex.side[at(leaf)] == Side::crossed)
-      crossed.push_back(leaf);
-  return spoiled_of(complex, complex.leaves_at(corners(complex, crossed), threads), nullptr, threads);
+LargeArray<int32_t> spoiled_of(const ComplexView& view, const LargeArray<int32_t>& leaves,
+                               const LargeArray<int32_t>* ends, int threads) {
+  const bool none[2] = {false, false};
+  const auto is_end = [&](int32_t v) { // all faces at a split cell's centre are that cell's
+    return v >= view.grid_vertices || std::binary_search(ends->begin(), ends->end(), v);
+  };
+  Joined all = make_all<true>(
+      view, static_cast<int64_t>(leaves.size()), [&](int64_t i) { return leaves[at(i)]; }, none, threads,
+      [&](const Link& l) { return !ends || (is_end(l.inside) && is_end(l.outside)); });
+  par::sort_unique(all.spoiled, threads);
+  return std::move(all.spoiled);
 }
 
-std::vector<int32_t> spoiled_at(const Complex& complex, const std::vector<int32_t>& leaves, int threads) {
-  // An edge of a leaf, halves and those on its faces included, has its ends among the corners of the leaves around;
-  // all faces at it belong to leaves with such a corner.
-  const std::vector<uint8_t> ends = corners(complex, complex.leaves_at(corners(complex, leaves), threads));
-  return spoiled_of(complex, complex.leaves_at(ends, threads), &ends, threads);
-}
-
-Elements make_elements(const Complex& complex, bool inside, bool outside, int threads) {
+Elements make_elements(const ComplexView& view, bool inside, bool outside, int threads) {
   const bool wanted[2] = {outside, inside};
-  Elements out;
-  out.position = complex.position;
-  std::vector<Link> links;
-  std::vector<int32_t> wall;
-  add_faces(
-      complex, complex.tree.size(), [](int64_t i) { return static_cast<int32_t>(i); }, wanted, out, links, wall,
-      threads);
-  out.face_points = static_cast<int64_t>(wall.size());
-  add_rings(complex, links, wanted, out, wall, threads);
-  out.edge_points = static_cast<int64_t>(wall.size()) - out.face_points;
-  par::sort_unique(out.spoiled, threads);
-  return out;
+  Joined all = make_all<false>(
+      view, view.tree.leaves, [](int64_t i) { return static_cast<int32_t>(i); }, wanted, threads,
+      [](const Link&) { return true; });
+  Elements& out = all.elements;
+  out.edge_points = static_cast<int64_t>(out.position.size()) - out.face_points;
+  const LargeArray<Vec3d> more = std::move(out.position);
+  const int64_t own = view.vertices(), points = own + static_cast<int64_t>(more.size());
+  out.position = LargeArray<Vec3d>(at(points));
+  par::for_n(points, threads,
+             [&](int64_t i) { out.position[at(i)] = i < own ? view.position[i] : more[at(i - own)]; });
+  return std::move(out);
 }
 
 } // namespace molmesh::contour

@@ -17,25 +17,23 @@ namespace molmesh::contour {
 
 /// Elements before regions are told apart.
 struct Elements {
-  std::vector<Tet> tet; ///< positive; tet[0] is a vertex of the complex on the element's side
-  std::vector<Tri> tri; ///< out of the molecule, or out of the box
-  std::vector<std::array<int32_t, 2>>
-      tri_sides;                 ///< [tris] vertices of the complex behind and in front; equal on a wall
-  std::vector<int32_t> boundary; ///< [tris] Boundary
-  std::vector<Vec3d> position;   ///< all vertices: those of the complex, then face, wall and edge points
-  /// Vertices of the complex that elements without positive volume, on either side, hang on, ascending: where grid
-  /// points have moved the cells are no boxes.
-  std::vector<int32_t> spoiled;
+  LargeArray<Tet> tet; ///< positive; tet[0] is a vertex of the complex on the element's side
+  LargeArray<Tri> tri; ///< out of the molecule, or out of the box
+  LargeArray<std::array<int32_t, 2>>
+      tri_sides;                ///< [tris] vertices of the complex behind and in front; equal on a wall
+  LargeArray<int32_t> boundary; ///< [tris] Boundary
+  LargeArray<Vec3d> position;   ///< all vertices: those of the complex, then face, wall and edge points
   int64_t face_points = 0, edge_points = 0;
 };
 
-/// What Elements::spoiled would be, without making elements.
-std::vector<int32_t> find_spoiled(const Complex& complex, int threads);
-/// The same of the elements that hang on these leaves' dual vertices or corners and of some around them: what is
-/// left to look at after Complex::restore.
-std::vector<int32_t> spoiled_at(const Complex& complex, const std::vector<int32_t>& leaves, int threads);
+/// Vertices of the complex that elements without positive volume, on either side, would hang on, ascending: where
+/// grid points have moved the cells are no boxes. Of the leaves' faces, and of the rings of edges with both ends
+/// among `ends`, ascending, or at split cells' centres (null: of all edges).
+LargeArray<int32_t> spoiled_of(const ComplexView& complex, const LargeArray<int32_t>& leaves,
+                               const LargeArray<int32_t>* ends, int threads);
 
 /// inside, outside: sides to make elements on. The order follows the octree's curve, whatever the threads.
-Elements make_elements(const Complex& complex, bool inside, bool outside, int threads);
+/// Positive where nothing is spoiled.
+Elements make_elements(const ComplexView& complex, bool inside, bool outside, int threads);
 
 } // namespace molmesh::contour

@@ -67,10 +67,14 @@ struct LatticeView {
     const int64_t b = index.find(base + p, last);
     return b == BlockIndexView::inside || (b >= 0 && bit(inside_words, b, base + p));
   }
-  /// Whether the grid holds G there, not only the side.
-  HD bool active(Vec3i p) const {
-    const int64_t b = index.find(base + p);
-    return b >= 0 && bit(active_words, b, base + p);
+  /// Whether the grid holds G there, not only the side; v: value(p) then.
+  HD bool active(Vec3i p, float& v) const {
+    const Vec3i q = base + p;
+    const int64_t b = index.find(q);
+    if (b < 0 || !bit(active_words, b, q))
+      return false;
+    v = any_cut && on_cut(p) ? value(p) : grid[512 * b + slot(q)];
+    return true;
   }
   /// At the corners c = x + 2 y + 4 z of the fine cell at p.
   HD void corner_values(Vec3i p, float v[8]) const {
@@ -151,7 +155,6 @@ public:
   float isovalue = 1;
 
   float value(Vec3i p) const { return view_.value(p); }
-  bool active(Vec3i p) const { return view_.active(p); }
   bool inside(Vec3i p) const { return view_.inside(p); }
   Vec3d position(Vec3i p) const { return view_.position(p); }
   /// Between lattice points, each axis by itself; p within 0 … cells.

@@ -17,6 +17,10 @@ struct OctreeView {
     int32_t first;     ///< first leaf
     uint64_t start[8]; ///< bit m: a leaf starts at Morton position m within the block
     uint16_t rank[8];  ///< leaves that start in the words before
+    HD int32_t leaf(uint64_t k) const {
+      const auto word = static_cast<unsigned>(k >> 6 & 7);
+      return first + rank[word] + count_bits(start[word] & (~uint64_t{0} >> (63 - (k & 63)))) - 1;
+    }
   };
   const uint64_t* key = nullptr;  ///< [leaves] ascending; Morton code of the lower corner
   const uint8_t* level = nullptr; ///< [leaves] 0: fine cell
@@ -42,23 +46,36 @@ struct OctreeView {
   }
   /// The leaf that holds the fine cell of Morton code k, which lies in the domain.
   HD int32_t find_key(uint64_t k) const {
-    for (uint64_t s = mix(k >> 9) & mask; slot[s] >= 0; s = (s + 1) & mask) {
-      const Block& b = block[slot[s]];
-      if (b.key != k >> 9)
-        continue;
-      const auto word = static_cast<unsigned>(k >> 6 & 7);
-      return b.first + b.rank[word] + count_bits(b.start[word] & (~uint64_t{0} >> (63 - (k & 63)))) - 1;
-    }
+    if (const Block* b = find_block(k))
+      return b->leaf(k);
+    return find_large(k);
+  }
+  /// The leaf whose lower corner is the fine cell of Morton code k, which lies in the domain; -1: none.
+  HD int32_t starting_at(uint64_t k) const {
+    if (const Block* b = find_block(k))
+      return b->start[k >> 6 & 7] >> (k & 63) & 1 ? b->leaf(k) : -1;
+    const int32_t leaf = find_large(k);
+    return key[leaf] == k ? leaf : -1;
+  }
+  HD static uint64_t mix(uint64_t k) {
+    k *= 0x9E3779B97F4A7C15u;
+    return k ^ k >> 32;
+  }
+
+private:
+  HD const Block* find_block(uint64_t k) const {
+    for (uint64_t s = mix(k >> 9) & mask; slot[s] >= 0; s = (s + 1) & mask)
+      if (block[slot[s]].key == k >> 9)
+        return block + slot[s];
+    return nullptr;
+  }
+  HD int32_t find_large(uint64_t k) const {
     int32_t begin = 0, end = large_leaves; // the last key that is not above k
     while (end - begin > 1) {
       const int32_t middle = begin + (end - begin) / 2;
       (key[large[middle]] <= k ? begin : end) = middle;
     }
     return large[begin];
-  }
-  HD static uint64_t mix(uint64_t k) {
-    k *= 0x9E3779B97F4A7C15u;
-    return k ^ k >> 32;
   }
 };
 

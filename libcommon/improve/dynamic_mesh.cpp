@@ -37,7 +37,7 @@ struct Buckets {
   std::vector<Face> face;
 };
 
-Buckets bucket_faces(const std::vector<Tet>& tets, size_t vertices) {
+Buckets bucket_faces(const LargeArray<Tet>& tets, size_t vertices) {
   Buckets b;
   b.begin.assign(vertices + 1, 0);
   const auto each = [&](auto&& f) {

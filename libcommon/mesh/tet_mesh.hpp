@@ -1,5 +1,6 @@
 // tet_mesh.hpp — tetrahedra with their regions and boundary triangles: what the .vtu file holds (design §3).
 #pragma once
+#include "density/large_array.hpp"
 #include "geom/vec.hpp"
 #include <array>
 #include <cstdint>
@@ -30,7 +31,7 @@ struct NamedText {
 /// point out of region 1, box triangles out of the box. No duplicate or unused point (I6).
 struct TetMesh {
   std::vector<Vec3d> point; ///< Å
-  std::vector<Tet> tet;
+  LargeArray<Tet> tet;
   std::vector<int32_t> region; ///< [tets] Region; any positive label of a foreign mesh
   std::vector<int32_t> part;   ///< [tets] METIS part, or empty
   std::vector<Tri> tri;

@@ -2,6 +2,7 @@
 #pragma once
 #include "density/large_array.hpp"
 #include "par/par.hpp"
+#include "par/work.hpp"
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -31,7 +32,7 @@ public:
   }
   /// item(i) for i in [0, n), each independent of the others.
   template <class Item>
-  void for_n(const char*, int64_t n, const Item& item) {
+  void for_n(const char*, int64_t n, const Item& item, const Work& = {}) {
     par::for_n(n, threads_, 256, item);
   }
   /// count[i] → sum of count[0..i), in place; slot n, one more, gets the total.

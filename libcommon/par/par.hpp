@@ -1,6 +1,7 @@
 // par.hpp — loops, reductions, scans and sorts, serial and OpenMP. The only file with `#pragma omp`.
 // Every function gives the same result for any number of threads.
 #pragma once
+#include "density/large_array.hpp"
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -79,9 +80,73 @@ T exclusive_scan(std::vector<T>& count) {
   return sum;
 }
 
+/// The i in [0, n) with keep(i), ascending.
+template <class T = int32_t, class Keep>
+LargeArray<T> select(int64_t n, int threads, Keep&& keep) {
+  constexpr int64_t grain = 4096;
+  const int64_t chunks = (n + grain - 1) / grain;
+  std::vector<int64_t> start(static_cast<size_t>(chunks));
+  const auto each = [&](int64_t c, auto&& f) {
+    for (int64_t i = c * grain, end = std::min(n, i + grain); i < end; ++i)
+      if (keep(i))
+        f(i);
+  };
+  for_n(chunks, threads, 1, [&](int64_t c) {
+    int64_t kept = 0;
+    each(c, [&](int64_t) { ++kept; });
+    start[static_cast<size_t>(c)] = kept;
+  });
+  LargeArray<T> out(static_cast<size_t>(exclusive_scan(start)));
+  for_n(chunks, threads, 1, [&](int64_t c) {
+    auto to = out.begin() + start[static_cast<size_t>(c)];
+    each(c, [&](int64_t i) { *to++ = static_cast<T>(i); });
+  });
+  return out;
+}
+
+/// Calls place(slot, i) for each i in [0, n) with key(i) ≥ 0, slots counting from 0 by ascending key, then
+/// ascending i; sized(slots) before the first. key(i) < keys; n < 2^32. Counting: to buckets of keys chunk by
+/// chunk, then within each bucket.
+template <class Key, class Sized, class Place>
+void place_by(int64_t n, int64_t keys, int threads, Key&& key, Sized&& sized, Place&& place) {
+  constexpr int64_t grain = int64_t{1} << 16;
+  int shift = 0;
+  while (keys >> shift > 1024)
+    ++shift;
+  const int64_t buckets = (keys >> shift) + 1, chunks = (n + grain - 1) / grain;
+  std::vector<int64_t> start(static_cast<size_t>(buckets * chunks)); // bucket by bucket, in each chunk by chunk
+  const auto each = [&](int64_t c, auto&& f) {
+    for (int64_t i = c * grain, end = std::min(n, i + grain); i < end; ++i)
+      if (const int64_t k = key(i); k >= 0)
+        f(start[static_cast<size_t>((k >> shift) * chunks + c)], i);
+  };
+  for_n(chunks, threads, 1, [&](int64_t c) { each(c, [](int64_t& count, int64_t) { ++count; }); });
+  const int64_t total = exclusive_scan(start);
+  sized(total);
+  LargeArray<uint32_t> order(static_cast<size_t>(total));
+  for_n(chunks, threads, 1, [&](int64_t c) {
+    each(c, [&](int64_t& slot, int64_t i) { order[static_cast<size_t>(slot++)] = static_cast<uint32_t>(i); });
+  });
+  for_n(buckets, threads, 1, [&](int64_t b) { // each start has become its end
+    const int64_t first = b * chunks == 0 ? 0 : start[static_cast<size_t>(b * chunks - 1)],
+                  last = chunks == 0 ? 0 : start[static_cast<size_t>((b + 1) * chunks - 1)];
+    if (first == last)
+      return;
+    std::vector<int64_t> slot(size_t{1} << shift);
+    const auto slot_of = [&](int64_t i) -> int64_t& { return slot[static_cast<size_t>(key(i) - (b << shift))]; };
+    for (int64_t m = first; m < last; ++m)
+      ++slot_of(order[static_cast<size_t>(m)]);
+    exclusive_scan(slot);
+    for (int64_t m = first; m < last; ++m) {
+      const int64_t i = order[static_cast<size_t>(m)];
+      place(first + slot_of(i)++, i);
+    }
+  });
+}
+
 /// Sort by operator< or `less`. Equal elements must be interchangeable: the result is then unique.
-template <class T, class Less>
-void sort(std::vector<T>& v, int threads, Less less) {
+template <class Vector, class Less>
+void sort(Vector& v, int threads, Less less) {
   const int64_t n = static_cast<int64_t>(v.size());
   int64_t runs = 1;
   while (runs < threads && n / (2 * runs) > 8192)
@@ -94,14 +159,14 @@ void sort(std::vector<T>& v, int threads, Less less) {
       std::inplace_merge(at(r), at(r + width), at(r + 2 * width), less);
     });
 }
-template <class T>
-void sort(std::vector<T>& v, int threads) {
-  sort(v, threads, [](const T& a, const T& b) { return a < b; });
+template <class Vector>
+void sort(Vector& v, int threads) {
+  sort(v, threads, [](const auto& a, const auto& b) { return a < b; });
 }
 
 /// Ascending, each once.
-template <class T>
-void sort_unique(std::vector<T>& v, int threads) {
+template <class Vector>
+void sort_unique(Vector& v, int threads) {
   sort(v, threads);
   v.erase(std::unique(v.begin(), v.end()), v.end());
 }

@@ -23,16 +23,16 @@ struct Link {
   }
 };
 
-/// New points are numbered -1, -2 … until the batches are joined.
-struct Batch {
+/// Elements, and the links of faces. New points are numbered -1, -2 … until the batches are joined.
+struct BatchData {
   std::vector<Tet> tet;
   std::vector<Tri> tri;
   std::vector<std::array<int32_t, 2>> tri_sides;
   std::vector<int32_t> boundary;
   std::vector<Link> link;
   std::vector<Vec3d> point;
-  std::vector<int32_t> spoiled;    ///< vertices of the complex that elements without positive volume hang on
   std::vector<int32_t> point_wall; ///< Boundary of a wall point, 0 otherwise
+  std::vector<int32_t> spoiled;    ///< see Batch
 
   int32_t add_point(Vec3d p, int32_t wall) {
     point.push_back(p);
@@ -46,6 +46,23 @@ struct Batch {
     tri_sides.push_back({behind, front});
     boundary.push_back(label);
   }
+  /// Empty, but with its memory.
+  void clear() {
+    tet.clear();
+    tri.clear();
+    tri_sides.clear();
+    boundary.clear();
+    link.clear();
+    point.clear();
+    point_wall.clear();
+    spoiled.clear();
+  }
+};
+
+/// check: no elements, but the vertices of the complex that those without positive volume would hang on.
+template <bool check>
+struct Batch : BatchData {
+  static constexpr bool checks = check;
 };
 
 } // namespace molmesh::contour::detail

@@ -1,9 +1,7 @@
 // face_pass.hpp — one tetrahedron per edge of each face between two cells. Host and device.
 #pragma once
-#include "contour/detail/at.hpp"
 #include "contour/detail/batch.hpp"
-#include "contour/detail/complex_queries.hpp"
-#include "contour/octree.hpp"
+#include "contour/detail/crossing.hpp"
 #include "geom/predicates.hpp"
 #include "geom/tet_measures.hpp"
 #include <cmath>
@@ -27,22 +25,28 @@ inline constexpr double least_volume = 0.003;
 /// The same between boxes of one size, whose grid points may have moved.
 inline constexpr double least_moved_volume = 1e-4;
 
-/// C: Complex or its view on a device; Out: Batch, or what counts or writes there.
-template <class C, class Out>
+/// Out: Batch, Checks, or what counts or writes on a device.
+template <class Out>
 class FacePass {
 public:
-  HD FacePass(const C& c, const bool wanted[2], Out& out) : c_(c), wanted_{wanted[0], wanted[1]}, out_(out) {}
+  HD FacePass(const ComplexView& c, const bool wanted[2], Out& out)
+      : c_(c), wanted_{wanted[0], wanted[1]}, out_(out) {}
 
   HD void leaf(int32_t leaf) {
-    const int level = c_.tree.level[at(leaf)];
+    const int level = c_.tree.level[leaf];
+    int32_t other[6];
+    smaller_ = 0;
     for (int f = 0; f < 6; ++f) {
-      const int32_t other = neighbour(leaf, f);
-      if (other >= 0) {
-        const int other_level = c_.tree.level[at(other)];
+      other[f] = neighbour(leaf, f);
+      smaller_ |= unsigned(other[f] >= 0 && c_.tree.level[other[f]] < level) << f;
+    }
+    for (int f = 0; f < 6; ++f) {
+      if (other[f] >= 0) {
+        const int other_level = c_.tree.level[other[f]];
         if (other_level < level || (other_level == level && f % 2 == 0))
           continue; // the other cell's face
       }
-      face(leaf, f, other);
+      face(leaf, f, other[f]);
     }
     if (c_.is_split(leaf))
       split_interior(leaf);
@@ -50,42 +54,49 @@ public:
 
 private:
   HD int32_t neighbour(int32_t leaf, int f) const {
-    Vec3i p = c_.tree.corner(leaf);
-    p[f / 2] += f % 2 ? c_.tree.extent(leaf) : -1;
-    return c_.tree.find(p);
+    uint64_t k = c_.tree.key[leaf];
+    return beyond(k, c_.tree.level[leaf], f / 2, f % 2) ? c_.tree.find_key(k) : -1;
+  }
+  /// Moves k, the lower corner of a leaf as far as this axis goes, to the cell beyond the leaf's lower or upper
+  /// side; false where there is none.
+  HD bool beyond(uint64_t& k, int level, int axis, bool upper) const {
+    if (!upper && (k & morton_axis(axis)) == 0)
+      return false;
+    k = upper ? morton_after(k, axis, level) : morton_before(k, axis);
+    return !upper || c_.tree.before_end(k, axis);
   }
 
   /// The vertex in the middle of the leaf's edge from corner a to b, or -1 when no cell round the edge is smaller.
   HD int32_t middle_vertex(int32_t leaf, int a, int b) const {
-    const int32_t extent = c_.tree.extent(leaf);
-    if (extent == 1)
+    const int level = c_.tree.level[leaf];
+    if (level == 0)
       return -1;
-    const int axis = (a ^ b) == 1 ? 0 : (a ^ b) == 2 ? 1 : 2;
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const Vec3i corner = c_.tree.corner(leaf);
-    Vec3i middle = corner;
-    middle[axis] += extent / 2;
-    middle[u] += a >> u & 1 ? extent : 0;
-    middle[v] += a >> v & 1 ? extent : 0;
-    for (int n = 1; n < 4; ++n) { // the other three cells round the edge
-      Vec3i p = middle;           // a fine cell at the edge, in the quadrant
-      const bool high_u = ((a >> u & 1) != 0) == ((n & 1) != 0), high_v = ((a >> v & 1) != 0) == ((n & 2) != 0);
-      if (!high_u)
-        p[u] -= 1;
-      if (!high_v)
-        p[v] -= 1;
-      const int32_t other = c_.tree.find(p);
-      if (other < 0 || c_.tree.extent(other) >= extent)
-        continue;
-      // That leaf starts at the middle along the axis.
-      const int k = (high_u ? 0 : 1 << u) | (high_v ? 0 : 1 << v);
-      return c_.grid_vertex[at(int64_t{8} * other + k)];
-    }
-    return -1;
+    const int axis = (a ^ b) == 1 ? 0 : (a ^ b) == 2 ? 1 : 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const bool upper_u = a >> u & 1, upper_v = a >> v & 1;
+    // Neighbours across a face are one level smaller all along it; so is one across the edge.
+    const bool across_u = smaller_ >> (2 * u + upper_u) & 1,
+               across_v = !across_u && smaller_ >> (2 * v + upper_v) & 1;
+    const bool diagonal = !across_u && !across_v;
+    uint64_t k = c_.tree.key[leaf] | uint64_t{1} << (3 * (level - 1) + axis); // the cell after the middle
+    if ((across_u || diagonal) && !beyond(k, level, u, upper_u))
+      return -1;
+    if ((across_v || diagonal) && !beyond(k, level, v, upper_v))
+      return -1;
+    if (across_u && upper_v)
+      k = morton_before(morton_after(k, v, level), v);
+    if (across_v && upper_u)
+      k = morton_before(morton_after(k, u, level), u);
+    const int32_t other = c_.tree.find_key(k);
+    if (diagonal && c_.tree.level[other] >= level)
+      return -1;
+    // That leaf starts at the middle along the axis.
+    const bool other_upper_u = across_u || diagonal ? !upper_u : upper_u;
+    const bool other_upper_v = across_v || diagonal ? !upper_v : upper_v;
+    return c_.corner_vertex(other, int(other_upper_u) << u | int(other_upper_v) << v);
   }
 
   HD void face(int32_t leaf, int f, int32_t other) {
-    const Side mine = c_.side[at(leaf)], its = other < 0 ? mine : c_.side[at(other)];
+    const Side mine = c_.side[leaf], its = other < 0 ? mine : c_.side[other];
     const bool both_crossed = mine == Side::crossed && its == Side::crossed;
     if (!both_crossed) {
       const Side side = mine == Side::crossed ? its : mine;
@@ -93,13 +104,13 @@ private:
         return;
     }
     const int corner[4] = {face_corner_of(f, 0), face_corner_of(f, 1), face_corner_of(f, 2), face_corner_of(f, 3)};
-    const auto vertex = [&](int k) { return c_.grid_vertex[at(int64_t{8} * leaf + k)]; };
+    const auto vertex = [&](int k) { return c_.corner_vertex(leaf, k); };
     // Only fine surface cells have ambiguous faces.
     Diagonal diagonal = Diagonal::none;
-    if (both_crossed && c_.tree.level[at(leaf)] == 0) {
+    if (both_crossed && c_.tree.level[leaf] == 0) {
       double v[4];
       for (int i = 0; i < 4; ++i)
-        v[i] = double(c_.value[at(vertex(corner[i]))]) - double(c_.lattice.isovalue);
+        v[i] = double(c_.value[vertex(corner[i])]) - double(c_.lattice.isovalue);
       diagonal = face_diagonal(v[0], v[1], v[2], v[3]);
     }
     if (diagonal == Diagonal::none) {
@@ -132,26 +143,26 @@ private:
       return false;
     if (c_.is_split(leaf) || c_.is_split(other))
       return true;
-    return c_.tree.level[at(leaf)] != c_.tree.level[at(other)] &&
-           (c_.side[at(leaf)] == Side::crossed || c_.side[at(other)] == Side::crossed);
+    return c_.tree.level[leaf] != c_.tree.level[other] &&
+           (c_.side[leaf] == Side::crossed || c_.side[other] == Side::crossed);
   }
 
   HD int32_t cell_dual(int32_t leaf, int f, int off) const {
     return c_.is_split(leaf) ? c_.piece_dual(leaf, SplitCell(c_.topology(leaf)), f, off) : c_.dual(leaf);
   }
 
-  /// behind, front: dual vertices of the two cells; front no_vertex at wall f. Elements at surface cells are
-  /// checked on both sides of the surface, wanted or not: all regions are parts of one mesh.
+  /// behind, front: dual vertices of the two cells; front no_vertex at wall f. check: at a surface cell; looked at
+  /// on both sides of the surface: all regions are parts of one mesh.
   HD_CALL void polygon(const Polygon& p, int32_t behind, int32_t front, int f, bool test, bool check) {
     const bool wall = front == no_vertex;
     int32_t via = no_vertex;
     Vec3d via_position, front_position;
     if (wall) {
       front_position = face_point(p);
-      front_position[f / 2] = c_.position[at(p.vertex[0])][f / 2]; // planar to the last bit
+      front_position[f / 2] = c_.position[p.vertex[0]][f / 2]; // planar to the last bit
       front = out_.add_point(front_position, box_x0 + f);
     } else {
-      front_position = c_.position[at(front)];
+      front_position = c_.position[front];
       if (!pierced(p, behind, front, test ? least_volume : check ? least_moved_volume : -1)) {
         via_position = face_point(p);
         via = out_.add_point(via_position, 0);
@@ -161,8 +172,8 @@ private:
     for (int i = 0; i < p.n; ++i) {
       const int32_t a = p.vertex[i], b = p.vertex[(i + 1) % p.n];
       const bool in_a = c_.inside(a), in_b = c_.inside(b);
-      if (check) {
-        const Vec3d xa = c_.position[at(a)], xb = c_.position[at(b)], xc = c_.position[at(behind)];
+      if (Out::checks && check) {
+        const Vec3d xa = c_.position[a], xb = c_.position[b], xc = c_.position[behind];
         positive = positive && (via == no_vertex ? orient3d(xa, xb, xc, front_position) > 0
                                                  : orient3d(xa, xb, xc, via_position) > 0 &&
                                                        orient3d(xa, xb, via_position, front_position) > 0);
@@ -182,7 +193,7 @@ private:
       if (wall)
         out_.add_triangle({a, b, front}, a, a, box_x0 + f);
     }
-    if (positive)
+    if (!Out::checks || positive)
       return;
     for (int i = 0; i < p.n; ++i)
       out_.spoiled.push_back(p.vertex[i]);
@@ -197,10 +208,10 @@ private:
     int crossings = 0;
     for (int i = 0; i < p.n; ++i) {
       const int32_t a = p.vertex[i], b = p.vertex[(i + 1) % p.n];
-      all += c_.position[at(a)];
+      all += c_.position[a];
       if (c_.inside(a) == c_.inside(b))
         continue;
-      crossed += c_.crossing(a, b);
+      crossed += crossing(c_, a, b);
       ++crossings;
     }
     return crossings ? crossed / double(crossings) : all / double(p.n);
@@ -210,13 +221,13 @@ private:
   HD bool pierced(const Polygon& p, int32_t behind, int32_t front, double least_share) const {
     if (least_share < 0)
       return true;
-    const Vec3d d = c_.position[at(behind)], e = c_.position[at(front)];
+    const Vec3d d = c_.position[behind], e = c_.position[front];
     double size2 = 1e300;
     for (int i = 0; i < p.n; ++i)
-      size2 = lesser(size2, norm2(c_.position[at(p.vertex[i])] - c_.position[at(p.vertex[(i + 1) % p.n])]));
+      size2 = lesser(size2, norm2(c_.position[p.vertex[i]] - c_.position[p.vertex[(i + 1) % p.n]]));
     const double least = 6 * least_share * size2 * std::sqrt(size2);
     for (int i = 0; i < p.n; ++i)
-      if (six_volume(c_.position[at(p.vertex[i])], c_.position[at(p.vertex[(i + 1) % p.n])], d, e) < least)
+      if (six_volume(c_.position[p.vertex[i]], c_.position[p.vertex[(i + 1) % p.n]], d, e) < least)
         return false;
     return true;
   }
@@ -224,8 +235,8 @@ private:
   /// Triangles from the cell's edges (and its faces' diagonals) to the centre.
   HD void split_interior(int32_t leaf) {
     const SplitCell s(c_.topology(leaf));
-    const auto vertex = [&](int k) { return c_.grid_vertex[at(int64_t{8} * leaf + k)]; };
-    const int32_t centre = c_.split[at(leaf)];
+    const auto vertex = [&](int k) { return c_.corner_vertex(leaf, k); };
+    const int32_t centre = c_.split[leaf];
     for (const Patch& p : s.patch) {
       if (p.piece < 0)
         continue;
@@ -254,16 +265,17 @@ private:
     }
   }
 
-  const C& c_;
+  const ComplexView& c_;
   bool wanted_[2];
+  unsigned smaller_ = 0; ///< bit f: smaller cells across the leaf's face f
   Out& out_;
 };
 
 /// The elements of the faces that a leaf owns, and the links they add to sign-change edges. A face belongs to its
 /// smaller cell, of two equal ones to the lower. wanted[0]: outside, wanted[1]: inside.
-template <class C, class Out>
-HD void make_faces(const C& complex, int32_t leaf, const bool wanted[2], Out& out) {
-  FacePass<C, Out>(complex, wanted, out).leaf(leaf);
+template <class Out>
+HD void make_faces(const ComplexView& complex, int32_t leaf, const bool wanted[2], Out& out) {
+  FacePass<Out>(complex, wanted, out).leaf(leaf);
 }
 
 } // namespace molmesh::contour::detail

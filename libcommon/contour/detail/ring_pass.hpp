@@ -1,9 +1,8 @@
 // ring_pass.hpp — the elements round one sign-change edge: pyramids over the ring of dual vertices, split by the
 // better diagonal or round a crossing point. Host and device.
 #pragma once
-#include "contour/detail/at.hpp"
 #include "contour/detail/batch.hpp"
-#include "contour/detail/complex_queries.hpp"
+#include "contour/detail/crossing.hpp"
 #include "contour/detail/face_pass.hpp"
 #include "geom/predicates.hpp"
 #include "geom/tet_measures.hpp"
@@ -11,15 +10,14 @@
 namespace molmesh::contour::detail {
 
 /// What a ring needs to know of vertices: those of the complex and the face and wall points after them.
-template <class C>
 struct RingVertices {
-  const C& complex;
+  ComplexView complex;
   int32_t complex_vertices;
   const Vec3d* more;   ///< positions after the complex's own
   const int32_t* wall; ///< of those: Boundary of a wall point, 0 otherwise
 
   HD Vec3d position(int32_t v) const {
-    return v < complex_vertices ? complex.position[at(v)] : more[v - complex_vertices];
+    return v < complex_vertices ? complex.position[v] : more[v - complex_vertices];
   }
   HD int32_t wall_of(int32_t v) const { return v < complex_vertices ? 0 : wall[v - complex_vertices]; }
 };
@@ -81,10 +79,31 @@ HD inline double least_sine(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
   return six_volume(a, b, c, d) > 0 ? least : -1;
 }
 
+/// Whether one of the splits of a ring of three or four has only elements so far from flat that whatever is chosen
+/// has positive volumes: sines of dihedral angles are at least six volumes over the cube of the longest edge.
+HD inline bool clearly_positive(const RingVertices& v, int32_t inside, int32_t outside, const Ring& ring) {
+  constexpr double least_sine_of_all = 1e-5;
+  const Vec3d a = v.position(inside), b = v.position(outside);
+  Vec3d x[4];
+  double far2 = norm2(b - a);
+  for (int i = 0; i < ring.n; ++i) {
+    x[i] = v.position(ring.vertex[i]);
+    const double d2 = norm2(x[i] - a);
+    far2 = d2 > far2 ? d2 : far2;
+  }
+  const double least = least_sine_of_all * 8 * far2 * std::sqrt(far2); // no edge is longer than twice the farthest
+  const auto good = [&](int i, int j, int k) {
+    return six_volume(a, x[i], x[j], x[k]) > least && six_volume(b, x[i], x[k], x[j]) > least;
+  };
+  if (ring.n == 3)
+    return good(0, 1, 2);
+  return (good(0, 1, 2) && good(2, 3, 0)) || (good(1, 2, 3) && good(3, 0, 1));
+}
+
 /// links [begin, end): all links of one edge. The ring is closed, or at a wall an open chain from wall point to
 /// wall point.
-template <class C, class Out>
-HD void make_ring(const RingVertices<C>& v, const Link* begin, const Link* end, const bool wanted[2], Out& out) {
+template <class Out>
+HD void make_ring(const RingVertices& v, const Link* begin, const Link* end, const bool wanted[2], Out& out) {
   Ring ring;
   trace(begin, end, ring);
   if (ring.broken)
@@ -93,6 +112,9 @@ HD void make_ring(const RingVertices<C>& v, const Link* begin, const Link* end, 
   const int k = ring.n;
   const auto p = [&](int i) { return ring.vertex[i % k]; };
   const auto x = [&](int32_t i) { return v.position(i); };
+  const bool plain = ring.closed && !ring.has_via && (k == 3 || k == 4);
+  if (Out::checks && plain && clearly_positive(v, a, b, ring))
+    return;
 
   // Quality of a split into triangles without a new point: the worst of the tetrahedra on both sides.
   const auto triangle_quality = [&](Tri t) {
@@ -101,11 +123,11 @@ HD void make_ring(const RingVertices<C>& v, const Link* begin, const Link* end, 
   Tri split[2] = {};
   int triangles = 0;
   double best = 0;
-  if (ring.closed && !ring.has_via && k == 3) {
+  if (plain && k == 3) {
     split[0] = {p(0), p(1), p(2)};
     best = triangle_quality(split[0]);
     triangles = best > 0 ? 1 : 0;
-  } else if (ring.closed && !ring.has_via && k == 4) {
+  } else if (plain) {
     for (int s = 0; s < 2; ++s) {
       const Tri first{p(s), p(s + 1), p(s + 2)}, second{p(s + 2), p(s + 3), p(s)};
       const double quality = lesser(triangle_quality(first), triangle_quality(second));
@@ -124,6 +146,8 @@ HD void make_ring(const RingVertices<C>& v, const Link* begin, const Link* end, 
       with_point = lesser(
           with_point, lesser(least_sine(x(a), m, x(p(i)), x(p(i + 1))), least_sine(m, x(b), x(p(i)), x(p(i + 1)))));
   if (triangles > 0 && (best >= 0.3 || best >= with_point)) {
+    if (Out::checks)
+      return;
     for (int t = 0; t < triangles; ++t) {
       const Tri& q = split[t];
       if (wanted[1])
@@ -134,18 +158,21 @@ HD void make_ring(const RingVertices<C>& v, const Link* begin, const Link* end, 
     }
     return;
   }
-  const int32_t middle = out.add_point(m, 0);
-  bool positive = true;
-  for (int i = 0; i < (ring.closed ? k : k - 1); ++i)
-    positive =
-        positive && orient3d(x(a), m, x(p(i)), x(p(i + 1))) > 0 && orient3d(m, x(b), x(p(i)), x(p(i + 1))) > 0;
-  if (!positive) {
+  if (Out::checks) {
+    bool positive = true;
+    for (int i = 0; i < (ring.closed ? k : k - 1); ++i)
+      positive =
+          positive && orient3d(x(a), m, x(p(i)), x(p(i + 1))) > 0 && orient3d(m, x(b), x(p(i)), x(p(i + 1))) > 0;
+    if (positive)
+      return;
     out.spoiled.push_back(a);
     out.spoiled.push_back(b);
     for (int i = 0; i < k; ++i)
       if (p(i) < v.complex_vertices)
         out.spoiled.push_back(p(i));
+    return;
   }
+  const int32_t middle = out.add_point(m, 0);
   for (int i = 0; i < (ring.closed ? k : k - 1); ++i) {
     if (wanted[1])
       out.tet.push_back({a, middle, p(i), p(i + 1)});

@@ -46,7 +46,7 @@ contour::Elements fan(Vec3d middle, int32_t label) {
 TEST_CASE("a vertex near one side of its star moves to the middle; those on the surface stay") {
   contour::Elements e = fan({0.95, -0.3, 0.2}, surface);
   REQUIRE(least_angle(e) < 3);
-  const std::vector<Vec3d> before = e.position;
+  const auto before = e.position;
   CHECK(contour::relax(e, {}, 1) > 0);
   CHECK(least_angle(e) > 13);
   CHECK(std::equal(before.begin(), before.begin() + 8, e.position.begin()));
@@ -56,7 +56,7 @@ TEST_CASE("a vertex near one side of its star moves to the middle; those on the 
 TEST_CASE("a vertex on a wall stays in its plane") {
   // Half of the star: the vertex lies on the wall z = -1, near an edge.
   contour::Elements e = fan({0.97, 0.1, -1}, surface);
-  std::vector<Tet> tets;
+  LargeArray<Tet> tets;
   for (const Tet& t : e.tet)
     if (six_volume(e.position[static_cast<size_t>(t[0])], e.position[static_cast<size_t>(t[1])],
                    e.position[static_cast<size_t>(t[2])], e.position[8]) > 0)

@@ -1,25 +1,9 @@
-// complex_queries.hpp — what elements are made from, for the complex on the host and its view on a device: the same
-// members, vectors there and pointers here.
+// crossing.hpp — where the surface crosses an edge of the complex. Host and device.
 #pragma once
-#include "contour/detail/at.hpp"
-#include "contour/lattice.hpp"
-#include "contour/split_cell.hpp"
-#include "contour/surface_sample.hpp"
+#include "contour/detail/complex_view.hpp"
 #include <cmath>
 
 namespace molmesh::contour::detail {
-
-template <class C>
-HD int32_t piece_dual(const C& c, int32_t leaf, const SplitCell& s, const Patch& p) {
-  return c.split[at(leaf)] + 1 + (p.piece < 0 ? s.pieces : p.piece);
-}
-template <class C>
-HD int32_t piece_dual(const C& c, int32_t leaf, const SplitCell& s, int f, int off) {
-  for (const Patch& p : s.patch)
-    if (p.face == f && (off < 0 || p.corner[1] == off))
-      return piece_dual(c, leaf, s, p);
-  return -1; // every face has its patches
-}
 
 HD inline double kept_off_ends(double share) {
   constexpr double least = 0.02; // of an edge between its end and a crossing
@@ -28,32 +12,31 @@ HD inline double kept_off_ends(double share) {
 
 /// On a coarse edge whose ends have moved: the distances to the surface say about where, the tangent plane at the
 /// nearer of the ends' nearest samples more exactly.
-template <class C>
-HD Vec3d moved_crossing(const C& c, int32_t a, int32_t b) {
-  const Vec3d pa = c.position[at(a)], along = c.position[at(b)] - pa;
-  const double da = c.distance[at(a)], db = c.distance[at(b)];
+HD inline Vec3d moved_crossing(const ComplexView& c, int32_t a, int32_t b) {
+  const Vec3d pa = c.position[a], along = c.position[b] - pa;
+  const double da = c.distance[a], db = c.distance[b];
   double share = da != 0 && db != 0 ? da / (da - db) : 0.5;
   const Vec3d x = pa + share * along;
   int32_t nearest = -1;
   for (int end = 0; end < 2; ++end)
-    if (const int32_t k = c.nearest_sample(end ? b : a); k >= 0)
-      if (nearest < 0 || norm2(c.lattice.between(c.samples[at(k)].point) - x) <
-                             norm2(c.lattice.between(c.samples[at(nearest)].point) - x))
+    if (const int32_t k = c.nearest[end ? b : a]; k >= 0)
+      if (nearest < 0 ||
+          norm2(c.lattice.between(c.samples[k].point) - x) < norm2(c.lattice.between(c.samples[nearest].point) - x))
         nearest = k;
   if (nearest >= 0) {
-    const SurfaceSample s = c.samples[at(nearest)];
+    const SurfaceSample s = c.samples[nearest];
     if (const double slope = dot(along, s.normal); std::fabs(slope) > 0.3 * norm(along))
       share = dot(c.lattice.between(s.point) - pa, s.normal) / slope;
   }
   return pa + kept_off_ends(share) * along;
 }
 
-template <class C>
-HD_CALL Vec3d crossing(const C& c, int32_t a, int32_t b) {
-  Vec3d pa = c.position[at(a)], pb = c.position[at(b)];
-  float va = c.value[at(a)], vb = c.value[at(b)];
+/// Between two vertices on opposite sides, Å. Coarse edges whose ends have not moved are searched on the fine grid.
+HD_CALL inline Vec3d crossing(const ComplexView& c, int32_t a, int32_t b) {
+  Vec3d pa = c.position[a], pb = c.position[b];
+  float va = c.value[a], vb = c.value[b];
   if (a < c.grid_vertices && b < c.grid_vertices) {
-    Vec3i qa = c.point[at(a)], qb = c.point[at(b)];
+    Vec3i qa = c.point[a], qb = c.point[b];
     const auto length = [&] {
       const Vec3i d = qa - qb;
       const int32_t x = d.x < 0 ? -d.x : d.x, y = d.y < 0 ? -d.y : d.y, z = d.z < 0 ? -d.z : d.z;
@@ -68,8 +51,8 @@ HD_CALL Vec3d crossing(const C& c, int32_t a, int32_t b) {
       ((v > c.lattice.isovalue) == in ? qa : qb) = middle;
       ((v > c.lattice.isovalue) == in ? va : vb) = v;
     }
-    if (qa == c.point[at(a)] && qb == c.point[at(b)]) {
-      const double da = c.distance[at(a)], db = c.distance[at(b)];
+    if (qa == c.point[a] && qb == c.point[b]) {
+      const double da = c.distance[a], db = c.distance[b];
       if (da != 0 && db != 0)
         return pa + kept_off_ends(da / (da - db)) * (pb - pa);
     } else {

@@ -1,0 +1,225 @@
+// complex_passes.hpp — the complex made and mended, pass by pass, over a launcher (par/launcher.hpp on the host's
+// threads, a Backend of cuda/par): one text, one result.
+#pragma once
+#include "contour/complex.hpp"
+#include "contour/detail/distance_items.hpp"
+#include "contour/detail/dual_items.hpp"
+#include "contour/detail/numbering_items.hpp"
+#include "contour/detail/passes.hpp"
+#include "error.hpp"
+#include <utility>
+
+namespace molmesh::contour::detail {
+
+struct GatherMoved {
+  ComplexView c;
+  HD int64_t operator()(int64_t v, int32_t* out) const {
+    if (!c.has_moved[v])
+      return 0;
+    if (out)
+      *out = static_cast<int32_t>(v);
+    return 1;
+  }
+};
+struct GatherInsideAtWall {
+  ComplexView c;
+  HD int64_t operator()(int64_t v, int32_t* out) const {
+    const Vec3i p = c.point[v], end = c.lattice.cells;
+    const bool wall = p.x == 0 || p.y == 0 || p.z == 0 || p.x == end.x || p.y == end.y || p.z == end.z;
+    if (!wall || !c.inside(static_cast<int32_t>(v)))
+      return 0;
+    if (out)
+      *out = static_cast<int32_t>(v);
+    return 1;
+  }
+};
+/// Leaves with a corner near the surface.
+struct GatherNear {
+  ComplexView c;
+  HD int64_t operator()(int64_t leaf, int32_t* out) const {
+    bool near = false;
+    for (int k = 0; k < 8; ++k)
+      near = near || c.nearest[c.grid_vertex[8 * leaf + k]] >= 0;
+    if (near && out)
+      *out = static_cast<int32_t>(leaf);
+    return near;
+  }
+};
+/// Moved grid points among a vertex and the corners of its leaf.
+struct GatherSpoiling {
+  ComplexView c;
+  const int32_t* spoiled;
+  HD int64_t operator()(int64_t i, int32_t* out) const {
+    const int32_t v = spoiled[i], leaf = c.leaf_of(v);
+    int64_t n = 0;
+    for (int k = leaf >= 0 ? 0 : 8; k < 9; ++k)
+      if (const int32_t u = k < 8 ? c.corner_vertex(leaf, k) : v; c.moved(u)) {
+        if (out)
+          out[n] = u;
+        ++n;
+      }
+    return n;
+  }
+};
+struct GatherLeavesRound {
+  ComplexView c;
+  const int32_t* vertex;
+  HD int64_t operator()(int64_t i, int32_t* out) const {
+    int64_t n = 0;
+    for (int octant = 0; octant < 8; ++octant)
+      if (const int32_t leaf = leaf_with_corner(c.tree, c.point[vertex[i]], octant); leaf >= 0) {
+        if (out)
+          out[n] = leaf;
+        ++n;
+      }
+    return n;
+  }
+};
+struct GatherCorners {
+  ComplexView c;
+  const int32_t* leaf;
+  HD int64_t operator()(int64_t i, int32_t* out) const {
+    for (int k = 0; out && k < 8; ++k)
+      out[k] = c.corner_vertex(leaf[i], k);
+    return 8;
+  }
+};
+struct PlaceDuals {
+  PlaceDual place;
+  const int32_t* leaf;
+  HD void operator()(int64_t i) const { place(leaf[i]); }
+};
+struct ToKeys {
+  const int32_t* from;
+  uint32_t *key, *value;
+  HD void operator()(int64_t i) const { key[i] = value[i] = static_cast<uint32_t>(from[i]); }
+};
+struct Once {
+  const uint32_t* key;
+  HD int64_t operator()(int64_t i, int32_t* out) const {
+    if (i > 0 && key[i] == key[i - 1])
+      return 0;
+    if (out)
+      *out = static_cast<int32_t>(key[i]);
+    return 1;
+  }
+};
+
+/// The passes on a complex in a launcher's memory.
+template <class Launcher, class Memory = Launcher>
+class ComplexPasses : public ComplexArrays<Memory> {
+public:
+  using Ids = List<Launcher, int32_t>;
+  template <class T>
+  using Array = typename Launcher::template Array<T>;
+
+  /// Grid points keep their distance from the surface, dual vertices are in their places. What the arguments point
+  /// to stays the caller's.
+  ComplexPasses(Launcher& m, const LatticeView& lattice, const OctreeView& tree, const SurfaceCell* cells,
+                const SurfaceSample* samples, int64_t surface_cells)
+      : m_(m) {
+    ComplexView& v = this->view;
+    v.lattice = lattice;
+    v.tree = tree;
+    v.cells = cells;
+    v.samples = samples;
+    v.surface_cells = static_cast<int32_t>(surface_cells);
+    const int64_t leaves = tree.leaves;
+    this->first_cell = m.filled(leaves, int32_t{-1});
+    v.first_cell = this->first_cell.data();
+    m.for_n("find surface", surface_cells, ClaimLeaf{v}, {double(surface_cells) * 44});
+    v.side = take(this->side, leaves);
+    v.grid_vertex = take(this->grid_vertex, 8 * leaves);
+    v.split = take(this->split, leaves);
+    {
+      auto owned = m.template array<int32_t>(8 * leaves), first = m.template array<int32_t>(leaves + 1),
+           extra = m.template array<int32_t>(leaves + 1);
+      m.for_n("own corners", leaves, OwnCorners{tree, owned.data(), first.data()}, {double(leaves) * 45});
+      m.for_n("count pieces", leaves, CountPieces{v, extra.data()},
+              {double(leaves) * 9 + double(surface_cells) * 40});
+      v.grid_vertices = v.dual0 = m.scan("scan", first.data(), leaves);
+      v.pieces = m.scan("scan", extra.data(), leaves);
+      const int64_t points = v.grid_vertices;
+      v.split_leaf = take(this->split_leaf, v.pieces);
+      v.position = take(this->position, v.vertices());
+      v.value = take(this->value, v.vertices());
+      v.point = take(this->point, points);
+      v.distance = take(this->distance, points);
+      v.estimate = take(this->estimate, points);
+      v.has_moved = take(this->has_moved, points);
+      v.nearest = take(this->nearest, points);
+      auto near = m.filled(points, uint8_t{0});
+      m.for_n("name corners", leaves, NameCorners{v, owned.data(), first.data()},
+              {double(leaves) * 45 + double(points) * 44});
+      m.for_n("share corners", leaves, ShareCorners{v, owned.data(), near.data()}, {double(leaves) * 70});
+      m.for_n("name pieces", leaves, NamePieces{v, extra.data()}, {double(leaves) * 12});
+      m.for_n("keep distance", points, KeepDistance{v, near.data()}, {double(points) * 30});
+    }
+    m.for_n("place dual vertices", leaves, PlaceDual{v}, {double(leaves) * 30 + double(surface_cells) * 300});
+  }
+
+  /// Whether an inside grid point lies on a wall of the lattice.
+  bool meets_wall() {
+    return gather<int32_t>(m_, "inside at wall", this->view.grid_vertices, GatherInsideAtWall{this->view}).n > 0;
+  }
+
+  /// Validity is proven for cells that are boxes: where a moved grid point spoils it, it goes back. Returns how
+  /// many did. spoiled_of(leaves, ends): vertices that elements without positive volume would hang on, of the
+  /// leaves' faces and of rings with both ends among `ends` or not grid points (null: all).
+  template <class SpoiledOf>
+  int64_t restore_spoiling(SpoiledOf spoiled_of) {
+    // Every face that a surface cell has part in belongs to a leaf with a corner in common.
+    Ids spoiled =
+        spoiled_of(gather<int32_t>(m_, "leaves near surface", this->view.tree.leaves, GatherNear{this->view}),
+                   static_cast<const Ids*>(nullptr));
+    constexpr int most_rounds = 8; // then all go back: time must be bounded
+    int64_t restored = 0;
+    for (int round = 0; spoiled.n > 0; ++round) {
+      const Ids spoiling = spoiling_vertices(spoiled, round == most_rounds);
+      restored += spoiling.n;
+      m_.for_n("restore", spoiling.n, Restore{this->view, spoiling.data()});
+      const Ids leaves = leaves_round(spoiling);
+      m_.for_n("place dual vertices", leaves.n, PlaceDuals{{this->view}, leaves.data()});
+      // An edge of a leaf, halves and those on its faces included, has its ends among the corners of the leaves
+      // around; all faces at it belong to leaves with such a corner. Rings of other edges may be incomplete.
+      const Ids ends = corners_of(leaves_round(corners_of(leaves)));
+      spoiled = spoiled_of(leaves_round(ends), &ends);
+    }
+    return restored;
+  }
+
+private:
+  template <class T>
+  T* take(Array<T>& store, int64_t n) {
+    store = m_.template array<T>(n);
+    return store.data();
+  }
+  Ids ascending_once(const Ids& ids) {
+    auto key = m_.template array<uint32_t>(ids.n), other = m_.template array<uint32_t>(ids.n);
+    m_.for_n("keys", ids.n, ToKeys{ids.data(), key.data(), other.data()});
+    m_.sort_pairs("sort ids", key.data(), other.data(), ids.n);
+    return gather<int32_t>(m_, "unique", ids.n, Once{key.data()});
+  }
+  /// Leaves with one of these grid points as a corner, ascending.
+  Ids leaves_round(const Ids& ids) {
+    return ascending_once(gather<int32_t>(m_, "leaves round", ids.n, GatherLeavesRound{this->view, ids.data()}));
+  }
+  Ids corners_of(const Ids& leaves) {
+    return ascending_once(gather<int32_t>(m_, "corners", leaves.n, GatherCorners{this->view, leaves.data()}));
+  }
+  /// Moved grid points that elements without positive volume hang on: themselves, or through the dual vertex of a
+  /// cell with such a corner; all that are moved where that is none, since a ring may hang on a face point, and
+  /// that on grid points further on.
+  Ids spoiling_vertices(const Ids& spoiled, bool all) {
+    Ids spoiling =
+        ascending_once(gather<int32_t>(m_, "spoiling", spoiled.n, GatherSpoiling{this->view, spoiled.data()}));
+    if (all || spoiling.n == 0)
+      spoiling = gather<int32_t>(m_, "moved", this->view.grid_vertices, GatherMoved{this->view});
+    if (spoiling.n == 0)
+      fail(Status::failed, "contour: an element of unmoved boxes has no volume");
+    return spoiling;
+  }
+  Launcher& m_;
+};
+
+} // namespace molmesh::contour::detail

@@ -1,0 +1,126 @@
+// dual_items.hpp — dual vertices from where the surface crosses the complex's edges. Host and device.
+#pragma once
+#include "contour/detail/crossing.hpp"
+#include <bit>
+
+namespace molmesh::contour::detail {
+
+/// The next float towards +∞ or -∞; x positive and finite.
+HD inline float next_float(float x, bool up) {
+#ifdef __CUDA_ARCH__
+  return __int_as_float(__float_as_int(x) + (up ? 1 : -1));
+#else
+  return std::bit_cast<float>(std::bit_cast<int32_t>(x) + (up ? 1 : -1));
+#endif
+}
+
+/// Of a leaf: its dual vertex, and those of its pieces, from where the grid points are now.
+struct PlaceDual {
+  ComplexView c;
+
+  HD void operator()(int64_t i) const {
+    const auto leaf = static_cast<int32_t>(i);
+    Vec3d& dual = c.position[c.dual(leaf)];
+    if (c.side[leaf] == Side::crossed) {
+      dual = onto_surface(leaf, mean_crossing(leaf));
+      if (c.is_split(leaf))
+        place_split(leaf);
+      return;
+    }
+    // The lattice's own middle plane: seen from a smaller neighbour it is the rim of that neighbour's face.
+    const int32_t extent = c.tree.extent(leaf), half = extent / 2;
+    const Vec3i corner = c.tree.corner(leaf);
+    dual = extent > 1 ? c.lattice.position(corner + Vec3i{half, half, half})
+                      : 0.5 * (c.lattice.position(corner) + c.lattice.position(corner + Vec3i{1, 1, 1}));
+  }
+
+private:
+  /// Mean of the surface's crossings with the leaf's edges (the paper's mass centre).
+  HD Vec3d mean_crossing(int32_t leaf) const {
+    Vec3d sum;
+    int crossings = 0;
+    for (int k = 0; k < 8; ++k)
+      for (int bit = 1; bit < 8; bit *= 2) {
+        const int32_t a = c.corner_vertex(leaf, k), b = c.corner_vertex(leaf, k | bit);
+        if ((k & bit) || c.inside(a) == c.inside(b))
+          continue;
+        sum += crossing(c, a, b);
+        ++crossings;
+      }
+    return sum / double(crossings);
+  }
+
+  /// x moved onto the tangent plane of the nearest fine surface in the leaf: the mean of a curved sheet's crossings
+  /// lies on its hollow side. Not out of the leaf's box.
+  HD Vec3d onto_surface(int32_t leaf, Vec3d x) const {
+    Vec3d nearest, normal;
+    double least = 1e300;
+    for (int32_t k = c.first_cell[leaf], end = c.end_cell(leaf); k < end; ++k) {
+      const Vec3d foot = c.lattice.between(c.samples[k].point);
+      if (const double d = norm2(foot - x); d < least) {
+        least = d;
+        nearest = foot;
+        normal = c.samples[k].normal;
+      }
+    }
+    const Vec3d moved = x + dot(nearest - x, normal) * normal;
+    const Vec3i corner = c.tree.corner(leaf);
+    const int32_t extent = c.tree.extent(leaf);
+    const Vec3d low = c.lattice.position(corner),
+                size = c.lattice.position(corner + Vec3i{extent, extent, extent}) - low;
+    for (int a = 0; a < 3; ++a)
+      if (!(std::fabs(moved[a] - low[a] - 0.5 * size[a]) < 0.45 * size[a]))
+        return x;
+    return moved;
+  }
+
+  HD void place_split(int32_t leaf) const {
+    const SplitCell s(c.topology(leaf));
+    const int32_t centre = c.split[leaf];
+    const bool centre_inside = s.topology.centre_inside;
+    const float iso = c.lattice.isovalue;
+    const float* v = c.cells[c.first_cell[leaf]].value;
+    Vec3d middle;
+    double mean = 0, spread = 0;
+    for (int k = 0; k < 8; ++k) {
+      middle += 0.125 * c.position[c.corner_vertex(leaf, k)];
+      mean += 0.125 * v[k];
+      spread += 0.125 * std::fabs(double(v[k]) - iso);
+    }
+    c.position[centre] = middle;
+    if ((mean > iso) != centre_inside)
+      mean = iso + (centre_inside ? spread : -spread);
+    c.value[centre] = static_cast<float>(mean);
+    if ((c.value[centre] > iso) != centre_inside) // rounding to float
+      c.value[centre] = next_float(iso, centre_inside);
+
+    for (const Patch& p : s.patch) {
+      if (p.piece < 0)
+        continue;
+      place_piece(leaf, c.piece_dual(leaf, s, p), p, centre);
+      if (p.face < 0)
+        place_piece(leaf, centre + 1 + s.pieces, p, c.corner_vertex(leaf, s.topology.chop));
+    }
+  }
+
+  /// The piece between a patch and an apex: the mean of its crossings, or of its corners where there is none.
+  HD void place_piece(int32_t leaf, int32_t dual, const Patch& p, int32_t apex) const {
+    Vec3d crossed, all = c.position[apex];
+    int crossings = 0;
+    const auto edge = [&](int32_t a, int32_t b) {
+      if (c.inside(a) == c.inside(b))
+        return;
+      crossed += crossing(c, a, b);
+      ++crossings;
+    };
+    for (int i = 0; i < p.n; ++i) {
+      const int32_t a = c.corner_vertex(leaf, p.corner[i]);
+      all += c.position[a];
+      edge(a, c.corner_vertex(leaf, p.corner[(i + 1) % p.n]));
+      edge(a, apex);
+    }
+    c.position[dual] = crossings ? crossed / double(crossings) : all / double(p.n + 1);
+  }
+};
+
+} // namespace molmesh::contour::detail

@@ -1,0 +1,141 @@
+// numbering_items.hpp — which leaves the surface crosses, who owns which grid point, and the numbers that follow.
+// Items in the order of their passes. Host and device.
+#pragma once
+#include "contour/detail/complex_view.hpp"
+#include "contour/detail/raise.hpp"
+#include "geom/morton.hpp"
+
+namespace molmesh::contour::detail {
+
+/// The leaf with grid point p as a corner whose fine cell there is p - step of the octant; -1: none.
+HD inline int32_t leaf_with_corner(const OctreeView& tree, Vec3i p, int octant) {
+  const int32_t leaf = tree.find(p - corner_step(octant));
+  return leaf >= 0 && ((p.x | p.y | p.z) & (tree.extent(leaf) - 1)) == 0 ? leaf : -1;
+}
+
+/// Of a surface cell: its leaf's first_cell, if this is it; -1 before.
+struct ClaimLeaf {
+  ComplexView c;
+  HD void operator()(int64_t i) const {
+    const int32_t leaf = c.tree.find_key(c.cells[i].key);
+    if (i == 0 || c.cells[i - 1].key < c.tree.key[leaf])
+      c.first_cell[leaf] = static_cast<int32_t>(i);
+  }
+};
+
+/// A grid point belongs to the last of the eight octants around it whose leaf has the point as a corner.
+/// owned: [8·leaves] leaf and corner that it is there, as one number, 8·leaf + corner. first: [leaves] points
+/// owned.
+struct OwnCorners {
+  OctreeView tree;
+  int32_t *owned, *first;
+
+  HD void operator()(int64_t leaf) const {
+    int32_t own = 1;
+    owned[8 * leaf] = static_cast<int32_t>(8 * leaf);
+    for (int c = 1; c < 8; ++c) {
+      const int32_t o = owner(static_cast<int32_t>(leaf), c);
+      owned[8 * leaf + c] = o;
+      own += o == 8 * leaf + c;
+    }
+    first[leaf] = own;
+  }
+
+private:
+  HD int32_t owner(int32_t leaf, int c) const {
+    const int level = tree.level[leaf];
+    uint64_t k = tree.key[leaf];
+    bool within = true; // the point's last octant is
+    for (int a = 0; a < 3; ++a)
+      if (c >> a & 1) {
+        k = morton_after(k, a, level);
+        within = within && tree.before_end(k, a);
+      }
+    if (within)
+      if (const int32_t last = tree.starting_at(k); last >= 0)
+        return 8 * last;
+    const Vec3i p = tree.corner(leaf) + tree.extent(leaf) * corner_step(c);
+    for (int octant = 1; octant < 8; ++octant)
+      if (const int32_t other = leaf_with_corner(tree, p, octant); other >= 0)
+        return 8 * other + octant; // the point is as far from the leaf's lower corner
+    return 8 * leaf + c;           // not reached: the leaf's own octant is one of them
+  }
+};
+
+/// first: scanned.
+struct NameCorners {
+  ComplexView c;
+  const int32_t *owned, *first;
+  HD void operator()(int64_t i) const {
+    const auto leaf = static_cast<int32_t>(i);
+    int32_t id = first[leaf];
+    for (int k = 0; k < 8; ++k) {
+      if (owned[8 * i + k] != 8 * i + k)
+        continue;
+      const Vec3i p = c.tree.corner(leaf) + c.tree.extent(leaf) * corner_step(k);
+      c.grid_vertex[8 * i + k] = id;
+      c.point[id] = p;
+      c.position[id] = c.lattice.position(p);
+      c.value[id] = c.lattice.value(p);
+      ++id;
+    }
+  }
+};
+/// And the leaf's side. near_surface: [grid vertices] raised at corners of crossed leaves.
+struct ShareCorners {
+  ComplexView c;
+  const int32_t* owned;
+  uint8_t* near_surface;
+  HD void operator()(int64_t i) const {
+    const bool crossed = c.first_cell[i] >= 0;
+    c.side[i] = crossed ? Side::crossed : c.inside(c.grid_vertex[8 * i]) ? Side::inside : Side::outside;
+    for (int k = 0; k < 8; ++k) {
+      const int32_t v = c.grid_vertex[owned[8 * i + k]]; // an owner's own entry does not change here
+      if (owned[8 * i + k] != 8 * i + k)
+        c.grid_vertex[8 * i + k] = v;
+      if (crossed)
+        raise(near_surface[v]);
+    }
+  }
+};
+
+/// Leaves with the vertex as a corner, -1 where there is none: [8·i …]. Those that are no grid points have none.
+struct LeavesRound {
+  ComplexView c;
+  const int32_t* vertex;
+  int32_t* leaf;
+  HD void operator()(int64_t i) const {
+    for (int octant = 0; octant < 8; ++octant)
+      leaf[8 * i + octant] = leaf_with_corner(c.tree, c.point[vertex[i]], octant);
+  }
+};
+
+/// extra: [leaves] vertices of a split cell: its centre, a dual vertex for each piece.
+struct CountPieces {
+  ComplexView c;
+  int32_t* extra;
+  HD void operator()(int64_t i) const {
+    extra[i] = 0;
+    if (c.first_cell[i] < 0 || c.tree.level[i] > 0)
+      return;
+    const CellTopology t = c.topology(static_cast<int32_t>(i));
+    if (t.split())
+      extra[i] = 1 + SplitCell(t).pieces + (t.chop >= 0);
+  }
+};
+/// extra: scanned, [leaves] + 1.
+struct NamePieces {
+  ComplexView c;
+  const int32_t* extra;
+  HD void operator()(int64_t i) const {
+    const int32_t first = c.dual0 + c.tree.leaves;
+    c.split[i] = extra[i + 1] > extra[i] ? first + extra[i] : -1;
+    for (int32_t k = extra[i]; k < extra[i + 1]; ++k) {
+      c.split_leaf[k] = static_cast<int32_t>(i);
+      c.value[first + k] = c.lattice.isovalue;
+    }
+    c.value[c.dual(static_cast<int32_t>(i))] = c.lattice.isovalue;
+  }
+};
+
+} // namespace molmesh::contour::detail

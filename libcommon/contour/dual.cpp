@@ -1,0 +1,35 @@
+// dual.cpp — the passes on the host's threads.
+#include "contour/dual.hpp"
+#include "contour/detail/complex_passes.hpp"
+#include "error.hpp"
+#include "par/launcher.hpp"
+#include <utility>
+
+namespace molmesh::contour {
+
+void refuse_surface_at_wall() {
+  fail(Status::failed, "the surface meets the wall of the box: give hier2density a larger --margin, or ask for the "
+                       "cut with --box x0,y0,z0,x1,y1,z1");
+}
+
+Dual make_dual(const DualInput& in, const std::function<void(const std::string&)>& on_phase) {
+  on_phase("dual vertices");
+  par::Launcher launcher(in.threads);
+  using Passes = detail::ComplexPasses<par::Launcher, HostMemory>;
+  Passes passes(launcher, in.lattice.view(), in.tree.view(), in.surface.cells.data(), in.surface.samples.data(),
+                static_cast<int64_t>(in.surface.cells.size()));
+  if (!in.lattice.cut_allowed() && passes.meets_wall())
+    refuse_surface_at_wall();
+  on_phase("elements");
+  Dual dual;
+  dual.restored_points = passes.restore_spoiling([&](const Passes::Ids& leaves, const Passes::Ids* ends) {
+    Passes::Ids spoiled{spoiled_of(passes.view, leaves.array, ends ? &ends->array : nullptr, in.threads)};
+    spoiled.n = static_cast<int64_t>(spoiled.array.size());
+    return spoiled;
+  });
+  dual.elements = make_elements(passes.view, in.inside, in.outside, in.threads);
+  dual.complex = std::move(passes);
+  return dual;
+}
+
+} // namespace molmesh::contour

@@ -1,0 +1,35 @@
+// dual.hpp — from the octree's leaves to the elements of both sides: complex, grid points that go back, elements.
+#pragma once
+#include "contour/complex.hpp"
+#include "contour/elements.hpp"
+#include "contour/lattice.hpp"
+#include "contour/leaves.hpp"
+#include "contour/octree.hpp"
+#include <functional>
+#include <string>
+
+namespace molmesh::contour {
+
+/// Kept by the caller as long as the complex.
+struct DualInput {
+  const Lattice& lattice;
+  const Octree& tree;
+  const Surface& surface;
+  bool inside, outside; ///< sides to make elements on
+  int threads;
+};
+struct Dual {
+  Complex complex;
+  Elements elements;
+  int64_t restored_points = 0;
+};
+
+/// make_dual, or what does the same on a device. Throws Error(failed) when the surface meets a wall that was not
+/// asked to cut it.
+using DualFunction = std::function<Dual(const DualInput&, const std::function<void(const std::string&)>& on_phase)>;
+Dual make_dual(const DualInput& input, const std::function<void(const std::string&)>& on_phase);
+
+/// What a surface at a wall is refused with.
+[[noreturn]] void refuse_surface_at_wall();
+
+} // namespace molmesh::contour
