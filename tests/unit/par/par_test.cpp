@@ -53,3 +53,39 @@ TEST_CASE("exclusive_scan turns counts into offsets") {
   CHECK(par::exclusive_scan(count) == 10);
   CHECK(count == std::vector<int64_t>{0, 3, 3, 5});
 }
+
+TEST_CASE("select keeps the order") {
+  const auto third = [](int64_t i) { return i % 3 == 1; };
+  for (int threads : {1, 2, 5}) {
+    CHECK(par::select(0, threads, third).empty());
+    const auto found = par::select(100'000, threads, third);
+    REQUIRE(found.size() == 33'333);
+    for (size_t i = 0; i < found.size(); ++i)
+      REQUIRE(found[i] == static_cast<int32_t>(3 * i + 1));
+  }
+}
+
+TEST_CASE("place_by is a stable sort that leaves out negative keys") {
+  std::mt19937_64 random(3);
+  for (const int64_t keys : {int64_t{1}, int64_t{70}, int64_t{1'000'000}})
+    for (size_t n : {0u, 10u, 300'000u}) {
+      std::vector<int64_t> key(n);
+      for (int64_t& k : key)
+        k = static_cast<int64_t>(random() % static_cast<uint64_t>(keys + 1)) - 1;
+      std::vector<int64_t> expected;
+      for (size_t i = 0; i < n; ++i)
+        if (key[i] >= 0)
+          expected.push_back(static_cast<int64_t>(i));
+      std::stable_sort(expected.begin(), expected.end(), [&](int64_t a, int64_t b) {
+        return key[static_cast<size_t>(a)] < key[static_cast<size_t>(b)];
+      });
+      for (int threads : {1, 3}) {
+        std::vector<int64_t> placed;
+        par::place_by(
+            static_cast<int64_t>(n), keys, threads, [&](int64_t i) { return key[static_cast<size_t>(i)]; },
+            [&](int64_t slots) { placed.assign(static_cast<size_t>(slots), -1); },
+            [&](int64_t slot, int64_t i) { placed[static_cast<size_t>(slot)] = i; });
+        CHECK(placed == expected);
+      }
+    }
+}
