@@ -16,9 +16,18 @@ TetMesh contour_mesh(const BlockGrid& grid, const contour::Options& options, con
   stages.select_leaves = [&](const contour::Lattice& l, const contour::Surface&, const contour::RefineOptions& o,
                              int) { return selection.select_leaves(l, o); };
   stages.make_dual = [&](const contour::DualInput& in, const auto& phase) { return maker(in, phase); };
-  TetMesh mesh = contour::contour(grid, options, summary, on_phase, stages);
-  report = {device_name(), backend.most_used(), backend.times(),
-            maker.on_host() ? "dual vertices and elements did not fit the device: made by the host" : ""};
+  TetMesh mesh;
+  std::string note;
+  try {
+    mesh = contour::contour(grid, options, summary, on_phase, stages);
+    if (maker.on_host())
+      note = "dual vertices and elements did not fit the device: made by the host";
+  } catch (const OutOfRoom& e) {
+    note = "all made by the host: " + std::string(e.what());
+    summary = {};
+    mesh = contour::contour(grid, options, summary, on_phase);
+  }
+  report = {device_name(), backend.most_used(), backend.times(), note};
   return mesh;
 }
 

@@ -39,7 +39,7 @@ struct DeviceReport {
   std::string device;
   int64_t most_bytes = 0; ///< of device memory at once
   std::vector<KernelTime> kernels;
-  std::string note; ///< what the device did not do, and why; may be empty
+  std::string note{}; ///< what the device did not do, and why; may be empty
 };
 
 /// One thread of a team of `size`. The host's teams are one thread; a GPU's are a warp.

@@ -60,7 +60,7 @@ struct CellTopology {
   /// function joins. With `chop` ≥ 0 that corner (an isolated one) is cut off first.
   bool centre_inside = false;
   int chop = -1;
-  bool split() const { return loops > 1; }
+  HD bool split() const { return loops > 1; }
 };
 
 /// Which diagonal a face with these values (in face order, minus the isovalue) needs. The same for both its cells.

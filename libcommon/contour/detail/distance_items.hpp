@@ -1,6 +1,7 @@
 // distance_items.hpp — how far grid points are from the surface, and those too near moved away. Host and device.
 #pragma once
 #include "contour/detail/numbering_items.hpp"
+#include "geom/log.hpp"
 #include <cmath>
 
 namespace molmesh::contour::detail {
@@ -92,13 +93,13 @@ private:
             continue;
           if (!c.lattice.active(q, there) || !(there > 0))
             continue;
-          sum += std::log(double(there) / here) / (c.lattice.position(q)[a] - c.lattice.position(p)[a]);
+          sum += portable_log(double(there) / here) / (c.lattice.position(q)[a] - c.lattice.position(p)[a]);
           ++n;
         }
         gradient[a] = n ? sum / n : 0;
       }
       if (const double slope = norm(gradient); slope > 0) {
-        d = std::log(here / c.lattice.isovalue) / slope;
+        d = portable_log(here / c.lattice.isovalue) / slope;
         inwards = gradient / slope;
         if (std::fabs(d) <= gradient_reach * c.lattice.spacing)
           return true;

@@ -193,13 +193,14 @@ private:
       if (wall)
         out_.add_triangle({a, b, front}, a, a, box_x0 + f);
     }
-    if (!Out::checks || positive)
-      return;
-    for (int i = 0; i < p.n; ++i)
-      out_.spoiled.push_back(p.vertex[i]);
-    out_.spoiled.push_back(behind);
-    if (!wall)
-      out_.spoiled.push_back(front);
+    if constexpr (Out::checks) {
+      for (int i = 0; !positive && i < p.n; ++i)
+        out_.spoiled.push_back(p.vertex[i]);
+      if (!positive)
+        out_.spoiled.push_back(behind);
+      if (!positive && !wall)
+        out_.spoiled.push_back(front);
+    }
   }
 
   /// A point within the polygon: the middle of the surface's trace on it, or the polygon's centre.

@@ -100,6 +100,33 @@ HD inline bool clearly_positive(const RingVertices& v, int32_t inside, int32_t o
   return (good(0, 1, 2) && good(2, 3, 0)) || (good(1, 2, 3) && good(3, 0, 1));
 }
 
+/// Elements of the ring with the edge's crossing point at its middle.
+template <class Out>
+HD void add_round_point(const RingVertices& v, int32_t a, int32_t b, const Ring& ring, Vec3d m,
+                        const bool wanted[2], Out& out) {
+  const int k = ring.n;
+  const auto p = [&](int i) { return ring.vertex[i % k]; };
+  const int32_t middle = out.add_point(m, 0);
+  for (int i = 0; i < (ring.closed ? k : k - 1); ++i) {
+    if (wanted[1])
+      out.tet.push_back({a, middle, p(i), p(i + 1)});
+    if (wanted[0])
+      out.tet.push_back({b, middle, p(i + 1), p(i)});
+    out.add_triangle({middle, p(i), p(i + 1)}, a, b, surface);
+  }
+  if (ring.closed)
+    return;
+  const int32_t first = p(0), last = p(k - 1);
+  if (wanted[1]) {
+    out.add_triangle({a, middle, last}, a, a, v.wall_of(last));
+    out.add_triangle({middle, a, first}, a, a, v.wall_of(first));
+  }
+  if (wanted[0]) {
+    out.add_triangle({middle, b, last}, b, b, v.wall_of(last));
+    out.add_triangle({b, middle, first}, b, b, v.wall_of(first));
+  }
+}
+
 /// links [begin, end): all links of one edge. The ring is closed, or at a wall an open chain from wall point to
 /// wall point.
 template <class Out>
@@ -139,26 +166,26 @@ HD void make_ring(const RingVertices& v, const Link* begin, const Link* end, con
       triangles = 2;
     }
   }
-  const Vec3d m = crossing(v.complex, a, b);
+  constexpr double good = 0.3; // no point would be better by much
+  const Vec3d m = best >= good ? Vec3d{} : crossing(v.complex, a, b);
   double with_point = 1;
-  if (triangles > 0 && best < 0.3)
+  if (triangles > 0 && best < good)
     for (int i = 0; i < (ring.closed ? k : k - 1); ++i)
       with_point = lesser(
           with_point, lesser(least_sine(x(a), m, x(p(i)), x(p(i + 1))), least_sine(m, x(b), x(p(i)), x(p(i + 1)))));
-  if (triangles > 0 && (best >= 0.3 || best >= with_point)) {
-    if (Out::checks)
-      return;
-    for (int t = 0; t < triangles; ++t) {
-      const Tri& q = split[t];
-      if (wanted[1])
-        out.tet.push_back({a, q[0], q[1], q[2]});
-      if (wanted[0])
-        out.tet.push_back({b, q[0], q[2], q[1]});
-      out.add_triangle(q, a, b, surface);
-    }
+  if (triangles > 0 && (best >= good || best >= with_point)) {
+    if constexpr (!Out::checks)
+      for (int t = 0; t < triangles; ++t) {
+        const Tri& q = split[t];
+        if (wanted[1])
+          out.tet.push_back({a, q[0], q[1], q[2]});
+        if (wanted[0])
+          out.tet.push_back({b, q[0], q[2], q[1]});
+        out.add_triangle(q, a, b, surface);
+      }
     return;
   }
-  if (Out::checks) {
+  if constexpr (Out::checks) {
     bool positive = true;
     for (int i = 0; i < (ring.closed ? k : k - 1); ++i)
       positive =
@@ -170,26 +197,8 @@ HD void make_ring(const RingVertices& v, const Link* begin, const Link* end, con
     for (int i = 0; i < k; ++i)
       if (p(i) < v.complex_vertices)
         out.spoiled.push_back(p(i));
-    return;
-  }
-  const int32_t middle = out.add_point(m, 0);
-  for (int i = 0; i < (ring.closed ? k : k - 1); ++i) {
-    if (wanted[1])
-      out.tet.push_back({a, middle, p(i), p(i + 1)});
-    if (wanted[0])
-      out.tet.push_back({b, middle, p(i + 1), p(i)});
-    out.add_triangle({middle, p(i), p(i + 1)}, a, b, surface);
-  }
-  if (ring.closed)
-    return;
-  const int32_t first = p(0), last = p(k - 1);
-  if (wanted[1]) {
-    out.add_triangle({a, middle, last}, a, a, v.wall_of(last));
-    out.add_triangle({middle, a, first}, a, a, v.wall_of(first));
-  }
-  if (wanted[0]) {
-    out.add_triangle({middle, b, last}, b, b, v.wall_of(last));
-    out.add_triangle({b, middle, first}, b, b, v.wall_of(first));
+  } else {
+    add_round_point(v, a, b, ring, m, wanted, out);
   }
 }
 
