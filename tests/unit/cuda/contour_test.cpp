@@ -101,11 +101,12 @@ TEST_CASE("device complex and elements: the host's on a molecule, in a cut box, 
   const BlockGrid grid = cube_grid(8, 0.4, [](Vec3d x) { return atom(x) + atom(x - Vec3d{2, 2.5, 1}); });
   Options options;
   options.meshed = Options::both;
+  int64_t in_runs = 0, by_host = 0;
   for (double adapt : {0.25, 0.0}) {
     options.adapt = adapt;
     const Seen one = compare(grid, options);
     CHECK(one.differ == 0);
-    int64_t in_runs = 0, by_host = 0; // of less and less memory, until the surface alone does not fit
+    // Of less and less memory, until the surface alone does not fit.
     for (int percent = 95; percent > 0; percent -= 5) {
       const int64_t budget = one.most_used * percent / 100;
       try {
@@ -118,9 +119,9 @@ TEST_CASE("device complex and elements: the host's on a molecule, in a cut box, 
         break;
       }
     }
-    CHECK(in_runs > 0);
-    CHECK(by_host > 0);
   }
+  CHECK(in_runs > 0);
+  CHECK(by_host > 0);
   options.box.kind = contour::BoxRequest::corners;
   options.box.lower = {-1.1, -9, -9};
   options.box.upper = {9, 1.77, 9};
