@@ -47,6 +47,9 @@ std::vector<label::NamedBoundary> select(const Options& o, const Hierarchy& h) {
     if (name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") !=
         std::string::npos)
       fail(Status::usage, "--boundary: found the name '" + name + "', expected letters, digits, _ and -");
+    if (formats::is_own_boundary_name(name))
+      fail(Status::usage,
+           "--boundary: found the name '" + name + "', which the meshes' own boundary has, expected another");
     const std::vector<uint8_t> atom = formats::select_atoms(h, text.substr(equals + 1), "--boundary " + name);
     const auto same = std::find_if(boundary.begin(), boundary.end(), [&](const auto& b) { return b.name == name; });
     if (same == boundary.end())
@@ -80,8 +83,10 @@ Status run_tool(const Options& o, cli::Run& run) {
   }
   label::remove_labels(mesh);
   label::Patches patches;
-  if (!boundary.empty())
+  if (!boundary.empty()) { // else those of a former run stay
+    label::remove_patches(mesh);
     patches = label::add_patches(mesh, places, labels, boundary);
+  }
   std::map<int32_t, std::string> names;
   for (size_t b = 0; b < boundary.size(); ++b) {
     if (patches.count[b] == 0)

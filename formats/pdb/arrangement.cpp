@@ -138,7 +138,7 @@ void assign_exponents(Arrangement& a, const PdbOptions& options, PdbReport& repo
     return std::find(options.levels.begin(), options.levels.end(), level) != options.levels.end();
   };
   for (const Rule& rule : options.rules) {
-    const std::vector<uint8_t> touched = touch(Selection(rule.selection, rule.where, true), a);
+    const std::vector<uint8_t> touched = touch(Selection(rule.selection, rule.where, true, rule.blame), a);
     bool any = false;
     for (size_t i = 0; i < a.items.size(); ++i) {
       if (touched[i] == 0)

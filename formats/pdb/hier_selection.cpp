@@ -60,7 +60,7 @@ void filter(const Hierarchy& h, size_t l, std::vector<uint8_t>& chosen, Take tak
 } // namespace
 
 std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& text, const std::string& where) {
-  const Selection s(text, where, true);
+  const Selection s(text, where, true, Status::usage);
   const auto refuse = [&](const std::string& expected) {
     fail_input(where + ": found selection " + in_quotes(text) + ", expected " + expected);
   };

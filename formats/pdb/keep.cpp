@@ -127,6 +127,16 @@ int64_t keep_conformer(const Place& place, const std::string& altloc) {
   return dropped;
 }
 
+bool has_altloc(const gemmi::Structure& st, char letter) {
+  for (const gemmi::Model& model : st.models)
+    for (const gemmi::Chain& chain : model.chains)
+      for (const gemmi::Residue& residue : chain.residues)
+        for (const gemmi::Atom& atom : residue.atoms)
+          if (atom.altloc == letter)
+            return true;
+  return false;
+}
+
 int64_t keep_conformers(gemmi::Structure& st, const std::string& altloc) {
   int64_t dropped = 0;
   for (gemmi::Model& model : st.models)
@@ -163,6 +173,8 @@ void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, Pd
       if (chain.name.empty())
         chain.name = "_";
   keep_models(st, file, options.model, report);
+  if (options.altloc.size() == 1 && !has_altloc(st, options.altloc[0]))
+    report.notes.push_back("--altloc " + options.altloc + ": no atom has this letter, as occupancy");
   if (options.altloc != "all")
     report.altlocs = keep_conformers(st, options.altloc);
   using Model = const gemmi::Model&;
@@ -178,7 +190,7 @@ void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, Pd
     report.hetatms =
         drop_atoms(st, [](Model, Chain, Residue r) { return [het = r.het_flag == 'H'](Atom) { return het; }; });
   if (options.select != "*") {
-    const Selection selection(options.select, "--select");
+    const Selection selection(options.select, "--select", false, Status::usage);
     report.unselected = drop_atoms(st, [&](Model m, Chain c, Residue r) {
       const bool inside = selection.model(m) && selection.chain(c.name, c.name) && selection.residue(r);
       return [&selection, inside](Atom a) { return !(inside && selection.atom(a)); };
@@ -186,7 +198,11 @@ void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, Pd
   }
   if (!parsed.pqr.empty() && options.own_radii)
     report.no_radius = drop_atoms(st, [&](Model, Chain, Residue) {
-      return [&](Atom a) { return parsed.pqr[static_cast<size_t>(a.serial)].radius == 0; };
+      return [&](Atom a) {
+        const Parsed::Values& own = parsed.pqr[static_cast<size_t>(a.serial)];
+        report.no_radius_charge += own.radius == 0 ? own.charge : 0;
+        return own.radius == 0;
+      };
     });
   if (!st.models.empty())
     return;

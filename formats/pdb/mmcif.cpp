@@ -1,5 +1,6 @@
 // mmcif.cpp — mmCIF and mmJSON through gemmi: only the categories that matter, missing columns filled in.
 #include "error.hpp"
+#include "formats/pdb/atom_site.hpp"
 #include "formats/pdb/mmcif_assembly.hpp"
 #include "formats/pdb/mmjson.hpp"
 #include "formats/pdb/parse.hpp"
@@ -11,8 +12,6 @@
 namespace molmesh::formats {
 namespace {
 namespace cif = gemmi::cif;
-
-const std::string prefix = "_atom_site.";
 
 bool starts_with(const std::string& text, const char* start) {
   return text.rfind(start, 0) == 0;
@@ -43,9 +42,8 @@ const std::string& tag_of(const cif::Item& item) {
 }
 
 bool has_atoms(const cif::Block& block) {
-  return std::any_of(block.items.begin(), block.items.end(), [](const cif::Item& item) {
-    return starts_with(gemmi::to_lower(tag_of(item)), prefix.c_str());
-  });
+  return std::any_of(block.items.begin(), block.items.end(),
+                     [](const cif::Item& item) { return starts_with(gemmi::to_lower(tag_of(item)), atom_site.c_str()); });
 }
 
 /// A category that has its rows as name-value pairs has one row: gemmi reads both, here only loops remain.
@@ -53,7 +51,7 @@ cif::Item* atom_loop(cif::Block& block) {
   cif::Item loop{cif::LoopArg{}};
   loop.line_number = 0;
   for (cif::Item& item : block.items) {
-    if (!starts_with(gemmi::to_lower(tag_of(item)), prefix.c_str()))
+    if (!starts_with(gemmi::to_lower(tag_of(item)), atom_site.c_str()))
       continue;
     if (item.type == cif::ItemType::Loop)
       return &item;
@@ -65,75 +63,6 @@ cif::Item* atom_loop(cif::Block& block) {
   }
   block.items.push_back(std::move(loop));
   return &block.items.back();
-}
-
-class AtomColumns {
-public:
-  explicit AtomColumns(cif::Loop& loop) : loop_(loop) {
-    for (std::string& tag : loop_.tags)
-      tag = canonical(tag);
-  }
-
-  int find(const std::string& name) const {
-    const auto at = std::find(loop_.tags.begin(), loop_.tags.end(), prefix + name);
-    return at == loop_.tags.end() ? -1 : static_cast<int>(at - loop_.tags.begin());
-  }
-
-  /// Adds the column where it is missing: a copy of the first of `like` that is there, or `value`.
-  void complete(const std::string& name, const std::vector<std::string>& like, const std::string& value) {
-    if (find(name) >= 0)
-      return;
-    int from = -1;
-    for (const std::string& other : like)
-      if (from < 0)
-        from = find(other);
-    const size_t width = loop_.width(), rows = loop_.length();
-    std::vector<std::string> values;
-    values.reserve(loop_.values.size() + rows);
-    for (size_t r = 0; r < rows; ++r) {
-      for (size_t c = 0; c < width; ++c)
-        values.push_back(std::move(loop_.values[r * width + c]));
-      values.push_back(from < 0 ? value : values[values.size() - width + static_cast<size_t>(from)]);
-    }
-    loop_.tags.push_back(prefix + name);
-    loop_.values = std::move(values);
-  }
-
-private:
-  /// mmCIF tags are case-insensitive, gemmi's are not.
-  static std::string canonical(const std::string& tag) {
-    static const char* const known[] = {"group_PDB",      "Cartn_x",           "Cartn_y",           "Cartn_z",
-                                        "B_iso_or_equiv", "pdbx_PDB_ins_code", "pdbx_PDB_model_num"};
-    const std::string lower = gemmi::to_lower(tag);
-    for (const char* name : known)
-      if (lower == prefix + gemmi::to_lower(name))
-        return prefix + name;
-    return lower;
-  }
-  cif::Loop& loop_;
-};
-
-/// The line of a row when the rows stand one a line, otherwise the loop's.
-int64_t line_of_row(std::string_view text, int64_t loop_line, size_t tags, size_t row, const std::string& value) {
-  const int64_t guess = loop_line + static_cast<int64_t>(tags + row) + 1;
-  int64_t result = loop_line;
-  for_each_line(text, [&](std::string_view line, int64_t number) {
-    if (number == guess && line.find(value) != std::string_view::npos)
-      result = number;
-  });
-  return result;
-}
-
-void check_coordinates(const cif::Loop& loop, const AtomColumns& columns, std::string_view text,
-                       const std::string& where, int64_t line) {
-  const size_t width = loop.width();
-  for (const char* axis : {"Cartn_x", "Cartn_y", "Cartn_z"}) {
-    const auto column = static_cast<size_t>(columns.find(axis));
-    for (size_t i = column, row = 0; i < loop.values.size(); i += width, ++row)
-      if (!std::isfinite(cif::as_number(loop.values[i])))
-        fail_input(where + ":" + std::to_string(line_of_row(text, line, loop.tags.size(), row, loop.values[i])) +
-                   ": found " + in_quotes(loop.values[i]) + " as " + axis + ", expected a coordinate (Å)");
-  }
 }
 
 Parsed from_document(cif::Document& document, std::string_view text, const std::string& file, const char* format,
@@ -161,11 +90,14 @@ Parsed from_document(cif::Document& document, std::string_view text, const std::
   if (loop.length() == 0)
     fail_input(where + ": found an empty _atom_site category, expected atoms");
   check_coordinates(loop, columns, text, file, item->line_number);
+  check_integers(loop, columns, text, file, item->line_number);
   columns.complete("id", {}, "1");
-  columns.complete("type_symbol", {}, "X");
+  columns.complete("type_symbol", {}, "?");
   columns.complete("label_alt_id", {}, ".");
   columns.complete("label_asym_id", {"auth_asym_id"}, "A");
   columns.complete("label_comp_id", {"auth_comp_id"}, "UNK");
+  if (const int64_t named = name_elements(loop, columns); named > 0)
+    parsed.notes.push_back("atoms without an element, taken from the name: " + std::to_string(named));
   columns.complete("occupancy", {}, "1");
   columns.complete("B_iso_or_equiv", {}, "0");
   columns.complete("auth_seq_id", {"label_seq_id"}, "1");
@@ -177,6 +109,7 @@ Parsed from_document(cif::Document& document, std::string_view text, const std::
     const std::string& tag = tag_of(other);
     for (const char* kept : {"_atom_site.", "_entity.", "_entity_poly.", "_entity_poly_seq.", "_struct_asym."})
       if (starts_with(tag, kept)) {
+        check_sequence(other, file + ":" + std::to_string(std::max(other.line_number, 1)));
         needed.items.push_back(std::move(other));
         break;
       }
@@ -208,8 +141,8 @@ Parsed parse_mmjson(std::string& text, const std::string& file, const std::strin
     document = read_mmjson(text, file);
   } catch (const Error&) {
     throw;
-  } catch (const std::exception& e) { // a value that is neither number, text nor null
-    fail_input(one_line(file, e.what()));
+  } catch (const std::exception&) {
+    fail_input(file + ":1: found a value that is an array or an object, expected numbers, text or null in mmJSON");
   }
   return from_document(document, {}, file, "mmJSON", assembly);
 }

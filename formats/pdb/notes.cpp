@@ -40,13 +40,15 @@ void add_notes(PdbReport& report, const Parsed& parsed, const PdbOptions& option
   add(report.hydrogens, "hydrogens (--hydrogens)");
   add(report.hetatms, "of hetero groups (--hetatm)");
   add(report.unselected, "outside --select");
-  add(report.no_radius, "of radius 0");
+  add(report.no_radius, "of radius 0, with a charge of " + shortest(report.no_radius_charge) + " e in all");
+  add(report.unassembled, "in chains outside assembly " + options.assembly);
   if (!dropped.empty())
     notes.push_back("dropped atoms: " + dropped);
 
-  for (const auto& [element, n] : report.unknown_elements)
+  for (const auto& [element, unknown] : report.unknown_elements)
     notes.push_back((element == "X" ? "unknown element: " : "element " + element + " without a radius: ") +
-                    counted(n, "atom") + " given " + shortest(options.unknown_radius) + " Å (--unknown)");
+                    counted(unknown.atoms, "atom") + " given " + shortest(options.unknown_radius) +
+                    " Å (--unknown), the first is " + unknown.first);
   notes.insert(notes.end(), parsed.notes.begin(), parsed.notes.end());
   report.notes.insert(report.notes.begin(), notes.begin(), notes.end());
 }

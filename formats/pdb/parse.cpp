@@ -32,16 +32,30 @@ void normalize(std::string& text, const std::string& file) {
     text += '\n';
 }
 
-/// Columns of the PDB format: decimal points of %8.3f coordinates.
+/// Columns of the PDB format: the decimal points of %8.3f coordinates.
 bool looks_like_pdb(std::string_view line) {
   return line.size() >= 54 && line[34] == '.' && line[42] == '.' && line[50] == '.';
 }
 
-bool looks_like_pqr(std::string_view line) {
-  const std::vector<std::string_view> word = words(line);
-  if (word.size() < 9)
-    return false;
-  return std::all_of(word.end() - 5, word.end(), [](std::string_view w) { return decimal(w).has_value(); });
+bool are_numbers(const std::vector<std::string_view>& word, size_t last) {
+  return word.size() >= last && std::all_of(word.end() - static_cast<std::ptrdiff_t>(last), word.end(),
+                                            [](std::string_view w) { return decimal(w).has_value(); });
+}
+
+/// Occupancy and temperature factor, two %6.2f behind the coordinates; an occupancy is not negative.
+bool has_occupancy(std::string_view line) {
+  return line.size() >= 66 && line[57] == '.' && line[63] == '.' && line[54] != '-' && line[55] != '-' &&
+         line[56] != '-' && (line.size() == 66 || line[66] == ' ');
+}
+
+/// "pdb" or "pqr"; empty for a line that could be either.
+std::string format_of_atom(std::string_view line) {
+  if (!looks_like_pdb(line))
+    return words(line).size() >= 9 && are_numbers(words(line), 5) ? "pqr" : "pdb";
+  const std::vector<std::string_view> behind = words(line.substr(54));
+  if (behind.size() != 2 || !are_numbers(behind, 2))
+    return "pdb";
+  return has_occupancy(line) ? "" : "pqr";
 }
 
 std::string detect(std::string_view text, const std::string& file) {
@@ -63,7 +77,7 @@ std::string detect(std::string_view text, const std::string& file) {
     if (is_record(start, "DATA_") || start == "loop_")
       format = "mmcif";
     if (is_atom_record(line))
-      format = !looks_like_pdb(line) && looks_like_pqr(line) ? "pqr" : "pdb";
+      format = format_of_atom(line);
   });
   if (format.empty() && (ends_with(name, ".cif") || ends_with(name, ".mmcif")))
     return "mmcif";

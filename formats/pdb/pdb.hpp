@@ -34,10 +34,15 @@ struct PdbOptions {
 struct PdbReport {
   std::string format;
   int64_t read = 0, models_read = 0; ///< in all models; number of models
-  int64_t other_models = 0, altlocs = 0, waters = 0, hydrogens = 0, hetatms = 0, unselected = 0,
-          no_radius = 0;                                                ///< dropped
+  int64_t other_models = 0, altlocs = 0, waters = 0, hydrogens = 0, hetatms = 0, unselected = 0, no_radius = 0,
+          unassembled = 0;     ///< dropped; unassembled: in no copy of the assembly
+  double no_radius_charge = 0; ///< e, of the atoms dropped because their radius is 0
   int64_t atoms = 0, residues = 0, chains = 0, domains = 0, copies = 1; ///< written; copies of the assembly
-  std::map<std::string, int64_t> unknown_elements; ///< atoms by element, given the radius `unknown_radius`
+  struct Unknown {
+    int64_t atoms = 0;
+    std::string first; ///< "ATOM of RESIDUE CHAIN/NUMBER"
+  };
+  std::map<std::string, Unknown> unknown_elements; ///< by element ("X": none known), given `unknown_radius`
   std::vector<std::string> notes;                  ///< all of the above that a user should know, a sentence each
 };
 

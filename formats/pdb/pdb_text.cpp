@@ -1,5 +1,6 @@
 // pdb_text.cpp — the PDB format: our own strict look at each line, then gemmi's reader on the records that matter.
 #include "error.hpp"
+#include "formats/pdb/element_name.hpp"
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/remark350.hpp"
 #include "molecule/words.hpp"
@@ -18,24 +19,32 @@ bool is_coordinate(std::string_view field) {
   return decimal(field).has_value();
 }
 
-/// Where columns 77-78 hold no element: in amino acids and nucleotides the first letter of the atom's name ("CA  "
-/// is no calcium there), elsewhere gemmi decides, unless all that it finds is X.
+bool is_letter(char c) {
+  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+}
+
+/// Where columns 77-78 hold no element (then true): an ion's; in amino acids and nucleotides the first letter of
+/// the atom's name ("CA  " is no calcium there), elsewhere gemmi decides, unless all that it finds is X.
 bool set_element(std::string& line) {
-  const auto letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
-  if (line.size() > 77 && (letter(line[76]) || letter(line[77])))
+  if (line.size() > 77 && (is_letter(line[76]) || is_letter(line[77])))
     return false;
   const std::string name = line.substr(12, 4), residue(trimmed(std::string_view(line).substr(17, 3)));
+  const auto set = [&line](std::string_view symbol) { // right-adjusted
+    line.resize(76, ' ');
+    line.append(2 - symbol.size(), ' ').append(symbol);
+    return true;
+  };
+  if (const gemmi::Element ion = ion_element(trimmed(name), trimmed(std::string_view(line).substr(17, 4)));
+      ion != gemmi::El::X)
+    return set(ion.uname());
   const size_t first = name.find_first_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz");
   if (first == std::string::npos)
-    return false;
+    return true;
   const gemmi::ResidueInfo info = gemmi::find_tabulated_residue(residue);
   const bool polymer = (info.is_amino_acid() || info.is_nucleic_acid()) && name.find("SE") == std::string::npos;
   if (!polymer && gemmi::Element(name.c_str()) != gemmi::El::X)
-    return false;
-  line.resize(78, ' ');
-  line[76] = ' ';
-  line[77] = name[first];
-  return true;
+    return true;
+  return set(std::string_view(name).substr(first, 1));
 }
 
 /// Three %8.3f fields that begin one column late, as some programs write residue numbers of five digits.
@@ -48,6 +57,20 @@ bool is_shifted(std::string_view line) {
       return false;
   }
   return true;
+}
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// Residue numbers are integers, hybrid-36, or missing.
+bool is_residue_number(std::string_view field) {
+  field = trimmed(field);
+  if (field.size() == 4 && is_letter(field[0]))
+    return std::all_of(field.begin(), field.end(), [](char c) { return is_digit(c) || is_letter(c); });
+  if (!field.empty() && (field[0] == '-' || field[0] == '+'))
+    field.remove_prefix(1);
+  return std::all_of(field.begin(), field.end(), is_digit);
 }
 
 class PdbLines {
@@ -82,6 +105,10 @@ public:
         parsed.notes.push_back(what + ": " + std::to_string(count));
     };
     note(shifted_, "atom lines whose coordinates stand one column to the right, read there");
+    note(pushed_, "atom lines that a wide serial has moved to the right, read there");
+    if (odd_numbers_ > 0)
+      note(odd_numbers_, "residue numbers that are no integers, read as far as they go, the first in line " +
+                             std::to_string(first_odd_number_));
     note(guessed_, "atoms without an element, taken from the name");
     note(after_end_, "atom lines after END, not read");
     note(renumbered_, "models without a number of their own, numbered in order");
@@ -100,6 +127,15 @@ private:
     if (!in_model_)
       open_model("");
     ++atoms_;
+    std::string narrowed;
+    if (is_pushed(line)) {
+      narrowed = line;
+      do
+        narrowed.erase(narrowed.begin() + 11);
+      while (is_pushed(narrowed));
+      line = narrowed;
+      ++pushed_;
+    }
     const bool shifted = is_shifted(line) && !is_standard(line);
     shifted_ += shifted;
     if (!shifted)
@@ -108,6 +144,8 @@ private:
     record_ +=
         line.substr(first_x + (shifted ? 1 : 0), 48); // up to column 78: the formal charge behind is not used
     guessed_ += set_element(record_);
+    if (!is_residue_number(std::string_view(record_).substr(22, 4)) && odd_numbers_++ == 0)
+      first_odd_number_ = line_;
     text += record_;
   }
 
@@ -116,6 +154,11 @@ private:
       if (!is_coordinate(line.substr(at, width)))
         return false;
     return true;
+  }
+
+  /// A serial wider than its columns 7-11 that has moved the rest of the line to the right.
+  static bool is_pushed(std::string_view line) {
+    return line.size() > first_x + 3 * width && is_digit(line[10]) && is_digit(line[11]) && !is_standard(line);
   }
 
   void check_coordinates(std::string_view line) const {
@@ -162,7 +205,8 @@ private:
   Remark350 remark350_;
   std::string record_;
   std::set<std::string> seen_;
-  int64_t line_ = 0, atoms_ = 0, shifted_ = 0, after_end_ = 0, renumbered_ = 0, guessed_ = 0;
+  int64_t line_ = 0, atoms_ = 0, shifted_ = 0, after_end_ = 0, renumbered_ = 0, guessed_ = 0, pushed_ = 0,
+          odd_numbers_ = 0, first_odd_number_ = 0;
   bool in_model_ = false, ended_ = false;
 };
 

@@ -83,11 +83,14 @@ Flat flatten(const Parsed& parsed, const std::string& file, const PdbOptions& op
           } else if (const auto radius = options.radii.find(residue.name, a.name, a.element.name())) {
             atom.radius = *radius;
           } else {
-            ++report.unknown_elements[a.element.name()];
+            PdbReport::Unknown& unknown = report.unknown_elements[a.element.name()];
+            if (unknown.atoms++ == 0)
+              unknown.first = a.name + " of " + residue.name + " " + chain.name + "/" + residue.seqid.str();
             atom.radius = options.unknown_radius;
             if (refused.empty())
-              refused = "found atom " + a.name + " of " + residue.name + " " + chain.name + "/" +
-                        residue.seqid.str() + ", element " + a.element.name();
+              refused = "found atom " + unknown.first +
+                        (a.element == gemmi::El::X ? ", of no known element"
+                                                   : ", element " + std::string(a.element.name()));
           }
           flat.atom.push_back(atom);
         }
@@ -136,6 +139,9 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
       if (!is_finite(numbers(op.transform)))
         fail_input(file + ": found operator " + op.name + " of assembly " + assembly +
                    " with a number that is not finite");
+      if (std::fabs(std::fabs(op.transform.mat.determinant()) - 1) > 0.05)
+        fail_input(file + ": found operator " + op.name + " of assembly " + assembly +
+                   " that squeezes or stretches, expected a rotation and a shift");
       int& copy = copies.try_emplace({op.name, numbers(op.transform)}, 0).first->second;
       if (copy == 0 || !used.insert(copy).second)
         used.insert(copy = ++count);
@@ -155,6 +161,13 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
       }
     }
   }
+  std::vector<uint8_t> used(flat.residue.size(), 0);
+  for (const Placed& p : placed)
+    for (const int64_t r : *p.residues)
+      used[static_cast<size_t>(r)] = 1;
+  for (size_t r = 0; r < used.size(); ++r)
+    if (!used[r])
+      report.unassembled += flat.residue[r].end - flat.residue[r].begin;
   if (placed.empty())
     fail_input(file + ": found no atom in assembly " + assembly + ", expected at least one");
   std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.copy < b.copy; });

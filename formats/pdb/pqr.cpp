@@ -1,6 +1,7 @@
 // pqr.cpp — PQR: atoms with charge and radius. Fields between blanks, as APBS reads them; where coordinates run
 // together, the columns of the PDB format.
 #include "error.hpp"
+#include "formats/pdb/element_name.hpp"
 #include "formats/pdb/parse.hpp"
 #include "molecule/words.hpp"
 #include <charconv>
@@ -14,26 +15,6 @@ bool is_digit(char c) {
 }
 bool is_letter(char c) {
   return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
-}
-
-/// PQR has no element: an ion's name is its residue's and its element; otherwise the first letter, with the
-/// halogens and silicon by their two.
-gemmi::Element element_of(std::string_view atom, std::string_view residue) {
-  const size_t first = atom.find_first_not_of("0123456789'\"*+-");
-  if (first == std::string_view::npos)
-    return gemmi::El::X;
-  const std::string name(atom.substr(first));
-  const size_t end =
-      std::min(name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"), name.size());
-  const std::string letters = name.substr(0, end);
-  const size_t tail = std::min(residue.find_first_of("+-0123456789"), residue.size());
-  if (letters.size() == 2 && gemmi::alpha_up(letters[0]) == gemmi::alpha_up(residue.empty() ? ' ' : residue[0]) &&
-      tail == 2 && gemmi::alpha_up(letters[1]) == gemmi::alpha_up(residue[1]))
-    if (const gemmi::Element ion(letters); ion != gemmi::El::X)
-      return ion;
-  if (letters.size() >= 2 && name.substr(0, 2) != "CL" && name.substr(0, 2) != "BR" && name.substr(0, 2) != "SI")
-    return gemmi::impl::find_single_letter_element(gemmi::alpha_up(letters[0]));
-  return letters.size() == 1 ? gemmi::Element(letters) : gemmi::Element(name.substr(0, 2));
 }
 
 struct PqrAtom {
@@ -155,7 +136,7 @@ private:
     }
     gemmi::Atom atom;
     atom.name = a.name;
-    atom.element = element_of(a.name, a.residue);
+    atom.element = named_element(a.name, a.residue); // PQR has none
     atom.pos = {a.x, a.y, a.z};
     atom.serial = static_cast<int>(parsed_.pqr.size());
     chain.residues.back().atoms.push_back(atom);

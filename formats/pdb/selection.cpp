@@ -28,21 +28,21 @@ std::string reason(const std::string& what) {
 
 } // namespace
 
-Selection::Selection(const std::string& text, const std::string& where, bool around_allowed) {
+Selection::Selection(const std::string& text, const std::string& where, bool around_allowed, Status status) {
   std::string cid = text;
   const std::vector<std::string_view> word = words(text);
   if (!word.empty() && word[0] == "around") {
     const double distance = word.size() >= 3 ? decimal(word.back()).value_or(0) : 0;
     if (!around_allowed || !(distance > 0))
-      fail_input(where + ": found selection " + in_quotes(text) + ", expected " +
-                 (around_allowed ? "around SELECTION DISTANCE, DISTANCE > 0 (Å)" : "no 'around' here"));
+      fail(status, where + ": found selection " + in_quotes(text) + ", expected " +
+                       (around_allowed ? "around SELECTION DISTANCE, DISTANCE > 0 (Å)" : "no 'around' here"));
     around_ = distance;
     cid = trimmed(std::string_view(word[1].data(), static_cast<size_t>(word.back().data() - word[1].data())));
   }
   try {
     selection_ = gemmi::Selection(cid);
   } catch (const std::exception& e) {
-    fail_input(where + ": found selection " + in_quotes(text) + ", expected gemmi's syntax" + reason(e.what()));
+    fail(status, where + ": found selection " + in_quotes(text) + ", expected gemmi's syntax" + reason(e.what()));
   }
   // gemmi 0.5.7 takes "45" for "45-"; in MMDB syntax, and in later gemmi, it is that residue alone.
   if (!selection_.from_seqid.empty() && selection_.to_seqid.empty() && !is_open_range(cid))

@@ -13,8 +13,9 @@ namespace molmesh::formats {
 /// SELECTION.
 class Selection {
 public:
-  /// Throws Error(bad_input) "WHERE: …" when the syntax is wrong.
-  Selection(const std::string& text, const std::string& where, bool around_allowed = false);
+  /// Throws Error(status) "WHERE: …" when the syntax is wrong.
+  Selection(const std::string& text, const std::string& where, bool around_allowed = false,
+            Status status = Status::bad_input);
 
   bool model(const gemmi::Model& m) const { return selection_.matches(m); }
   /// name: in the file; copy: the unique name of one copy of an assembly. Either may be selected.

@@ -1,11 +1,15 @@
 // names.cpp — the texts, a name a line.
 #include "formats/vtu/names.hpp"
 #include "formats/hier/text.hpp"
+#include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <string_view>
 
 namespace molmesh::formats {
 namespace {
+
+const char* const own_boundary[] = {"surface", "box_x0", "box_x1", "box_y0", "box_y1", "box_z0", "box_z1"};
 
 void set_text(TetMesh& m, const std::string& name, std::string text) {
   for (NamedText& t : m.named_text)
@@ -46,17 +50,20 @@ void add_patch_names(TetMesh& m, const std::map<int32_t, std::string>& name) {
   set_text(m, "patch_names", text);
 }
 
+bool is_own_boundary_name(const std::string& name) {
+  return std::find(std::begin(own_boundary), std::end(own_boundary), name) != std::end(own_boundary);
+}
+
 std::string region_name(int32_t region) {
   static const char* const name[] = {"molecule", "outside", "cavity"};
   return region >= 1 && region <= 3 ? name[region - 1] : "region_" + std::to_string(region);
 }
 
 std::map<int32_t, std::string> boundary_names(const TetMesh& m, const std::vector<int32_t>& label) {
-  static const char* const own[] = {"surface", "box_x0", "box_x1", "box_y0", "box_y1", "box_z0", "box_z1"};
   std::map<int32_t, std::string> name;
   for (const int32_t l : label)
     if (auto [at, is_new] = name.try_emplace(l); is_new)
-      at->second = l >= 1 && l <= 7 ? own[l - 1] : "boundary_" + std::to_string(l);
+      at->second = l >= 1 && l <= 7 ? own_boundary[l - 1] : "boundary_" + std::to_string(l);
   for (const NamedText& t : m.named_text) {
     if (t.name != "patch_names")
       continue;

@@ -8,12 +8,16 @@
 #include <filesystem>
 #include <iostream>
 #include <unistd.h>
+#include <utility>
 
 namespace molmesh::cli {
 namespace fs = std::filesystem;
 
 InputFile::InputFile(const std::string& path) : name_(path) {
   if (path == "-") {
+    static bool asked_for = false;
+    if (std::exchange(asked_for, true))
+      fail(Status::usage, "standard input is asked for twice, expected at most once");
     standard_ = true;
     name_ = "<stdin>";
     return;

@@ -83,16 +83,28 @@ Patches add_patches(TetMesh& m, const Places& places, const Labels& labels,
   return result;
 }
 
+namespace {
+
+void remove_named(TetMesh& m, const std::set<std::string>& gone) {
+  const auto is_gone = [&](const auto& a) { return gone.count(a.name) > 0; };
+  m.cell_array.erase(std::remove_if(m.cell_array.begin(), m.cell_array.end(), is_gone), m.cell_array.end());
+  m.named_text.erase(std::remove_if(m.named_text.begin(), m.named_text.end(), is_gone), m.named_text.end());
+}
+
+} // namespace
+
 void remove_labels(TetMesh& m) {
-  std::set<std::string> gone{"patch", "patch_names"};
+  std::set<std::string> gone;
   for (const CellArray& a : m.cell_array)
     if (const size_t n = a.name.size(); n > 6 && a.name.compare(n - 6, 6, "_share") == 0) {
       const std::string level = a.name.substr(0, n - 6);
       gone.insert({level, a.name, level + "_names"});
     }
-  const auto is_gone = [&](const auto& a) { return gone.count(a.name) > 0; };
-  m.cell_array.erase(std::remove_if(m.cell_array.begin(), m.cell_array.end(), is_gone), m.cell_array.end());
-  m.named_text.erase(std::remove_if(m.named_text.begin(), m.named_text.end(), is_gone), m.named_text.end());
+  remove_named(m, gone);
+}
+
+void remove_patches(TetMesh& m) {
+  remove_named(m, {"patch", "patch_names"});
 }
 
 double median_offset(const Places& places, const Labels& labels, double isovalue) {

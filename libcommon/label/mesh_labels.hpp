@@ -36,8 +36,10 @@ struct Patches {
 Patches add_patches(TetMesh& m, const Places& places, const Labels& labels,
                     const std::vector<NamedBoundary>& boundary);
 
-/// Removes everything that a former run added: arrays and texts of levels (those with a NAME_share), patches.
+/// Removes what a former run added: arrays and texts of levels (those with a NAME_share).
 void remove_labels(TetMesh& m);
+/// Removes the named boundaries of a former run.
+void remove_patches(TetMesh& m);
 
 /// Median of ln(G / isovalue) at the triangles: 0 on the isosurface itself. 0 without triangles.
 double median_offset(const Places& places, const Labels& labels, double isovalue);

@@ -7,6 +7,7 @@ namespace molmesh {
 Rule parse_rule(const std::string& text, const std::string& where, Status status) {
   Rule rule;
   rule.where = where;
+  rule.blame = status;
   std::string_view rest = trimmed(text);
   // The exponents stand at the end; what is before them is the selection, blanks and all.
   for (;;) {

@@ -19,7 +19,8 @@ struct Exponents {
 struct Rule {
   std::string selection;
   std::optional<double> residue, chain, domain;
-  std::string where; ///< for messages: "-r '…'" or "FILE:LINE"
+  std::string where;                ///< for messages: "-r '…'" or "FILE:LINE"
+  Status blame = Status::bad_input; ///< what a rule that makes no sense is: usage where it is an option
 };
 
 /// One part of a domain; parts of the same name belong together.

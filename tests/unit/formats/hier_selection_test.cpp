@@ -32,11 +32,12 @@ std::string selected(const std::string& selection, const Hierarchy& h = hierarch
   return s;
 }
 
-std::string refusal(const std::string& selection, const Hierarchy& h = hierarchy()) {
+std::string refusal(const std::string& selection, const Hierarchy& h = hierarchy(),
+                    Status status = Status::bad_input) {
   try {
     selected(selection, h);
   } catch (const Error& e) {
-    CHECK(e.status == Status::bad_input);
+    CHECK(e.status == status);
     return e.what();
   }
   return "";
@@ -68,8 +69,8 @@ TEST_CASE("Selections that a .hier cannot answer are refused with one line") {
   CHECK(refusal("//A//CA:A").find("a .hier holds nothing else") != std::string::npos);
   CHECK(refusal("/2/A").find("a .hier holds nothing else") != std::string::npos);
   CHECK(refusal("//A;q>0.5").find("a .hier holds nothing else") != std::string::npos);
-  CHECK(refusal("//A///x/y").find("gemmi's syntax") != std::string::npos);
-  CHECK(refusal("around //A -1").find("DISTANCE > 0") != std::string::npos);
+  CHECK(refusal("//A///x/y", hierarchy(), Status::usage).find("gemmi's syntax") != std::string::npos);
+  CHECK(refusal("around //A -1", hierarchy(), Status::usage).find("DISTANCE > 0") != std::string::npos);
   const Hierarchy plain = hierarchy("hier 1\nlevels\natom CA C 0 0 0 1\n");
   CHECK(refusal("//A", plain).find("no level 'chain'") != std::string::npos);
   CHECK(refusal("//*/5", plain).find("no level 'residue'") != std::string::npos);

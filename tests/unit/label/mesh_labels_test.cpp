@@ -92,6 +92,8 @@ TEST_CASE("A mesh is labelled anew without a trace of the labels before") {
   label_mesh(twice, {{"x", {1, 0}}}, patches);
   twice.cell_array.push_back({"foreign", std::vector<int32_t>(twice.tet.size() + twice.tri.size(), 5), {}});
   label::remove_labels(twice);
+  REQUIRE(twice.cell_array.size() == 2); // patches stay
+  label::remove_patches(twice);
   REQUIRE(twice.cell_array.size() == 1);
   label_mesh(twice, {{"all", {1, 1}}, {"upper", {0, 1}}}, patches);
   for (const CellArray& a : once.cell_array) {
