@@ -6,6 +6,7 @@
 #include "contour/leaves.hpp"
 #include "contour/relax.hpp"
 #include "error.hpp"
+#include "improve/isosurface.hpp"
 #include "par/par.hpp"
 
 namespace molmesh::contour {
@@ -25,14 +26,14 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   refine_options.inside = options.meshed != Options::exterior;
   refine_options.outside = with_outside;
   const Octree tree(lattice.cells, stages.select_leaves(lattice, found, refine_options, threads));
-  const bool on_inside = refine_options.inside || options.drop_below > 0,
-             on_outside = with_outside || options.fill_cavities;
-  Dual dual = stages.make_dual({lattice, tree, found, on_inside, on_outside, threads}, on_phase);
+  // Both sides, whichever is asked for: the surface is to move.
+  Dual dual = stages.make_dual({lattice, tree, found, true, true, threads}, on_phase);
   const Complex& complex = dual.complex;
   Elements& elements = dual.elements;
   summary.restored_points = dual.restored_points;
   on_phase("relaxation");
-  summary.relaxed_points = relax(elements, lattice_classes(complex, threads), threads);
+  const improve::Isosurface surface(grid, threads);
+  summary.relaxed_points = relax(elements, lattice_classes(complex, threads), &surface, threads);
   on_phase("regions");
   RegionOptions region_options;
   region_options.fill_cavities = options.fill_cavities;

@@ -1,4 +1,4 @@
-// relax_test.cpp — bad elements get better, surface and walls stay where they are.
+// relax_test.cpp — bad elements get better, vertices stay on the surface and on walls.
 #include "contour/contour.hpp"
 #include "contour/relax.hpp"
 #include "geom/tet_measures.hpp"
@@ -47,10 +47,10 @@ TEST_CASE("a vertex near one side of its star moves to the middle; those on the 
   contour::Elements e = fan({0.95, -0.3, 0.2}, surface);
   REQUIRE(least_angle(e) < 3);
   const auto before = e.position;
-  CHECK(contour::relax(e, {}, 1) > 0);
+  CHECK(contour::relax(e, {}, nullptr, 1) > 0);
   CHECK(least_angle(e) > 13);
   CHECK(std::equal(before.begin(), before.begin() + 8, e.position.begin()));
-  CHECK(contour::relax(e, {}, 1) == 0);
+  CHECK(contour::relax(e, {}, nullptr, 1) == 0);
 }
 
 TEST_CASE("a vertex on a wall stays in its plane") {
@@ -71,10 +71,39 @@ TEST_CASE("a vertex on a wall stays in its plane") {
   }
   const double before = least_angle(e);
   REQUIRE(before < 5);
-  CHECK(contour::relax(e, {}, 1) > 0);
+  CHECK(contour::relax(e, {}, nullptr, 1) > 0);
   CHECK(least_angle(e) > before);
   CHECK(e.position[8].z == -1);
   CHECK(e.position[8].x < 0.97);
+}
+
+TEST_CASE("a vertex on the surface moves along it") {
+  struct Plane final : improve::Target { // z = x
+    bool project(Vec3d&, double) const override { return false; }
+    bool probe(Vec3d p, double& distance, Vec3d& normal) const override {
+      normal = std::sqrt(0.5) * Vec3d{-1, 0, 1};
+      distance = dot(p, normal);
+      return true;
+    }
+    double spacing() const override { return 1; }
+  } plane;
+  contour::Elements e = fan({0.9, -0.3, 0.9}, 0);
+  for (size_t i = 0; i < e.boundary.size(); ++i)
+    e.boundary[i] = box_x0 + static_cast<int32_t>(i / 2);
+  for (const Tri t : {Tri{0, 5, 8}, {5, 7, 8}, {7, 2, 8}, {2, 0, 8}}) {
+    e.tri.push_back(t);
+    e.boundary.push_back(surface);
+  }
+  const auto before = e.position;
+  REQUIRE(least_angle(e) < 8);
+  CHECK(contour::relax(e, {}, &plane, 1) > 0);
+  CHECK(least_angle(e) > 13);
+  CHECK(std::equal(before.begin(), before.begin() + 8, e.position.begin()));
+  CHECK(std::fabs(e.position[8].z - e.position[8].x) * std::sqrt(0.5) < 0.03 + 1e-12);
+  contour::Elements stays = fan({0.9, -0.3, 0.9}, 0);
+  stays.tri = e.tri;
+  stays.boundary = e.boundary;
+  CHECK(contour::relax(stays, {}, nullptr, 1) == 0);
 }
 
 TEST_CASE("interior and exterior alone are parts of the mesh of both, point for point") {
