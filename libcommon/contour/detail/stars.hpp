@@ -21,7 +21,7 @@ struct Stars {
     return {element.data() + first[at(chosen)], at(first[at(chosen + 1)] - first[at(chosen)])};
   }
 
-  void gather(std::vector<int32_t> chosen, const std::vector<Tet>& tet, size_t vertices, int threads) {
+  void gather(std::vector<int32_t> chosen, std::span<const Tet> tet, size_t vertices, int threads) {
     vertex = std::move(chosen);
     number.assign(vertices, -1);
     std::vector<uint8_t> is_chosen(vertices, 0); // small enough for the cache
