@@ -128,14 +128,10 @@ Status run(Options& o, cli::Run& run) {
   run.counts = {{"atoms_read", r.read},   {"models_read", r.models_read}, {"atoms", r.atoms},
                 {"residues", r.residues}, {"chains", r.chains},           {"domains", r.domains},
                 {"copies", r.copies}};
-  run.counts["dropped"] = {{"other_models", r.other_models},
-                           {"altlocs", r.altlocs},
-                           {"waters", r.waters},
-                           {"hydrogens", r.hydrogens},
-                           {"hetatm", r.hetatms},
-                           {"unselected", r.unselected},
-                           {"radius_0", r.no_radius},
-                           {"outside_assembly", r.unassembled}};
+  run.counts["dropped"] = {{"other_models", r.other_models}, {"altlocs", r.altlocs}, {"waters", r.waters},
+                           {"hydrogens", r.hydrogens},       {"hetatm", r.hetatms},  {"unselected", r.unselected},
+                           {"radius_0", r.no_radius}};
+  run.counts["dropped"]["outside_assembly"] = r.unassembled;
   run.counts["dropped_charge"] = r.no_radius_charge;
   run.counts["unknown_elements"] = nlohmann::json::object();
   for (const auto& [element, unknown] : r.unknown_elements)

@@ -42,8 +42,9 @@ const std::string& tag_of(const cif::Item& item) {
 }
 
 bool has_atoms(const cif::Block& block) {
-  return std::any_of(block.items.begin(), block.items.end(),
-                     [](const cif::Item& item) { return starts_with(gemmi::to_lower(tag_of(item)), atom_site.c_str()); });
+  return std::any_of(block.items.begin(), block.items.end(), [](const cif::Item& item) {
+    return starts_with(gemmi::to_lower(tag_of(item)), atom_site.c_str());
+  });
 }
 
 /// A category that has its rows as name-value pairs has one row: gemmi reads both, here only loops remain.

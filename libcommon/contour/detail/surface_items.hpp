@@ -1,6 +1,7 @@
 // surface_items.hpp — the crossed cells of each block of 8³ cells as bits, then as cells with values and samples.
 #pragma once
 #include "contour/detail/block_window.hpp"
+#include "contour/detail/passes.hpp"
 #include "contour/surface_sample.hpp"
 #include "geom/bits.hpp"
 #include "geom/morton.hpp"
