@@ -13,9 +13,9 @@ TetMesh read(const std::string& text) {
   return formats::read_vtu(in, "fuzz", nullptr, formats::CellArrays::keep);
 }
 
-template <class Cell>
-void check(const TetMesh& m, const std::vector<Cell>& cells) {
-  for (const Cell& c : cells)
+template <class Cells>
+void check(const TetMesh& m, const Cells& cells) {
+  for (const auto& c : cells)
     for (const int32_t p : c)
       if (p < 0 || p >= static_cast<int64_t>(m.point.size()))
         std::abort();
