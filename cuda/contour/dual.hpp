@@ -73,7 +73,7 @@ private:
     auto value = b_.fetch(std::move(passes.value));
     auto point = b_.fetch(std::move(passes.point));
     auto nearest = b_.fetch(std::move(passes.nearest));
-    dual.elements = maker(device, in.inside, in.outside);
+    dual.elements = maker(device);
     runs_ = maker.runs();
 
     contour::Complex& c = dual.complex;

@@ -112,10 +112,9 @@ template <bool only_check>
 struct MakeFaces {
   static constexpr bool check = only_check;
   ComplexView c;
-  bool wanted[2];
   const int32_t* leaves; ///< null: all
   HD int32_t leaf(int64_t i) const { return leaves ? leaves[i] : static_cast<int32_t>(i); }
-  HD void operator()(int64_t i, ItemOut<check>& out) const { contour::detail::make_faces(c, leaf(i), wanted, out); }
+  HD void operator()(int64_t i, ItemOut<check>& out) const { contour::detail::make_faces(c, leaf(i), out); }
   /// Leaves of one level, and surface cells apart: similar work (§4.2).
   HD uint32_t work(int64_t i) const {
     const int32_t l = leaf(i);
@@ -129,11 +128,10 @@ template <bool only_check>
 struct MakeRings {
   static constexpr bool check = only_check;
   contour::detail::RingVertices vertices;
-  bool wanted[2];
   const Link* link;
   const int64_t* first;
   HD void operator()(int64_t e, ItemOut<check>& out) const {
-    contour::detail::make_ring(vertices, link + first[e], link + first[e + 1], wanted, out);
+    contour::detail::make_ring(vertices, link + first[e], link + first[e + 1], out);
   }
   HD uint32_t work(int64_t e) const { return uint32_t(first[e + 1] - first[e]); }
 };

@@ -22,15 +22,15 @@ public:
   explicit ElementMaker(Backend& b) : b_(b) {}
 
   /// The elements of the complex whose view this is; more than make_elements only in where they are made.
-  contour::Elements operator()(const ComplexView& view, bool inside, bool outside) {
+  contour::Elements operator()(const ComplexView& view) {
     contour::Elements out;
     const int32_t own = view.vertices();
     MoreVertices more;
-    make(MakeFaces<false>{view, {outside, inside}, nullptr}, int64_t{view.tree.leaves}, own, &out, &more);
+    make(MakeFaces<false>{view, nullptr}, int64_t{view.tree.leaves}, own, &out, &more);
     out.face_points = more.points;
     const Rings rings = join(more);
-    make(MakeRings<false>{vertices(view, rings), {outside, inside}, rings.link.data(), rings.first.data()},
-         rings.edges, own + out.face_points, &out, nullptr);
+    make(MakeRings<false>{vertices(view, rings), rings.link.data(), rings.first.data()}, rings.edges,
+         own + out.face_points, &out, nullptr);
     out.edge_points = static_cast<int64_t>(out.position.size()) - out.face_points;
     return out;
   }
@@ -40,10 +40,9 @@ public:
   Ids spoiled_of(const ComplexView& view, const Ids& leaves, const Ids* ends) {
     const Array<uint8_t> flag = b_.filled(view.vertices(), uint8_t{0});
     MoreVertices more;
-    make(MakeFaces<true>{view, {false, false}, leaves.data()}, leaves.n, view.vertices(), nullptr, &more,
-         flag.data());
+    make(MakeFaces<true>{view, leaves.data()}, leaves.n, view.vertices(), nullptr, &more, flag.data());
     const Rings rings = join(more, ends, view.grid_vertices);
-    make(MakeRings<true>{vertices(view, rings), {false, false}, rings.link.data(), rings.first.data()}, rings.edges,
+    make(MakeRings<true>{vertices(view, rings), rings.link.data(), rings.first.data()}, rings.edges,
          view.vertices(), nullptr, nullptr, flag.data());
     return contour::detail::gather<int32_t>(b_, "spoiled", view.vertices(), Flagged{flag.data()});
   }

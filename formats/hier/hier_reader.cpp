@@ -250,10 +250,7 @@ private:
   }
 
   void level(std::string_view word) {
-    const bool plain = std::all_of(word.begin(), word.end(), [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-    });
-    if (!plain || word == "hier" || word == "source" || word == "levels" || word == "atom")
+    if (!is_level_name(word))
       refuse("R4: found level " + shown(word) +
              ", expected a word of letters, digits, _ and - that is no record's");
     for (const Level& other : h_.level)

@@ -16,14 +16,6 @@ bool is_plain(char c) {
   return c > ' ' && c < 0x7F && c != '%';
 }
 
-bool is_level_name(std::string_view s) {
-  static constexpr std::string_view reserved[] = {"hier", "source", "levels", "atom"};
-  const bool word = std::all_of(s.begin(), s.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  });
-  return word && !s.empty() && std::find(std::begin(reserved), std::end(reserved), s) == std::end(reserved);
-}
-
 } // namespace
 
 HierWriter::HierWriter(std::ostream& out, std::string_view source, const std::vector<std::string>& levels)

@@ -1,5 +1,7 @@
 // text.cpp — percent-encoding, byte by byte.
 #include "formats/hier/text.hpp"
+#include "molecule/words.hpp"
+#include <algorithm>
 
 namespace molmesh::formats {
 namespace {
@@ -65,6 +67,13 @@ bool percent_decode(std::string_view text, std::string& name) {
     i += 2;
   }
   return true;
+}
+
+bool is_level_name(std::string_view word) {
+  static constexpr std::string_view reserved[] = {"hier", "source", "levels", "atom"};
+  const bool plain = std::all_of(word.begin(), word.end(),
+                                 [](char c) { return is_letter(c) || is_digit(c) || c == '_' || c == '-'; });
+  return plain && !word.empty() && std::find(std::begin(reserved), std::end(reserved), word) == std::end(reserved);
 }
 
 } // namespace molmesh::formats

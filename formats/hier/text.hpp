@@ -1,4 +1,4 @@
-// text.hpp — percent-encoded names and UTF-8, as HIERv1.md has them.
+// text.hpp — percent-encoded names, UTF-8 and names of levels, as HIERv1.md has them.
 #pragma once
 #include <string>
 #include <string_view>
@@ -11,5 +11,7 @@ void percent_encode(std::string& out, std::string_view name);
 bool percent_decode(std::string_view text, std::string& name);
 /// Length of the UTF-8 character that `text` begins with, 0 when it is none.
 size_t utf8_length(std::string_view text);
+/// A word of letters, digits, _ and - that is no record's.
+bool is_level_name(std::string_view word);
 
 } // namespace molmesh::formats

@@ -1,5 +1,6 @@
 // element_name.cpp — names of atoms and residues as the PDB and force fields write them.
 #include "formats/pdb/element_name.hpp"
+#include "molecule/words.hpp"
 #include <algorithm>
 #include <array>
 #include <string>
@@ -10,7 +11,6 @@ namespace {
 
 /// The letters that the name begins with, digits and marks before them left out; in upper case.
 std::string letters_of(std::string_view name) {
-  const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
   const size_t first = std::min(name.find_first_not_of("0123456789'\"*+-"), name.size());
   std::string letters;
   for (const char c : name.substr(first)) {

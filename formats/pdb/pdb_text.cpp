@@ -19,10 +19,6 @@ bool is_coordinate(std::string_view field) {
   return decimal(field).has_value();
 }
 
-bool is_letter(char c) {
-  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
-}
-
 /// Where columns 77-78 hold no element (then true): an ion's; in amino acids and nucleotides the first letter of
 /// the atom's name ("CA  " is no calcium there), elsewhere gemmi decides, unless all that it finds is X.
 bool set_element(std::string& line) {
@@ -57,10 +53,6 @@ bool is_shifted(std::string_view line) {
       return false;
   }
   return true;
-}
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
 }
 
 /// Residue numbers are integers, hybrid-36, or missing.

@@ -10,13 +10,6 @@
 namespace molmesh::formats {
 namespace {
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-bool is_letter(char c) {
-  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
-}
-
 struct PqrAtom {
   std::string name, residue, chain;
   int number = 1;

@@ -1,6 +1,7 @@
 // vtk_xml.cpp — a scanner for the subset of XML that VTK files are written in.
 #include "formats/vtu/vtk_xml.hpp"
 #include "error.hpp"
+#include "molecule/words.hpp"
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -126,8 +127,7 @@ private:
   std::string_view word(size_t& p) const {
     const size_t begin = p;
     const auto part = [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
-             c == ':' || c == '.';
+      return is_letter(c) || is_digit(c) || c == '_' || c == '-' || c == ':' || c == '.';
     };
     while (p < text_.size() && part(text_[p]))
       ++p;

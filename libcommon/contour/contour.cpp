@@ -26,8 +26,8 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   refine_options.inside = options.meshed != Options::exterior;
   refine_options.outside = with_outside;
   const Octree tree(lattice.cells, stages.select_leaves(lattice, found, refine_options, threads));
-  // Both sides, whichever is asked for: the surface is to move.
-  Dual dual = stages.make_dual({lattice, tree, found, true, true, threads}, on_phase);
+  // Elements of both sides, whichever is asked for: the surface is to move.
+  Dual dual = stages.make_dual({lattice, tree, found, threads}, on_phase);
   const Complex& complex = dual.complex;
   Elements& elements = dual.elements;
   summary.restored_points = dual.restored_points;

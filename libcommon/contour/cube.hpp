@@ -28,20 +28,8 @@ HD constexpr int face_corner_of(int f, int i) {
          7;
 }
 
-/// The same as a table.
-struct FaceCorners {
-  int corner[6][4];
-  constexpr const int* operator[](int f) const { return corner[f]; }
-};
-inline constexpr FaceCorners face_corner = [] {
-  FaceCorners table{};
-  for (int f = 0; f < 6; ++f)
-    for (int i = 0; i < 4; ++i)
-      table.corner[f][i] = face_corner_of(f, i);
-  return table;
-}();
-
-/// No diagonal, or the one from face_corner[f][0] to [2] (even), or from [1] to [3] (odd).
+/// No diagonal, or the one from the first corner of face f to its third (even), or from the second to the
+/// fourth (odd).
 enum class Diagonal : uint8_t { none, even, odd };
 
 /// Corners at either end of face f's diagonal d: 0 and 2, or 1 and 3, in face order.

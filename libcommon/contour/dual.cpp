@@ -27,7 +27,7 @@ Dual make_dual(const DualInput& in, const std::function<void(const std::string&)
     spoiled.n = static_cast<int64_t>(spoiled.array.size());
     return spoiled;
   });
-  dual.elements = make_elements(passes.view, in.inside, in.outside, in.threads);
+  dual.elements = make_elements(passes.view, in.threads);
   dual.complex = std::move(passes);
   return dual;
 }

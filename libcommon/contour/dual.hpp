@@ -15,7 +15,6 @@ struct DualInput {
   const Lattice& lattice;
   const Octree& tree;
   const Surface& surface;
-  bool inside, outside; ///< sides to make elements on
   int threads;
 };
 struct Dual {

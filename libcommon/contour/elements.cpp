@@ -124,14 +124,13 @@ LargeArray<int64_t> sort_by_edge(LargeArray<Link>& links, int32_t vertices, int 
 
 /// Faces of the leaves that leaf(0 … n - 1) names, then the rings of all edges whose links stay(link).
 template <bool check, class Leaf, class Stay>
-Joined make_all(const ComplexView& view, int64_t n, Leaf leaf, const bool wanted[2], int threads, Stay stay) {
+Joined make_all(const ComplexView& view, int64_t n, Leaf leaf, int threads, Stay stay) {
   Joined out;
   if (!check) { // about what a uniform mesh has: memory is taken when it is written
     out.elements.tet.reserve(at(12 * n) + 8 * at(view.surface_cells));
     out.link.reserve(6 * at(view.surface_cells));
   }
-  run<check>(n, view.vertices(), out, threads,
-             [&](int64_t i, auto& to) { detail::make_faces(view, leaf(i), wanted, to); });
+  run<check>(n, view.vertices(), out, threads, [&](int64_t i, auto& to) { detail::make_faces(view, leaf(i), to); });
   out.elements.face_points = static_cast<int64_t>(out.wall.size());
   if (check)
     out.link.erase(std::remove_if(out.link.begin(), out.link.end(), [&](const Link& l) { return !stay(l); }),
@@ -141,7 +140,7 @@ Joined make_all(const ComplexView& view, int64_t n, Leaf leaf, const bool wanted
   const LargeArray<int32_t> wall = out.wall;
   const detail::RingVertices vertices{view, view.vertices(), point.data(), wall.data()};
   run<check>(static_cast<int64_t>(first.size()) - 1, view.vertices(), out, threads, [&](int64_t e, auto& to) {
-    detail::make_ring(vertices, &out.link[at(first[at(e)])], out.link.data() + first[at(e + 1)], wanted, to);
+    detail::make_ring(vertices, &out.link[at(first[at(e)])], out.link.data() + first[at(e + 1)], to);
   });
   return out;
 }
@@ -150,21 +149,19 @@ Joined make_all(const ComplexView& view, int64_t n, Leaf leaf, const bool wanted
 
 LargeArray<int32_t> spoiled_of(const ComplexView& view, const LargeArray<int32_t>& leaves,
                                const LargeArray<int32_t>* ends, int threads) {
-  const bool none[2] = {false, false};
   const auto is_end = [&](int32_t v) { // all faces at a split cell's centre are that cell's
     return v >= view.grid_vertices || std::binary_search(ends->begin(), ends->end(), v);
   };
   Joined all = make_all<true>(
-      view, static_cast<int64_t>(leaves.size()), [&](int64_t i) { return leaves[at(i)]; }, none, threads,
+      view, static_cast<int64_t>(leaves.size()), [&](int64_t i) { return leaves[at(i)]; }, threads,
       [&](const Link& l) { return !ends || (is_end(l.inside) && is_end(l.outside)); });
   par::sort_unique(all.spoiled, threads);
   return std::move(all.spoiled);
 }
 
-Elements make_elements(const ComplexView& view, bool inside, bool outside, int threads) {
-  const bool wanted[2] = {outside, inside};
+Elements make_elements(const ComplexView& view, int threads) {
   Joined all = make_all<false>(
-      view, view.tree.leaves, [](int64_t i) { return static_cast<int32_t>(i); }, wanted, threads,
+      view, view.tree.leaves, [](int64_t i) { return static_cast<int32_t>(i); }, threads,
       [](const Link&) { return true; });
   Elements& out = all.elements;
   out.edge_points = static_cast<int64_t>(out.position.size()) - out.face_points;

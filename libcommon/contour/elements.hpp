@@ -32,8 +32,7 @@ struct Elements {
 LargeArray<int32_t> spoiled_of(const ComplexView& complex, const LargeArray<int32_t>& leaves,
                                const LargeArray<int32_t>* ends, int threads);
 
-/// inside, outside: sides to make elements on. The order follows the octree's curve, whatever the threads.
-/// Positive where nothing is spoiled.
-Elements make_elements(const ComplexView& complex, bool inside, bool outside, int threads);
+/// Of both sides. The order follows the octree's curve, whatever the threads. Positive where nothing is spoiled.
+Elements make_elements(const ComplexView& complex, int threads);
 
 } // namespace molmesh::contour

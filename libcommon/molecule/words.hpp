@@ -9,6 +9,14 @@
 
 namespace molmesh {
 
+/// Of the 128 characters of ASCII, in any locale.
+constexpr bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+constexpr bool is_letter(char c) {
+  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+}
+
 /// Words between blanks (spaces, tabs).
 std::vector<std::string_view> words(std::string_view text);
 /// `text` without blanks at its ends.

@@ -38,13 +38,7 @@ public:
   /// count[i] → sum of count[0..i), in place; slot n, one more, gets the total.
   template <class T>
   T scan(const char*, T* count, int64_t n) {
-    T sum{};
-    for (int64_t i = 0; i <= n; ++i) {
-      const T c = i < n ? count[i] : T{};
-      count[i] = sum;
-      sum += c;
-    }
-    return sum;
+    return count[n] = exclusive_scan(count, n);
   }
   /// Ascending keys; equal keys by their values.
   template <class K, class V>

@@ -70,14 +70,18 @@ T reduce(int64_t n, int threads, T init, F&& f, C&& combine, int64_t grain = 409
 
 /// count[i] → sum of count[0..i), in place; returns the total. Count → scan → fill instead of atomic appends.
 template <class T>
-T exclusive_scan(std::vector<T>& count) {
+T exclusive_scan(T* count, int64_t n) {
   T sum{};
-  for (T& c : count) {
-    const T n = c;
-    c = sum;
-    sum += n;
+  for (int64_t i = 0; i < n; ++i) {
+    const T c = count[i];
+    count[i] = sum;
+    sum += c;
   }
   return sum;
+}
+template <class T>
+T exclusive_scan(std::vector<T>& count) {
+  return exclusive_scan(count.data(), static_cast<int64_t>(count.size()));
 }
 
 /// The i in [0, n) with keep(i), ascending.

@@ -29,8 +29,7 @@ inline constexpr double least_moved_volume = 1e-4;
 template <class Out>
 class FacePass {
 public:
-  HD FacePass(const ComplexView& c, const bool wanted[2], Out& out)
-      : c_(c), wanted_{wanted[0], wanted[1]}, out_(out) {}
+  HD FacePass(const ComplexView& c, Out& out) : c_(c), out_(out) {}
 
   HD void leaf(int32_t leaf) {
     const int level = c_.tree.level[leaf];
@@ -98,11 +97,8 @@ private:
   HD void face(int32_t leaf, int f, int32_t other) {
     const Side mine = c_.side[leaf], its = other < 0 ? mine : c_.side[other];
     const bool both_crossed = mine == Side::crossed && its == Side::crossed;
-    if (!both_crossed) {
-      const Side side = mine == Side::crossed ? its : mine;
-      if (!wanted_[side == Side::inside] && mine != Side::crossed && its != Side::crossed)
-        return;
-    }
+    if (Out::checks && mine != Side::crossed && its != Side::crossed)
+      return;
     const int corner[4] = {face_corner_of(f, 0), face_corner_of(f, 1), face_corner_of(f, 2), face_corner_of(f, 3)};
     const auto vertex = [&](int k) { return c_.corner_vertex(leaf, k); };
     // Only fine surface cells have ambiguous faces.
@@ -182,7 +178,7 @@ private:
         out_.link.push_back(in_a ? Link{a, b, behind, via, front} : Link{b, a, front, via, behind});
         continue;
       }
-      if (!wanted_[in_a])
+      if (Out::checks)
         continue;
       if (via == no_vertex) {
         out_.tet.push_back({a, b, behind, front});
@@ -267,16 +263,15 @@ private:
   }
 
   const ComplexView& c_;
-  bool wanted_[2];
   unsigned smaller_ = 0; ///< bit f: smaller cells across the leaf's face f
   Out& out_;
 };
 
 /// The elements of the faces that a leaf owns, and the links they add to sign-change edges. A face belongs to its
-/// smaller cell, of two equal ones to the lower. wanted[0]: outside, wanted[1]: inside.
+/// smaller cell, of two equal ones to the lower.
 template <class Out>
-HD void make_faces(const ComplexView& complex, int32_t leaf, const bool wanted[2], Out& out) {
-  FacePass<Out>(complex, wanted, out).leaf(leaf);
+HD void make_faces(const ComplexView& complex, int32_t leaf, Out& out) {
+  FacePass<Out>(complex, out).leaf(leaf);
 }
 
 } // namespace molmesh::contour::detail

@@ -102,35 +102,28 @@ HD inline bool clearly_positive(const RingVertices& v, int32_t inside, int32_t o
 
 /// Elements of the ring with the edge's crossing point at its middle.
 template <class Out>
-HD void add_round_point(const RingVertices& v, int32_t a, int32_t b, const Ring& ring, Vec3d m,
-                        const bool wanted[2], Out& out) {
+HD void add_round_point(const RingVertices& v, int32_t a, int32_t b, const Ring& ring, Vec3d m, Out& out) {
   const int k = ring.n;
   const auto p = [&](int i) { return ring.vertex[i % k]; };
   const int32_t middle = out.add_point(m, 0);
   for (int i = 0; i < (ring.closed ? k : k - 1); ++i) {
-    if (wanted[1])
-      out.tet.push_back({a, middle, p(i), p(i + 1)});
-    if (wanted[0])
-      out.tet.push_back({b, middle, p(i + 1), p(i)});
+    out.tet.push_back({a, middle, p(i), p(i + 1)});
+    out.tet.push_back({b, middle, p(i + 1), p(i)});
     out.add_triangle({middle, p(i), p(i + 1)}, a, b, surface);
   }
   if (ring.closed)
     return;
   const int32_t first = p(0), last = p(k - 1);
-  if (wanted[1]) {
-    out.add_triangle({a, middle, last}, a, a, v.wall_of(last));
-    out.add_triangle({middle, a, first}, a, a, v.wall_of(first));
-  }
-  if (wanted[0]) {
-    out.add_triangle({middle, b, last}, b, b, v.wall_of(last));
-    out.add_triangle({b, middle, first}, b, b, v.wall_of(first));
-  }
+  out.add_triangle({a, middle, last}, a, a, v.wall_of(last));
+  out.add_triangle({middle, a, first}, a, a, v.wall_of(first));
+  out.add_triangle({middle, b, last}, b, b, v.wall_of(last));
+  out.add_triangle({b, middle, first}, b, b, v.wall_of(first));
 }
 
 /// links [begin, end): all links of one edge. The ring is closed, or at a wall an open chain from wall point to
 /// wall point.
 template <class Out>
-HD void make_ring(const RingVertices& v, const Link* begin, const Link* end, const bool wanted[2], Out& out) {
+HD void make_ring(const RingVertices& v, const Link* begin, const Link* end, Out& out) {
   Ring ring;
   trace(begin, end, ring);
   if (ring.broken)
@@ -177,10 +170,8 @@ HD void make_ring(const RingVertices& v, const Link* begin, const Link* end, con
     if constexpr (!Out::checks)
       for (int t = 0; t < triangles; ++t) {
         const Tri& q = split[t];
-        if (wanted[1])
-          out.tet.push_back({a, q[0], q[1], q[2]});
-        if (wanted[0])
-          out.tet.push_back({b, q[0], q[2], q[1]});
+        out.tet.push_back({a, q[0], q[1], q[2]});
+        out.tet.push_back({b, q[0], q[2], q[1]});
         out.add_triangle(q, a, b, surface);
       }
     return;
@@ -198,7 +189,7 @@ HD void make_ring(const RingVertices& v, const Link* begin, const Link* end, con
       if (p(i) < v.complex_vertices)
         out.spoiled.push_back(p(i));
   } else {
-    add_round_point(v, a, b, ring, m, wanted, out);
+    add_round_point(v, a, b, ring, m, out);
   }
 }
 

@@ -67,7 +67,8 @@ int64_t trilinear_euler(const BlockGrid& grid) {
             if ((v[c] > 0) == (v[c ^ bit] > 0))
               join(c, c ^ bit);
         for (int f = 0; f < 6; ++f) {
-          const int* c = contour::face_corner[f];
+          const int c[4] = {contour::face_corner_of(f, 0), contour::face_corner_of(f, 1),
+                            contour::face_corner_of(f, 2), contour::face_corner_of(f, 3)};
           const contour::Diagonal d = contour::face_diagonal(v[c[0]], v[c[1]], v[c[2]], v[c[3]]);
           if (d != contour::Diagonal::none)
             join(contour::diagonal_corners(f, d)[0], contour::diagonal_corners(f, d)[1]);

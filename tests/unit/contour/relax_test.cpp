@@ -31,7 +31,8 @@ contour::Elements fan(Vec3d middle, int32_t label) {
     e.position.push_back({c & 1 ? 1. : -1., c & 2 ? 1. : -1., c & 4 ? 1. : -1.});
   e.position.push_back(middle);
   for (int f = 0; f < 6; ++f) {
-    const int* c = contour::face_corner[f];
+    const int c[4] = {contour::face_corner_of(f, 0), contour::face_corner_of(f, 1), contour::face_corner_of(f, 2),
+                      contour::face_corner_of(f, 3)};
     for (const std::array<int, 3> t : {std::array<int, 3>{c[0], c[1], c[2]}, {c[2], c[3], c[0]}}) {
       e.tet.push_back({t[0], t[2], t[1], 8});
       e.tri.push_back({t[0], t[1], t[2]});
