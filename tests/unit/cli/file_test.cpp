@@ -2,6 +2,7 @@
 #include "child.hpp"
 #include "cli/file.hpp"
 #include "error.hpp"
+#include "unit/refusal.hpp"
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <sys/resource.h>
@@ -128,13 +129,7 @@ TEST_CASE("a closed standard output is never replaced by a file opened later") {
 TEST_CASE("an input that is absent or a folder is status 3 and named") {
   const Folder folder;
   for (const std::string& path : {folder / "absent", folder.path.string()}) {
-    try {
-      cli::InputFile file(path);
-      FAIL("opened " + path);
-    } catch (const Error& e) {
-      CHECK(e.status == Status::bad_input);
-      CHECK(std::string(e.what()).rfind(path + ": ", 0) == 0);
-    }
+    CHECK(test::refusal(Status::bad_input, [&] { cli::InputFile file(path); }).rfind(path + ": ", 0) == 0);
   }
   CHECK(cli::InputFile("-").name() == "<stdin>");
 }

@@ -3,6 +3,7 @@
 #include "cuda/par/host.hpp"
 #include "density/density.hpp"
 #include "unit/density/completeness.hpp"
+#include "unit/refusal.hpp"
 #include <catch2/catch.hpp>
 
 using namespace molmesh;
@@ -147,13 +148,8 @@ TEST_CASE("device density: a budget that no slab fits in is an error in one line
   const Hierarchy h = test::random_chains(3, 40, 8, {0.4, 1}, 3);
   density::Options o;
   o.spacing = 0.6;
-  try {
-    on_backend(h, o, 1, 100000);
-    FAIL("accepted");
-  } catch (const Error& e) {
-    CHECK(e.status == Status::failed);
-    CHECK(std::string(e.what()).find("not enough memory on the device") != std::string::npos);
-  }
+  const std::string line = test::refusal(Status::failed, [&] { on_backend(h, o, 1, 100000); });
+  CHECK(line.find("not enough memory on the device") != std::string::npos);
 }
 
 TEST_CASE("the molecule's tree finds exactly the clusters within their cutoff, in order") {

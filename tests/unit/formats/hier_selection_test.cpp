@@ -3,6 +3,7 @@
 #include "formats/hier/hier.hpp"
 #include "formats/pdb/hier_selection.hpp"
 #include "formats/pdb/pdb.hpp"
+#include "unit/refusal.hpp"
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <numeric>
@@ -34,13 +35,7 @@ std::string selected(const std::string& selection, const Hierarchy& h = hierarch
 
 std::string refusal(const std::string& selection, const Hierarchy& h = hierarchy(),
                     Status status = Status::bad_input) {
-  try {
-    selected(selection, h);
-  } catch (const Error& e) {
-    CHECK(e.status == status);
-    return e.what();
-  }
-  return "";
+  return test::refusal(status, [&] { selected(selection, h); });
 }
 
 } // namespace

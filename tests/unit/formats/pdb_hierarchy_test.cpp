@@ -141,7 +141,7 @@ TEST_CASE("levels may be any, in any sensible order") {
   for (const std::vector<std::string>& bad :
        {std::vector<std::string>{"residue", "chain"}, {"chain", "chain"}, {"atom"}, {"domain", "residue"}}) {
     o.levels = bad;
-    CHECK_FALSE(refusal(structure(), o).empty());
+    CHECK_FALSE(refusal(structure(), o, "x.pdb", Status::usage).empty());
   }
 }
 

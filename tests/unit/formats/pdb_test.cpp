@@ -164,7 +164,7 @@ TEST_CASE("waters, hydrogens, hetero atoms and selections drop what they say, an
   CHECK(refusal(text, o) ==
         "x.pdb: found no atom that is kept (dropped: 2 of waters, 4 outside --select), expected at least one");
   o.select = "//A//[C";
-  CHECK(refusal(text, o).find("syntax") != std::string::npos);
+  CHECK(refusal(text, o, "x.pdb", Status::usage).find("syntax") != std::string::npos);
 }
 
 TEST_CASE("models: the first, one by number, or all with unique chain names") {

@@ -3,6 +3,7 @@
 #include "error.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/pdb/pdb.hpp"
+#include "unit/refusal.hpp"
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -27,13 +28,8 @@ inline Converted convert(const std::string& bytes, const formats::PdbOptions& op
 
 /// The message of the error; empty when there is none.
 inline std::string refusal(const std::string& bytes, const formats::PdbOptions& options = {},
-                           const std::string& name = "x.pdb") {
-  try {
-    convert(bytes, options, name);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+                           const std::string& name = "x.pdb", Status status = Status::bad_input) {
+  return refusal(status, [&] { convert(bytes, options, name); });
 }
 
 /// One line of the PDB format.

@@ -2,6 +2,7 @@
 #include "error.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "mesh/adjacency.hpp"
+#include "unit/refusal.hpp"
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -44,13 +45,7 @@ std::string written(const TetMesh& m) {
 
 /// The message of a file that must be refused.
 std::string refusal(const std::string& text) {
-  try {
-    read_text(text);
-  } catch (const Error& e) {
-    CHECK(e.status == Status::bad_input);
-    return e.what();
-  }
-  return "";
+  return test::refusal(Status::bad_input, [&] { read_text(text); });
 }
 
 /// Two tetrahedra on one face, regions 1 and 2.

@@ -1,6 +1,7 @@
 // hierarchy_test.cpp — check() finds each broken rule.
 #include "error.hpp"
 #include "molecule/hierarchy.hpp"
+#include "unit/refusal.hpp"
 #include <catch2/catch.hpp>
 
 using namespace molmesh;
@@ -20,13 +21,7 @@ template <class Break>
 std::string broken(Break b) {
   Hierarchy h = good();
   b(h);
-  try {
-    check(h, "F");
-  } catch (const Error& e) {
-    CHECK(e.status == Status::bad_input);
-    return e.what();
-  }
-  return "";
+  return test::refusal(Status::bad_input, [&] { check(h, "F"); });
 }
 
 } // namespace

@@ -1,0 +1,23 @@
+// refusal.hpp — what a bad input is answered with.
+#pragma once
+#include "error.hpp"
+#include <catch2/catch.hpp>
+#include <string>
+
+namespace molmesh::test {
+
+/// The one line with which `action` is refused; the empty text when it is not.
+template <class Action>
+std::string refusal(Status status, Action action) {
+  try {
+    action();
+  } catch (const Error& e) {
+    const std::string line = e.what();
+    CHECK(e.status == status);
+    CHECK(line.find('\n') == std::string::npos);
+    return line;
+  }
+  return "";
+}
+
+} // namespace molmesh::test
