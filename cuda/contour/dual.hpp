@@ -1,6 +1,7 @@
 // dual.hpp — contour::make_dual on a Backend, by the host's own passes and functions: the same complex and
 // elements.
 #pragma once
+#include "contour/detail/octree_index.hpp"
 #include "contour/dual.hpp"
 #include "cuda/contour/elements.hpp"
 #include "cuda/contour/selection.hpp"
@@ -39,19 +40,18 @@ public:
     const int64_t points = leaves + leaves / 4 + 1024; // a leaf has about one corner of its own
     const int64_t complex = leaves * (1 + 32 + 4 + 4 + 28) + points * (28 + 12 + 8 + 1 + 4);
     const int64_t passes = std::max(leaves * (32 + 4 + 4) + points, cells * 200 + (leaves + points) * 9);
-    return static_cast<int64_t>(in.tree.slots().size() * sizeof(int32_t)) + complex + passes;
+    return 24 * static_cast<int64_t>(in.tree.blocks().size()) + complex + passes;
   }
 
 private:
   contour::Dual on_device(const contour::DualInput& in, const std::function<void(const std::string&)>& on_phase) {
     on_phase("dual vertices");
     contour::OctreeView tree = in.tree.view();
-    const Array<int32_t> slot = b_.upload(tree.slot, static_cast<int64_t>(in.tree.slots().size()));
     tree.key = selected_.leaves.key.data();
     tree.level = selected_.leaves.level.data();
     tree.block = selected_.leaves.block.data();
-    tree.slot = slot.data();
     tree.large = selected_.leaves.large.data();
+    const Array<uint32_t> slot = contour::detail::index_blocks(b_, selected_.leaves.block.n, tree);
     const auto& surface = selected_.surface;
     contour::detail::ComplexPasses<Backend> passes(b_, selected_.lattice->view, tree, surface.cells.data(),
                                                    surface.samples.data(), surface.cells.n);

@@ -1,6 +1,7 @@
 // components.hpp — connected parts of the inside and the outside, and the region each belongs to (design §3).
 #pragma once
 #include "contour/complex.hpp"
+#include "contour/detail/region_items.hpp"
 #include "contour/elements.hpp"
 #include <cstdint>
 #include <vector>
@@ -15,8 +16,8 @@ struct Component {
 };
 
 struct Components {
-  std::vector<Component> component; ///< ordered by their first vertex
-  LargeArray<int32_t> of_vertex;    ///< [vertices of the complex] -1 for dual vertices
+  std::vector<Component> component;     ///< ordered by their first vertex
+  LargeArray<uint8_t> region_of_vertex; ///< [vertices of the complex] Region, 0 for dual vertices
 };
 
 struct RegionOptions {
@@ -27,5 +28,9 @@ struct RegionOptions {
 /// Parts of one side are joined by edges of the complex. Outside parts that do not reach a wall are cavities.
 Components find_components(const ComplexView& c, const Elements& elements, const RegionOptions& options,
                            int threads);
+
+/// Volumes and regions of parts whose surfaces these are.
+void assign_regions(std::vector<Component>& part, const std::vector<detail::PartSurface>& surfaces,
+                    const RegionOptions& options);
 
 } // namespace molmesh::contour

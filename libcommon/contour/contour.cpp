@@ -25,7 +25,7 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   refine_options.adapt = options.adapt;
   refine_options.inside = options.meshed != Options::exterior;
   refine_options.outside = with_outside;
-  const Octree tree(lattice.cells, stages.select_leaves(lattice, found, refine_options, threads));
+  const Octree tree(lattice.cells, stages.select_leaves(lattice, found, refine_options, threads), threads);
   // Elements of both sides, whichever is asked for: the surface is to move.
   Dual dual = stages.make_dual({lattice, tree, found, threads}, on_phase);
   const Complex& complex = dual.complex;

@@ -8,23 +8,38 @@
 // mesh is valid by construction: what is chosen is only how good it is.
 #pragma once
 #include "contour/complex.hpp"
-#include "mesh/tet_mesh.hpp"
+#include "contour/detail/elements_view.hpp"
 #include <array>
 #include <cstdint>
 #include <vector>
 
 namespace molmesh::contour {
 
-/// Elements before regions are told apart.
-struct Elements {
-  LargeArray<Tet> tet; ///< positive; tet[0] is a vertex of the complex on the element's side
-  LargeArray<Tri> tri; ///< out of the molecule, or out of the box
-  LargeArray<std::array<int32_t, 2>>
-      tri_sides;                ///< [tris] vertices of the complex behind and in front; equal on a wall
-  LargeArray<int32_t> boundary; ///< [tris] Boundary
-  LargeArray<Vec3d> position;   ///< all vertices: those of the complex, then face, wall and edge points
+/// Elements before regions are told apart, in the arrays of a Memory.
+template <class Memory>
+struct ElementArrays {
+  template <class T>
+  using Array = typename Memory::template Array<T>;
+
+  Array<Tet> tet;                          ///< positive; tet[0] is a vertex of the complex on the element's side
+  Array<Tri> tri;                          ///< out of the molecule, or out of the box
+  Array<std::array<int32_t, 2>> tri_sides; ///< [tris] vertices of the complex behind and in front; equal on a wall
+  Array<int32_t> boundary;                 ///< [tris] Boundary
+  Array<Vec3d> position;                   ///< all vertices: those of the complex, then face, wall and edge points
   int64_t face_points = 0, edge_points = 0;
+
+  ElementsView view() const {
+    return {tet.data(),
+            static_cast<int64_t>(tet.size()),
+            tri.data(),
+            tri_sides.data(),
+            boundary.data(),
+            static_cast<int64_t>(tri.size()),
+            const_cast<Vec3d*>(position.data()),
+            static_cast<int64_t>(position.size())};
+  }
 };
+using Elements = ElementArrays<HostMemory>;
 
 /// Vertices of the complex that elements without positive volume, on either side, would hang on, ascending: where
 /// grid points have moved the cells are no boxes. Of the leaves' faces, and of the rings of edges with both ends

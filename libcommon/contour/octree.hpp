@@ -6,7 +6,6 @@
 #include "geom/morton.hpp"
 #include "geom/vec.hpp"
 #include <cstdint>
-#include <vector>
 
 namespace molmesh::contour {
 
@@ -27,10 +26,12 @@ struct OctreeView {
   int32_t leaves = 0;
   Vec3i cells;
   const Block* block = nullptr;
-  const int32_t* slot = nullptr; ///< [mask + 1] open addressing into block, -1 free
+  const uint32_t* slot = nullptr; ///< [mask + 1] open addressing into block
   uint64_t mask = 0;
   const int32_t* large = nullptr; ///< [large_leaves] leaves of level 3 and more, ascending
   int32_t large_leaves = 0;
+
+  static constexpr uint32_t free_slot = ~uint32_t{0};
 
   HD int32_t size() const { return leaves; }
   HD Vec3i corner(int32_t leaf) const { return morton_point(key[leaf]); } ///< lower corner, lattice point
@@ -64,7 +65,7 @@ struct OctreeView {
 
 private:
   HD const Block* find_block(uint64_t k) const {
-    for (uint64_t s = mix(k >> 9) & mask; slot[s] >= 0; s = (s + 1) & mask)
+    for (uint64_t s = mix(k >> 9) & mask; slot[s] != free_slot; s = (s + 1) & mask)
       if (block[slot[s]].key == k >> 9)
         return block + slot[s];
     return nullptr;
@@ -92,7 +93,7 @@ struct LeafList {
 class Octree {
 public:
   /// cells: size of the domain in fine cells; leaves never reach beyond it.
-  Octree(Vec3i cells, LeafList leaves);
+  Octree(Vec3i cells, LeafList leaves, int threads = 1);
   Octree(const Octree&) = delete;
   Octree& operator=(const Octree&) = delete;
 
@@ -104,7 +105,6 @@ public:
   /// Points into the tree.
   const OctreeView& view() const { return view_; }
   const LargeArray<OctreeView::Block>& blocks() const { return block_; }
-  const std::vector<int32_t>& slots() const { return slot_; }
   const LargeArray<int32_t>& large_leaves() const { return large_; }
 
   const LargeArray<uint64_t> key;  ///< ascending; Morton code of the lower corner
@@ -113,7 +113,7 @@ public:
 private:
   LargeArray<OctreeView::Block> block_;
   LargeArray<int32_t> large_;
-  std::vector<int32_t> slot_;
+  LargeArray<uint32_t> slot_;
   OctreeView view_;
 };
 

@@ -4,6 +4,7 @@
 #include "par/par.hpp"
 #include "par/work.hpp"
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -27,13 +28,20 @@ public:
     return Array<T>(static_cast<size_t>(n), value);
   }
   template <class T>
+  Array<T> upload(const T* from, int64_t n) {
+    return Array<T>(from, from + n);
+  }
+  template <class T>
   void download(const Array<T>& from, int64_t n, T* to) {
     std::copy_n(from.data(), n, to);
   }
-  /// item(i) for i in [0, n), each independent of the others.
+  /// item(i) for i in [0, n), each independent of the others; Item::grain at a time where it has one.
   template <class Item>
   void for_n(const char*, int64_t n, const Item& item, const Work& = {}) {
-    par::for_n(n, threads_, 256, item);
+    int64_t grain = 256;
+    if constexpr (requires { Item::grain; })
+      grain = Item::grain;
+    par::for_n(n, threads_, grain, item);
   }
   /// count[i] → sum of count[0..i), in place; slot n, one more, gets the total.
   template <class T>
@@ -51,6 +59,39 @@ public:
       values[i] = pair[static_cast<size_t>(i)].second;
     });
   }
+
+  // What contour/detail/passes.hpp makes of the above for other launchers, here by chunks that stay in the caches:
+
+  /// The elements of all items, in their order.
+  template <class T, class Item>
+  Array<T> gather(int64_t n, const Item& item) {
+    constexpr int64_t grain = 4096;
+    std::vector<int64_t> start(static_cast<size_t>((n + grain - 1) / grain));
+    const auto chunks = static_cast<int64_t>(start.size());
+    par::for_n(chunks, threads_, 1, [&](int64_t c) {
+      int64_t count = 0;
+      for (int64_t i = c * grain, end = std::min(n, i + grain); i < end; ++i)
+        count += item(i, static_cast<T*>(nullptr));
+      start[static_cast<size_t>(c)] = count;
+    });
+    Array<T> out(static_cast<size_t>(exclusive_scan(start)));
+    start.push_back(static_cast<int64_t>(out.size()));
+    par::for_n(chunks, threads_, 1, [&](int64_t c) {
+      T* to = out.data() + start[static_cast<size_t>(c)];
+      T* const last = out.data() + start[static_cast<size_t>(c + 1)];
+      for (int64_t i = c * grain; to < last; ++i)
+        to += item(i, to);
+    });
+    return out;
+  }
+  template <class Key, class Sized>
+  void place_by(int64_t n, int64_t keys, const Key& key, Sized sized) {
+    std::optional<decltype(sized(n))> place;
+    par::place_by(
+        n, keys, threads_, key, [&](int64_t slots) { place.emplace(sized(slots)); },
+        [&](int64_t slot, int64_t i) { (*place)(slot, i); });
+  }
+  int threads() const { return threads_; }
 
 private:
   int threads_;

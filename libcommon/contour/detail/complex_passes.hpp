@@ -24,9 +24,7 @@ struct GatherMoved {
 struct GatherInsideAtWall {
   ComplexView c;
   HD int64_t operator()(int64_t v, int32_t* out) const {
-    const Vec3i p = c.point[v], end = c.lattice.cells;
-    const bool wall = p.x == 0 || p.y == 0 || p.z == 0 || p.x == end.x || p.y == end.y || p.z == end.z;
-    if (!wall || !c.inside(static_cast<int32_t>(v)))
+    if (!c.at_wall(static_cast<int32_t>(v)) || !c.inside(static_cast<int32_t>(v)))
       return 0;
     if (out)
       *out = static_cast<int32_t>(v);

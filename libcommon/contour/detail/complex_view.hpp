@@ -29,6 +29,11 @@ struct ComplexView {
 
   HD int32_t vertices() const { return dual0 + tree.leaves + pieces; }
   HD bool inside(int32_t vertex) const { return value[vertex] > lattice.isovalue; }
+  /// Of a grid point: whether it lies on a wall of the lattice.
+  HD bool at_wall(int32_t vertex) const {
+    const Vec3i p = point[vertex], end = lattice.cells;
+    return p.x == 0 || p.y == 0 || p.z == 0 || p.x == end.x || p.y == end.y || p.z == end.z;
+  }
   HD bool is_split(int32_t leaf) const { return split[leaf] >= 0; }
   HD int32_t dual(int32_t leaf) const { return dual0 + leaf; }
   HD bool moved(int32_t vertex) const { return vertex < grid_vertices && has_moved[vertex]; }

@@ -9,11 +9,9 @@ namespace molmesh::contour::detail {
 inline constexpr uint64_t is_block = 0;
 
 HD inline int64_t add_nodes(uint64_t block, uint64_t nodes, int level, uint64_t word, KeyedWord* out) {
-  if (!out)
-    return count_bits(nodes);
-  for (; nodes; nodes &= nodes - 1)
-    *out++ = {(block << 6 | static_cast<uint64_t>(lowest_bit(nodes))) << 3 * level, word};
-  return 0;
+  for (uint64_t rest = nodes; out && rest; rest &= rest - 1)
+    *out++ = {(block << 6 | static_cast<uint64_t>(lowest_bit(rest))) << 3 * level, word};
+  return count_bits(nodes);
 }
 
 /// Nodes of the top level without children. Block i of a box.

@@ -3,6 +3,7 @@
 #include "geom/hd.hpp"
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace molmesh::contour::detail {
@@ -38,12 +39,62 @@ struct List {
 /// The elements of all items, in their order.
 template <class T, class Launcher, class Item>
 List<Launcher, T> gather(Launcher& m, const char* name, int64_t n, const Item& item) {
+  if constexpr (requires { m.template gather<T>(n, item); }) {
+    auto all = m.template gather<T>(n, item);
+    const auto total = static_cast<int64_t>(all.size());
+    return {std::move(all), total};
+  }
   auto count = m.template array<int64_t>(n + 1);
   m.for_n(name, n, CountElements<Item, T>{item, count.data()});
   const int64_t total = m.scan("scan", count.data(), n);
   List<Launcher, T> out{m.template array<T>(total), total};
   m.for_n(name, n, FillElements<Item, T>{item, count.data(), out.data()});
   return out;
+}
+
+template <class Key>
+struct CountKeyed {
+  Key key;
+  uint32_t* count;
+  HD void operator()(int64_t i) const { count[i] = key(i) >= 0; }
+};
+template <class Key>
+struct FillKeyed {
+  Key of;
+  const uint32_t* start;
+  uint32_t *key, *index;
+  HD void operator()(int64_t i) const {
+    if (const int64_t k = of(i); k >= 0) {
+      key[start[i]] = static_cast<uint32_t>(k);
+      index[start[i]] = static_cast<uint32_t>(i);
+    }
+  }
+};
+template <class Place>
+struct PlaceIndexed {
+  Place place;
+  const uint32_t* index;
+  HD void operator()(int64_t slot) const { place(slot, index[slot]); }
+};
+
+/// place(slot, i) for each i in [0, n) with key(i) ≥ 0, slots counting from 0 by ascending key, then ascending i.
+/// place: what sized(slots) makes. key(i) < keys ≤ 2^32, n < 2^32.
+template <class Launcher, class Key, class Sized>
+void place_by(Launcher& m, const char* name, int64_t n, int64_t keys, const Key& key, Sized sized) {
+  if constexpr (requires { m.place_by(n, keys, key, sized); }) {
+    m.place_by(n, keys, key, sized);
+  } else {
+    auto start = m.template array<uint32_t>(n + 1);
+    m.for_n(name, n, CountKeyed<Key>{key, start.data()}, {double(n) * 12});
+    const int64_t slots = m.scan("scan", start.data(), n);
+    auto keyed = m.template array<uint32_t>(slots), index = m.template array<uint32_t>(slots);
+    m.for_n(name, n, FillKeyed<Key>{key, start.data(), keyed.data(), index.data()}, {double(n) * 20});
+    start = {};
+    m.sort_pairs(name, keyed.data(), index.data(), slots);
+    keyed = {};
+    const auto place = sized(slots);
+    m.for_n(name, slots, PlaceIndexed<decltype(sized(slots))>{place, index.data()}, {double(slots) * 44});
+  }
 }
 
 struct KeyedWord {

@@ -1,4 +1,5 @@
-// raise.hpp — a flag that several threads may set at once. Host and device.
+// raise.hpp — what several threads may do to one place at once, with a result that does not know their order. Host
+// and device.
 #pragma once
 #include "geom/hd.hpp"
 #include <atomic>
@@ -6,12 +7,39 @@
 
 namespace molmesh::contour::detail {
 
-/// Only ever set, never read before the pass is over: the result does not know the order.
-HD inline void raise(uint8_t& flag) {
+/// Of a place that others may change meanwhile.
+template <class T>
+HD inline T seen(const T& place) {
 #ifdef __CUDA_ARCH__
-  flag = 1;
+  return *const_cast<const volatile T*>(&place);
 #else
-  std::atomic_ref<uint8_t>(flag).store(1, std::memory_order_relaxed);
+  return std::atomic_ref<T>(const_cast<T&>(place)).load(std::memory_order_relaxed);
+#endif
+}
+template <class T>
+HD inline void put(T& place, T value) {
+#ifdef __CUDA_ARCH__
+  *const_cast<volatile T*>(&place) = value;
+#else
+  std::atomic_ref<T>(place).store(value, std::memory_order_relaxed);
+#endif
+}
+
+/// A flag, only ever set, and read when the pass is over.
+HD inline void raise(uint8_t& flag) {
+  put(flag, uint8_t{1});
+}
+
+/// Lowers the place to `value` where that is less; returns what was there. The least of all stays.
+HD inline uint32_t lower(uint32_t& place, uint32_t value) {
+#ifdef __CUDA_ARCH__
+  return atomicMin(&place, value);
+#else
+  const std::atomic_ref<uint32_t> at(place);
+  uint32_t was = at.load(std::memory_order_relaxed);
+  while (value < was && !at.compare_exchange_weak(was, value, std::memory_order_relaxed)) {
+  }
+  return was;
 #endif
 }
 

@@ -97,15 +97,12 @@ struct MakeSurfaceCells {
   const KeyedWord* block;
   const uint64_t* crossed;
   HD int64_t operator()(int64_t i, SurfaceCell* out) const {
-    uint64_t bits = crossed[i];
-    if (!out)
-      return count_bits(bits);
-    for (; bits; bits &= bits - 1, ++out) {
+    for (uint64_t bits = crossed[i]; out && bits; bits &= bits - 1, ++out) {
       out->key =
           block[i >> 3].key << 9 | static_cast<uint64_t>(i & 7) << 6 | static_cast<uint64_t>(lowest_bit(bits));
       l.corner_values(morton_point(out->key), out->value);
     }
-    return 0;
+    return count_bits(crossed[i]);
   }
 };
 

@@ -1,6 +1,10 @@
 // contour_test.cpp — the device's complex and elements, run by the host: the same, bit by bit, as
 // contour::make_dual makes.
+#include "contour/assembly.hpp"
 #include "contour/contour.hpp"
+#include "contour/detail/assembly_passes.hpp"
+#include "contour/detail/region_passes.hpp"
+#include "cuda/contour/device_mesh.hpp"
 #include "cuda/contour/dual.hpp"
 #include "cuda/par/host.hpp"
 #include "geom/log.hpp"
@@ -23,6 +27,26 @@ struct Seen {
 template <class T>
 bool same(const LargeArray<T>& device, const LargeArray<T>& host) {
   return device.size() == host.size() && std::equal(device.begin(), device.end(), host.begin());
+}
+
+/// Regions and mesh from these elements: how many of their arrays differ.
+int64_t differ_after(cuda::HostBackend& backend, const contour::Dual& d, const Options& o) {
+  const contour::ComplexView& c = d.complex.view;
+  const contour::RegionOptions options{o.fill_cavities, o.drop_below};
+  const contour::Components host = contour::find_components(c, d.elements, options, 1);
+  const contour::detail::RegionPasses<cuda::HostBackend> device(backend, c, d.elements.view(), options);
+  int64_t differ = device.component.size() != host.component.size();
+  for (size_t i = 0; differ == 0 && i < host.component.size(); ++i) {
+    const contour::Component &a = device.component[i], &b = host.component[i];
+    differ += a.inside != b.inside || a.at_wall != b.at_wall || a.volume != b.volume || a.region != b.region;
+  }
+  differ += !std::equal(host.region_of_vertex.begin(), host.region_of_vertex.end(), device.region.data());
+  cuda::DeviceMesh<cuda::HostBackend> room(backend);
+  contour::detail::assemble(backend, d.elements.view(), device.region.data(), device.region.size(),
+                            contour::detail::wanted(o.meshed), room);
+  const TetMesh a = room.on_host(), b = contour::assemble(d.elements, host, o.meshed, 1);
+  return differ + (a.tet != b.tet) + (a.region != b.region) + (a.point != b.point) + (a.tri != b.tri) +
+         (a.boundary != b.boundary);
 }
 
 /// The whole of contour(), complex and elements made by both.
@@ -52,6 +76,8 @@ Seen compare(const BlockGrid& grid, const Options& options, int threads = 1,
     seen.face_points += f.face_points;
     seen.edge_points += f.edge_points;
     ++seen.calls;
+    cuda::HostBackend rest(threads);
+    seen.differ += differ_after(rest, host, options);
     return device;
   };
   contour::contour(
@@ -82,7 +108,9 @@ TEST_CASE(
         }
         options.meshed = meshed;
         options.adapt = adapt;
-        const Seen s = compare(grid, options);
+        options.fill_cavities = trial % 3 == 0;
+        options.drop_below = trial % 4 == 1 ? 1.5 : 0;
+        const Seen s = compare(grid, options, trial % 8 == 7 ? 3 : 1);
         CHECK(s.differ == 0);
         sum.calls += s.calls;
         sum.face_points += s.face_points;
