@@ -174,15 +174,6 @@ private:
     return v >= grid_vertices || (begin < n && ends[begin] == v);
   }
 };
-struct Flagged {
-  const uint8_t* flag;
-  HD int64_t operator()(int64_t i, int32_t* out) const {
-    if (flag[i] && out)
-      *out = int32_t(i);
-    return flag[i];
-  }
-};
-
 /// Links in order: by where they come from, then, keeping that, by edge.
 struct LinkFrom {
   const Link* link;

@@ -44,7 +44,7 @@ public:
     const Rings rings = join(more, ends, view.grid_vertices);
     make(MakeRings<true>{vertices(view, rings), rings.link.data(), rings.first.data()}, rings.edges,
          view.vertices(), nullptr, nullptr, flag.data());
-    return contour::detail::gather<int32_t>(b_, "spoiled", view.vertices(), Flagged{flag.data()});
+    return contour::detail::gather<int32_t>(b_, "spoiled", view.vertices(), contour::detail::Flagged{flag.data()});
   }
   int64_t runs() const { return runs_; }
 

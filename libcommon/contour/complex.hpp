@@ -4,7 +4,6 @@
 #include "contour/detail/complex_view.hpp"
 #include "density/large_array.hpp"
 #include <cstdint>
-#include <vector>
 
 namespace molmesh::contour {
 
@@ -39,7 +38,7 @@ struct HostMemory {
 };
 using Complex = ComplexArrays<HostMemory>;
 
-/// [vertices] 1: a grid point of no surface cell; 2 + level: a dual vertex of no surface cell; 0: any other.
-std::vector<uint8_t> lattice_classes(const Complex& complex, int threads);
+/// As detail::LatticeClasses says.
+LargeArray<uint8_t> lattice_classes(const Complex& complex, int threads);
 
 } // namespace molmesh::contour

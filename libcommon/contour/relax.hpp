@@ -10,8 +10,9 @@ namespace molmesh::contour {
 /// For elements of both sides: then inside and outside come out the same alone and together. No vertex's worst
 /// element gets worse, all stay positive by the exact predicate; the same result for any number of threads.
 /// Returns how often a vertex moved.
-/// lattice_class: Complex::lattice_classes; the lattice's own elements need no look. Empty: all are looked at.
-int64_t relax(Elements& elements, const std::vector<uint8_t>& lattice_class, const improve::Target* surface,
+/// lattice_class: lattice_classes of the complex; the lattice's own elements need no look. Empty: all are looked
+/// at.
+int64_t relax(Elements& elements, const LargeArray<uint8_t>& lattice_class, const improve::Target* surface,
               int threads);
 
 } // namespace molmesh::contour

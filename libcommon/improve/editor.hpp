@@ -6,6 +6,7 @@
 #include "improve/guard.hpp"
 #include "improve/search.hpp"
 #include "improve/sheets.hpp"
+#include "improve/spokes.hpp"
 #include "improve/target.hpp"
 #include <array>
 #include <cstdint>

@@ -2,33 +2,30 @@
 // The worst quality is not smooth where two elements tie, so steps are tried, not derived: first along the gradient
 // of the worst element, then along a fixed set of directions, with halving step lengths.
 #pragma once
-#include "improve/spokes.hpp"
-#include <array>
+#include "geom/vec.hpp"
 #include <cmath>
 
 namespace molmesh::improve {
 
 /// Raises best = worth.worst(x) by moving x until it reaches the goal or no step helps. `basis`: up to three
 /// orthonormal directions to search. constrain(y) moves a trial onto what the vertex is bound to, or refuses;
-/// accept(y) has the last word. Worth: worst() and ascent() as in Spokes.
+/// accept(y) has the last word. Worth: worst() and ascent() as in Spokes. Host and device.
 template <class Worth, class Constrain, class Accept>
-bool pattern_search(Worth& worth, Vec3d& x, float& best, float goal, double length, const Vec3d* basis,
-                    int dimensions, Constrain constrain, Accept accept) {
-  std::array<Vec3d, 14> direction;
+HD bool pattern_search(Worth& worth, Vec3d& x, float& best, float goal, double length, const Vec3d* basis,
+                       int dimensions, Constrain constrain, Accept accept) {
+  Vec3d direction[14];
   int directions = 0;
   for (int a = 0; a < dimensions; ++a) {
-    direction[size_t(directions++)] = basis[a];
-    direction[size_t(directions++)] = -basis[a];
+    direction[directions++] = basis[a];
+    direction[directions++] = -basis[a];
   }
   if (dimensions == 2)
     for (int k = 0; k < 4; ++k)
-      direction[size_t(directions++)] =
-          std::sqrt(0.5) * ((k & 1 ? 1. : -1.) * basis[0] + (k & 2 ? 1. : -1.) * basis[1]);
+      direction[directions++] = std::sqrt(0.5) * ((k & 1 ? 1. : -1.) * basis[0] + (k & 2 ? 1. : -1.) * basis[1]);
   if (dimensions == 3)
     for (int k = 0; k < 8; ++k)
-      direction[size_t(directions++)] =
-          std::sqrt(1. / 3) *
-          ((k & 1 ? 1. : -1.) * basis[0] + (k & 2 ? 1. : -1.) * basis[1] + (k & 4 ? 1. : -1.) * basis[2]);
+      direction[directions++] = std::sqrt(1. / 3) * ((k & 1 ? 1. : -1.) * basis[0] + (k & 2 ? 1. : -1.) * basis[1] +
+                                                     (k & 4 ? 1. : -1.) * basis[2]);
   const auto try_step = [&](Vec3d d, double step) {
     Vec3d y = x + step * d;
     if (!constrain(y))
@@ -56,7 +53,7 @@ bool pattern_search(Worth& worth, Vec3d& x, float& best, float goal, double leng
         continue;
       }
       for (int d = 0; d < directions && !again; ++d)
-        again = try_step(direction[size_t(d)], step);
+        again = try_step(direction[d], step);
       moved |= again;
     }
   }

@@ -1,5 +1,6 @@
 // spokes.cpp — tet_quality over eight lanes in the compiler's own vectors, compiled for AVX2 and for any processor.
 #include "improve/spokes.hpp"
+#include "improve/spoke_quality.hpp"
 #include <algorithm>
 #include <cstring>
 
@@ -22,58 +23,35 @@ void load(const std::array<float, 8>& lane, V& v) {
 #endif
 
 void Spokes::add(const std::array<Vec3d, 4>& p, int moving) {
-  // Even permutations that bring the moving vertex to the front.
-  static constexpr int order[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
-  const int* o = order[moving];
+  const auto corner = [&](int i) { return p[size_t(spoke_corner(moving, i))]; };
   if (scale_ == 0)
-    scale_ = std::max(norm(p[size_t(o[1])] - p[size_t(o[2])]), 1e-300);
-  const Vec3f a = local(p[size_t(o[1])]), b = local(p[size_t(o[2])]), c = local(p[size_t(o[3])]);
-  const Vec3f n = cross(b - a, c - a);
+    scale_ = std::max(norm(corner(1) - corner(2)), 1e-300);
+  const Spoke<float> s = make_spoke(local(corner(1)), local(corner(2)), local(corner(3)));
   const int lane = static_cast<int>(count_++ % lanes);
   if (lane == 0)
     group_.emplace_back();
   Group& g = group_.back();
   for (int l = lane; l < (lane == 0 ? lanes : lane + 1); ++l) { // a fresh group is full of its first element
     const auto i = size_t(l);
-    g.ax[i] = a.x, g.ay[i] = a.y, g.az[i] = a.z;
-    g.bx[i] = b.x, g.by[i] = b.y, g.bz[i] = b.z;
-    g.cx[i] = c.x, g.cy[i] = c.y, g.cz[i] = c.z;
-    g.nx[i] = n.x, g.ny[i] = n.y, g.nz[i] = n.z;
-    g.r[i] = 1 / norm2(n);
-    g.ab[i] = norm2(b - a), g.bc[i] = norm2(c - b), g.ca[i] = norm2(a - c);
+    g.ax[i] = s.ax, g.ay[i] = s.ay, g.az[i] = s.az;
+    g.bx[i] = s.bx, g.by[i] = s.by, g.bz[i] = s.bz;
+    g.cx[i] = s.cx, g.cy[i] = s.cy, g.cz[i] = s.cz;
+    g.nx[i] = s.nx, g.ny[i] = s.ny, g.nz[i] = s.nz;
+    g.r[i] = s.r;
+    g.ab[i] = s.ab, g.bc[i] = s.bc, g.ca[i] = s.ca;
   }
 }
 
 MOLMESH_VECTOR_CLONES void Spokes::evaluate(const Group& g, Vec3f x, Lane& out) {
-  V ax, ay, az, bx, by, bz, cx, cy, cz, nx, ny, nz, r, ab, bc, ca;
-  load(g.ax, ax), load(g.ay, ay), load(g.az, az);
-  load(g.bx, bx), load(g.by, by), load(g.bz, bz);
-  load(g.cx, cx), load(g.cy, cy), load(g.cz, cz);
-  load(g.nx, nx), load(g.ny, ny), load(g.nz, nz);
-  load(g.r, r), load(g.ab, ab), load(g.bc, bc), load(g.ca, ca);
-  ax -= x.x, ay -= x.y, az -= x.z;
-  bx -= x.x, by -= x.y, bz -= x.z;
-  cx -= x.x, cy -= x.y, cz -= x.z;
-  // Outward normals of the faces opposite a, b, c; n is that of the one opposite the vertex.
-  const V ux = cy * bz - cz * by, uy = cz * bx - cx * bz, uz = cx * by - cy * bx;
-  const V vx = ay * cz - az * cy, vy = az * cx - ax * cz, vz = ax * cy - ay * cx;
-  const V tx = by * az - bz * ay, ty = bz * ax - bx * az, tz = bx * ay - by * ax;
-  const V det = -(ax * ux + ay * uy + az * uz);
-  const V ru = 1 / (ux * ux + uy * uy + uz * uz), rv = 1 / (vx * vx + vy * vy + vz * vz);
-  const V rt = 1 / (tx * tx + ty * ty + tz * tz);
-  constexpr float obtuse = static_cast<float>(obtuse_weight * obtuse_weight);
-  const V one = V{} + 1, w = V{} + obtuse;
-  const V s0 = bc * r * ru * (nx * ux + ny * uy + nz * uz > 0 ? w : one);
-  const V s1 = ca * r * rv * (nx * vx + ny * vy + nz * vz > 0 ? w : one);
-  const V s2 = ab * r * rt * (nx * tx + ny * ty + nz * tz > 0 ? w : one);
-  const V aa = ax * ax + ay * ay + az * az, bb = bx * bx + by * by + bz * bz, cc = cx * cx + cy * cy + cz * cz;
-  const V sum = aa + bb + cc + ab + bc + ca, shape = static_cast<float>(shape_weight) / (sum * sum * sum);
-  const V s3 = cc * ru * rv * (ux * vx + uy * vy + uz * vz > 0 ? w : one);
-  const V s4 = bb * ru * rt * (ux * tx + uy * ty + uz * tz > 0 ? w : one);
-  const V s5 = aa * rv * rt * (vx * tx + vy * ty + vz * tz > 0 ? w : one);
-  const V s01 = s0 < s1 ? s0 : s1, s23 = s2 < s3 ? s2 : s3, s45 = s4 < s5 ? s4 : s5;
-  const V s03 = s01 < s23 ? s01 : s23, s6 = s45 < shape ? s45 : shape, s = s03 < s6 ? s03 : s6;
-  const V q = det > 0 ? s * det * det : V{} - 1;
+  Spoke<V> s;
+  load(g.ax, s.ax), load(g.ay, s.ay), load(g.az, s.az);
+  load(g.bx, s.bx), load(g.by, s.by), load(g.bz, s.bz);
+  load(g.cx, s.cx), load(g.cy, s.cy), load(g.cz, s.cz);
+  load(g.nx, s.nx), load(g.ny, s.ny), load(g.nz, s.nz);
+  load(g.r, s.r);
+  load(g.ab, s.ab), load(g.bc, s.bc), load(g.ca, s.ca);
+  V q;
+  spoke_quality(s, x, q);
   std::memcpy(out.data(), &q, sizeof q);
 }
 

@@ -30,7 +30,7 @@ public:
 private:
   static constexpr int lanes = 8;
   using Lane = std::array<float, lanes>;
-  // (vertex, a, b, c) is positive. n, r: normal of a b c, twice its area long, and 1 / |n|²; ab…: squared edges.
+  /// As in Spoke.
   struct Group {
     Lane ax, ay, az, bx, by, bz, cx, cy, cz, nx, ny, nz, r, ab, bc, ca;
   };

@@ -66,23 +66,42 @@ public:
   template <class T, class Item>
   Array<T> gather(int64_t n, const Item& item) {
     constexpr int64_t grain = 4096;
-    std::vector<int64_t> start(static_cast<size_t>((n + grain - 1) / grain));
-    const auto chunks = static_cast<int64_t>(start.size());
-    par::for_n(chunks, threads_, 1, [&](int64_t c) {
-      int64_t count = 0;
+    const int64_t chunks = (n + grain - 1) / grain;
+    const auto each = [&](int64_t c, auto&& f) {
       for (int64_t i = c * grain, end = std::min(n, i + grain); i < end; ++i)
-        count += item(i, static_cast<T*>(nullptr));
-      start[static_cast<size_t>(c)] = count;
-    });
-    Array<T> out(static_cast<size_t>(exclusive_scan(start)));
-    start.push_back(static_cast<int64_t>(out.size()));
-    par::for_n(chunks, threads_, 1, [&](int64_t c) {
-      T* to = out.data() + start[static_cast<size_t>(c)];
-      T* const last = out.data() + start[static_cast<size_t>(c + 1)];
-      for (int64_t i = c * grain; to < last; ++i)
-        to += item(i, to);
-    });
-    return out;
+        f(i);
+    };
+    std::vector<int64_t> start(static_cast<size_t>(chunks));
+    const auto start_of = [&](int64_t c) -> int64_t& { return start[static_cast<size_t>(c)]; };
+    if constexpr (requires { Item::most; }) {
+      std::vector<std::vector<T>> part(static_cast<size_t>(chunks));
+      par::for_n(chunks, threads_, 1, [&](int64_t c) {
+        thread_local std::vector<T> found;
+        found.resize(static_cast<size_t>(grain * Item::most));
+        int64_t count = 0;
+        each(c, [&](int64_t i) { count += item(i, found.data() + count); });
+        part[static_cast<size_t>(c)].assign(found.begin(), found.begin() + count);
+        start_of(c) = count;
+      });
+      Array<T> out(static_cast<size_t>(exclusive_scan(start)));
+      par::for_n(chunks, threads_, 1, [&](int64_t c) {
+        std::copy(part[static_cast<size_t>(c)].begin(), part[static_cast<size_t>(c)].end(),
+                  out.begin() + start_of(c));
+      });
+      return out;
+    } else {
+      par::for_n(chunks, threads_, 1, [&](int64_t c) {
+        int64_t count = 0;
+        each(c, [&](int64_t i) { count += item(i, static_cast<T*>(nullptr)); });
+        start_of(c) = count;
+      });
+      Array<T> out(static_cast<size_t>(exclusive_scan(start)));
+      par::for_n(chunks, threads_, 1, [&](int64_t c) {
+        T* to = out.data() + start_of(c);
+        each(c, [&](int64_t i) { to += item(i, to); });
+      });
+      return out;
+    }
   }
   template <class Key, class Sized>
   void place_by(int64_t n, int64_t keys, const Key& key, Sized sized) {

@@ -9,7 +9,7 @@
 namespace molmesh::contour::detail {
 
 /// Item: int64_t operator()(int64_t i, T* out) const; how many elements i has, written to `out` unless that is
-/// null.
+/// null. Item::most, where it has one: no i has more, and asking twice costs more than copying.
 template <class Item, class T>
 struct CountElements {
   Item item;
@@ -51,6 +51,17 @@ List<Launcher, T> gather(Launcher& m, const char* name, int64_t n, const Item& i
   m.for_n(name, n, FillElements<Item, T>{item, count.data(), out.data()});
   return out;
 }
+
+/// Places of raised flags.
+struct Flagged {
+  static constexpr int64_t most = 1;
+  const uint8_t* flag;
+  HD int64_t operator()(int64_t i, int32_t* out) const {
+    if (flag[i] && out)
+      *out = static_cast<int32_t>(i);
+    return flag[i];
+  }
+};
 
 template <class Key>
 struct CountKeyed {

@@ -1,0 +1,212 @@
+// relax_items.hpp — relaxation's passes: what is bad, who may move, whose turn it is, and who looks again. Host and
+// device.
+#pragma once
+#include "contour/detail/complex_view.hpp"
+#include "contour/detail/elements_view.hpp"
+#include "contour/detail/raise.hpp"
+#include "improve/quality.hpp"
+
+namespace molmesh::contour::detail {
+
+/// [vertices of the complex] 1: a grid point of no surface cell; 2 + level: a dual vertex of no surface cell; 0:
+/// any other.
+struct LatticeClasses {
+  ComplexView c;
+  uint8_t* of;
+  HD void operator()(int64_t v) const {
+    const int64_t leaf = v - c.dual0;
+    if (leaf < 0)
+      of[v] = c.nearest[v] < 0;
+    else
+      of[v] = leaf < c.tree.leaves && c.side[leaf] != Side::crossed ? static_cast<uint8_t>(2 + c.tree.level[leaf])
+                                                                    : uint8_t{0};
+  }
+};
+
+HD inline float quality_of(const ElementsView& e, int64_t t) {
+  const Tet& v = e.tet[t];
+  return improve::tet_quality(e.position[v[0]], e.position[v[1]], e.position[v[2]], e.position[v[3]]);
+}
+
+/// The lattice's own elements need no look: an edge of it with the middles of two boxes of one size.
+struct Qualities {
+  ElementsView e;
+  const uint8_t* lattice_class;
+  int64_t known; ///< of the vertices
+  float* quality;
+  HD void operator()(int64_t t) const { quality[t] = of_lattice(e.tet[t]) ? 1 : quality_of(e, t); }
+
+private:
+  HD bool of_lattice(const Tet& t) const {
+    for (size_t c = 0; c < 4; ++c)
+      if (t[c] >= known)
+        return false;
+    const uint8_t* of = lattice_class;
+    return of[t[0]] == 1 && of[t[1]] == 1 && of[t[2]] >= 2 && of[t[2]] == of[t[3]];
+  }
+};
+
+/// What a vertex is bound to, by 4 flags: a wall across x, y, z, and the surface.
+struct Bounds {
+  uint8_t* flag;
+  HD bool on_wall(int64_t vertex, int axis) const { return flag[4 * vertex + axis]; }
+  HD bool on_surface(int64_t vertex) const { return flag[4 * vertex + 3]; }
+};
+struct RaiseBounds {
+  ElementsView e;
+  Bounds bound;
+  HD void operator()(int64_t t) const {
+    const int32_t label = e.boundary[t];
+    const int which = label == surface ? 3 : (label - box_x0) / 2;
+    for (size_t c = 0; c < 3; ++c)
+      if (uint8_t& flag = bound.flag[int64_t{4} * e.tri[t][c] + which]; !seen(flag))
+        raise(flag);
+  }
+};
+
+/// What a round works on. Candidates: vertices of bad elements that may move.
+struct RelaxView {
+  ElementsView e;
+  Bounds bound;
+  float* quality;         ///< [tets]
+  float goal;             ///< elements below it are bad
+  const int32_t* vertex;  ///< [candidates] ascending
+  const int32_t* number;  ///< [vertices] of the candidate, or -1
+  const int64_t* first;   ///< [candidates + 1] into element
+  const int32_t* element; ///< ascending at each candidate
+  float* worst;           ///< [candidates] worst element's quality as the round began
+  uint32_t* turn;         ///< [candidates]
+  uint8_t* wakes;         ///< [candidates] looks again in the next round
+  int32_t* moves;         ///< [candidates] how often it has moved
+
+  static constexpr uint32_t at_rest = ~uint32_t{0}; ///< of turn: does not want to move
+};
+
+struct WantVertices {
+  ElementsView e;
+  Bounds bound;
+  const float* quality;
+  float goal;
+  bool surface_moves;
+  uint8_t* wanted; ///< [vertices]
+  HD void operator()(int64_t t) const {
+    for (size_t c = 0; quality[t] < goal && c < 4; ++c)
+      if (const int32_t v = e.tet[t][c]; surface_moves || !bound.on_surface(v))
+        raise(wanted[v]);
+  }
+};
+struct NumberCandidates {
+  const int32_t* vertex;
+  int32_t* number;
+  HD void operator()(int64_t i) const { number[vertex[i]] = static_cast<int32_t>(i); }
+};
+/// Elements at a wanted vertex.
+struct NearTets {
+  static constexpr int64_t most = 1;
+  const Tet* tet;
+  const uint8_t* wanted;
+  HD int64_t operator()(int64_t t, int32_t* out) const {
+    const Tet& v = tet[t];
+    if (!(wanted[v[0]] | wanted[v[1]] | wanted[v[2]] | wanted[v[3]]))
+      return 0;
+    if (out)
+      *out = static_cast<int32_t>(t);
+    return 1;
+  }
+};
+/// Corner i % 4 of near element i / 4: its candidate, or -1.
+struct CornerCandidate {
+  const Tet* tet;
+  const int32_t *near, *number;
+  HD int64_t operator()(int64_t i) const { return number[tet[near[i >> 2]][static_cast<size_t>(i & 3)]]; }
+};
+/// In the order of the candidates, then of the elements.
+struct PlaceStars {
+  CornerCandidate of;
+  int32_t *element, *owner;
+  HD void operator()(int64_t slot, int64_t i) const {
+    element[slot] = of.near[i >> 2];
+    owner[slot] = static_cast<int32_t>(of(i));
+  }
+};
+struct FirstOfStars {
+  const int32_t* owner;
+  int64_t* first;
+  HD void operator()(int64_t slot) const {
+    if (slot == 0 || owner[slot - 1] != owner[slot])
+      first[owner[slot]] = slot;
+  }
+};
+
+/// Whose turn it is: another order in each round, lest one vertex that creeps holds up its neighbours.
+HD inline uint32_t turn(int32_t candidate, int round) {
+  uint64_t h =
+      static_cast<uint64_t>(candidate) * 0x9E3779B97F4A7C15u + static_cast<uint64_t>(round) * 0xC2B2AE3D27D4EB4Fu;
+  h = (h ^ h >> 29) * 0x165667B19E3779F9u;
+  return static_cast<uint32_t>(h >> 33);
+}
+
+/// Of active candidates.
+struct StartRound {
+  RelaxView r;
+  const int32_t* active;
+  int round;
+  HD void operator()(int64_t i) const {
+    const int32_t c = active[i];
+    float w = 1;
+    for (int64_t k = r.first[c]; k < r.first[c + 1]; ++k)
+      if (const float q = r.quality[r.element[k]]; q < w)
+        w = q;
+    r.worst[c] = w;
+    r.turn[c] = w < r.goal ? turn(c, round) : RelaxView::at_rest;
+    r.wakes[c] = 0;
+  }
+};
+
+enum class Fate : uint8_t { waits, stays, moves };
+
+/// Whether a candidate wants to move and none of its neighbours does whose turn is earlier: `stays` until it has
+/// moved. No two of them share an element.
+struct ChooseFirst {
+  static constexpr int64_t grain = 64;
+  RelaxView r;
+  const int32_t* active;
+  Fate* fate;
+  HD void operator()(int64_t i) const { fate[i] = is_first(active[i]) ? Fate::stays : Fate::waits; }
+
+private:
+  HD bool is_first(int32_t c) const {
+    const uint32_t mine = r.turn[c];
+    if (mine == RelaxView::at_rest)
+      return false;
+    for (int64_t k = r.first[c]; k < r.first[c + 1]; ++k)
+      for (size_t corner = 0; corner < 4; ++corner) {
+        const int32_t j = r.number[r.e.tet[r.element[k]][corner]];
+        if (j >= 0 && (r.turn[j] < mine || (r.turn[j] == mine && j < c)))
+          return false;
+      }
+    return true;
+  }
+};
+/// Those who still want to, and all round one that moved, look again; until then all are at rest.
+struct WakeNeighbours {
+  static constexpr int64_t grain = 64;
+  RelaxView r;
+  const int32_t* active;
+  const Fate* fate;
+  HD void operator()(int64_t i) const {
+    const int32_t c = active[i];
+    if (fate[i] == Fate::waits && r.turn[c] != RelaxView::at_rest)
+      raise(r.wakes[c]);
+    r.turn[c] = RelaxView::at_rest;
+    if (fate[i] != Fate::moves)
+      return;
+    ++r.moves[c];
+    for (int64_t k = r.first[c]; k < r.first[c + 1]; ++k)
+      for (size_t corner = 0; corner < 4; ++corner)
+        if (const int32_t j = r.number[r.e.tet[r.element[k]][corner]]; j >= 0)
+          raise(r.wakes[j]);
+  }
+};
+
+} // namespace molmesh::contour::detail

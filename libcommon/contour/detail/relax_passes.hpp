@@ -1,0 +1,119 @@
+// relax_passes.hpp — relaxation in rounds, pass by pass, over a launcher: one text, one result.
+#pragma once
+#include "contour/detail/passes.hpp"
+#include "contour/detail/relax_items.hpp"
+
+namespace molmesh::contour::detail {
+
+/// Mover: move(view, active, n, fate, most_distance) lets those move who have the turn; begin(view, candidates,
+/// entries) before the first round over these stars.
+template <class Launcher, class Mover>
+class RelaxPasses {
+  template <class T>
+  using Array = typename Launcher::template Array<T>;
+
+public:
+  /// lattice_class: of the first `known` vertices. surface_moves: vertices on the surface do.
+  RelaxPasses(Launcher& m, const ElementsView& e, const uint8_t* lattice_class, int64_t known, bool surface_moves,
+              Mover& mover)
+      : m_(m), mover_(mover), surface_moves_(surface_moves), quality_(m.template array<float>(e.tets)),
+        bound_(m.filled(4 * e.positions, uint8_t{0})) {
+    constexpr double largest_angle = 159.8; // degrees; 13.2° counts alike
+    r_.e = e;
+    r_.quality = quality_.data();
+    r_.bound = {bound_.data()};
+    r_.goal = static_cast<float>(improve::angle_quality(largest_angle));
+    m.for_n("element qualities", e.tets, Qualities{e, lattice_class, known, r_.quality},
+            {double(e.tets) * 20 + double(e.positions) * 25, 180. * double(e.tets), true});
+    m.for_n("bounds", e.tris, RaiseBounds{e, r_.bound}, {double(e.tris) * 16});
+  }
+
+  /// How often a vertex moved.
+  int64_t run() {
+    // Of a surface vertex from the surface, in spacings, if it was nearer: pass by pass, for what is left.
+    constexpr double most_distance[] = {0.03, 0.06, 0.15};
+    constexpr int most_rounds = 100;
+    int64_t moved = 0;
+    for (const double distance : most_distance) {
+      const int64_t candidates = find_candidates();
+      if (candidates == 0)
+        break;
+      for (int round = 0; round < most_rounds; ++round) {
+        const auto active = gather<int32_t>(m_, "active", candidates, Flagged{r_.wakes});
+        if (active.n == 0)
+          break;
+        move_some(active, round, distance);
+      }
+      moved += m_.scan("scan", moves_.data(), candidates);
+    }
+    return moved;
+  }
+
+private:
+  using Ids = List<Launcher, int32_t>;
+
+  /// All vertices of bad elements that may move, and their stars.
+  int64_t find_candidates() {
+    const ElementsView& e = r_.e;
+    const auto wanted = m_.filled(e.positions, uint8_t{0});
+    m_.for_n("want vertices", e.tets,
+             WantVertices{e, r_.bound, r_.quality, r_.goal, surface_moves_, const_cast<uint8_t*>(wanted.data())},
+             {double(e.tets) * 4});
+    vertex_ = gather<int32_t>(m_, "candidates", e.positions, Flagged{wanted.data()});
+    const int64_t n = vertex_.n;
+    if (n == 0)
+      return 0;
+    number_ = m_.filled(e.positions, int32_t{-1});
+    m_.for_n("number candidates", n, NumberCandidates{vertex_.data(), number_.data()}, {double(n) * 8});
+    const Ids near = gather<int32_t>(m_, "near elements", e.tets, NearTets{e.tet, wanted.data()});
+    const CornerCandidate of{e.tet, near.data(), number_.data()};
+    Array<int32_t> owner;
+    int64_t entries = 0;
+    place_by(m_, "stars", 4 * near.n, n, of, [&](int64_t slots) {
+      entries = slots;
+      element_ = m_.template array<int32_t>(slots);
+      owner = m_.template array<int32_t>(slots);
+      return PlaceStars{of, element_.data(), owner.data()};
+    });
+    first_ = m_.filled(n + 1, entries);
+    m_.for_n("first of stars", entries, FirstOfStars{owner.data(), first_.data()}, {double(entries) * 4});
+    worst_ = m_.template array<float>(n);
+    turn_ = m_.filled(n, RelaxView::at_rest);
+    wakes_ = m_.filled(n, uint8_t{1});
+    moves_ = m_.filled(n + 1, int32_t{0});
+    r_.vertex = vertex_.data();
+    r_.number = number_.data();
+    r_.first = first_.data();
+    r_.element = element_.data();
+    r_.worst = worst_.data();
+    r_.turn = turn_.data();
+    r_.wakes = wakes_.data();
+    r_.moves = moves_.data();
+    mover_.begin(r_, n, entries);
+    return n;
+  }
+
+  void move_some(const Ids& active, int round, double most_distance) {
+    const int64_t n = active.n;
+    m_.for_n("start round", n, StartRound{r_, active.data(), round}, {double(n) * 120});
+    auto fate = m_.template array<Fate>(n);
+    m_.for_n("choose first", n, ChooseFirst{r_, active.data(), fate.data()}, {double(n) * 120});
+    mover_.move(r_, active.data(), n, fate.data(), most_distance);
+    m_.for_n("wake neighbours", n, WakeNeighbours{r_, active.data(), fate.data()}, {double(n) * 17});
+  }
+
+  Launcher& m_;
+  Mover& mover_;
+  bool surface_moves_;
+  RelaxView r_{};
+  Array<float> quality_;
+  Array<uint8_t> bound_;
+  Ids vertex_;
+  Array<int32_t> number_, element_, moves_;
+  Array<int64_t> first_;
+  Array<float> worst_;
+  Array<uint32_t> turn_;
+  Array<uint8_t> wakes_;
+};
+
+} // namespace molmesh::contour::detail

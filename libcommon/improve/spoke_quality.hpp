@@ -1,0 +1,56 @@
+// spoke_quality.hpp — tet_quality of elements at a vertex that moves, in single precision. Host and device.
+#pragma once
+#include "improve/quality.hpp"
+
+namespace molmesh::improve {
+
+/// What does not move of an element (vertex, a, b, c), which is positive. V: float, or a vector of the compiler's
+/// with an element in each lane.
+template <class V>
+struct Spoke {
+  V ax, ay, az, bx, by, bz, cx, cy, cz;
+  V nx, ny, nz, r; ///< normal of a b c, twice its area long, and 1 / |n|²
+  V ab, bc, ca;    ///< squared edges
+};
+
+HD inline Spoke<float> make_spoke(Vec3f a, Vec3f b, Vec3f c) {
+  const Vec3f n = cross(b - a, c - a);
+  return {a.x, a.y, a.z, b.x, b.y,          b.z,          c.x,          c.y,
+          c.z, n.x, n.y, n.z, 1 / norm2(n), norm2(b - a), norm2(c - b), norm2(a - c)};
+}
+
+/// Corners of an element with the vertex `moving` in front, the others in an even permutation.
+HD constexpr int spoke_corner(int moving, int i) {
+  return (moving == 0 ? 0x3210 : moving == 1 ? 0x2301 : moving == 2 ? 0x1032 : 0x0123) >> (4 * i) & 3;
+}
+
+/// With the vertex at x. Vectors come and go by reference: what they look like as arguments depends on the
+/// processor.
+template <class V>
+HD __attribute__((always_inline)) inline void spoke_quality(const Spoke<V>& s, const Vec3f& x, V& q) {
+  const V ax = s.ax - x.x, ay = s.ay - x.y, az = s.az - x.z;
+  const V bx = s.bx - x.x, by = s.by - x.y, bz = s.bz - x.z;
+  const V cx = s.cx - x.x, cy = s.cy - x.y, cz = s.cz - x.z;
+  // Outward normals of the faces opposite a, b, c; n is that of the one opposite the vertex.
+  const V ux = cy * bz - cz * by, uy = cz * bx - cx * bz, uz = cx * by - cy * bx;
+  const V vx = ay * cz - az * cy, vy = az * cx - ax * cz, vz = ax * cy - ay * cx;
+  const V tx = by * az - bz * ay, ty = bz * ax - bx * az, tz = bx * ay - by * ax;
+  const V det = -(ax * ux + ay * uy + az * uz);
+  const V ru = 1 / (ux * ux + uy * uy + uz * uz), rv = 1 / (vx * vx + vy * vy + vz * vz);
+  const V rt = 1 / (tx * tx + ty * ty + tz * tz);
+  constexpr float obtuse = static_cast<float>(obtuse_weight * obtuse_weight);
+  const V one = V{} + 1, w = V{} + obtuse;
+  const V s0 = s.bc * s.r * ru * (s.nx * ux + s.ny * uy + s.nz * uz > 0 ? w : one);
+  const V s1 = s.ca * s.r * rv * (s.nx * vx + s.ny * vy + s.nz * vz > 0 ? w : one);
+  const V s2 = s.ab * s.r * rt * (s.nx * tx + s.ny * ty + s.nz * tz > 0 ? w : one);
+  const V aa = ax * ax + ay * ay + az * az, bb = bx * bx + by * by + bz * bz, cc = cx * cx + cy * cy + cz * cz;
+  const V sum = aa + bb + cc + s.ab + s.bc + s.ca, shape = static_cast<float>(shape_weight) / (sum * sum * sum);
+  const V s3 = cc * ru * rv * (ux * vx + uy * vy + uz * vz > 0 ? w : one);
+  const V s4 = bb * ru * rt * (ux * tx + uy * ty + uz * tz > 0 ? w : one);
+  const V s5 = aa * rv * rt * (vx * tx + vy * ty + vz * tz > 0 ? w : one);
+  const V s01 = s0 < s1 ? s0 : s1, s23 = s2 < s3 ? s2 : s3, s45 = s4 < s5 ? s4 : s5;
+  const V s03 = s01 < s23 ? s01 : s23, s6 = s45 < shape ? s45 : shape, least = s03 < s6 ? s03 : s6;
+  q = det > 0 ? least * det * det : V{} - 1;
+}
+
+} // namespace molmesh::improve
