@@ -5,10 +5,9 @@
 
 namespace molmesh::cuda {
 
-/// contour::contour with everything up to the relaxation made on the GPU: surface cells, samples, leaves, numbers
-/// of grid points and their distances, dual vertices, points that go back, and all elements. The octree's hash,
-/// relaxation, regions and assembly stay on options.threads threads of the host. Throws Error(mode_unavailable)
-/// where there is no GPU.
+/// contour::contour with all stages on the GPU; those it has no room for on options.threads threads of the host,
+/// which the report's note says. The lattice, and log G for the surface that vertices move along, are the host's.
+/// Throws Error(mode_unavailable) where there is no GPU.
 TetMesh contour_mesh(const BlockGrid& grid, const contour::Options& options, contour::Summary& summary,
                      const std::function<void(const std::string&)>& on_phase, DeviceReport& report);
 

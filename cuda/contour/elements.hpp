@@ -3,10 +3,11 @@
 #pragma once
 #include "contour/elements.hpp"
 #include "cuda/contour/element_items.hpp"
+#include "cuda/contour/element_sinks.hpp"
 #include "cuda/density/search_items.hpp"
 #include "cuda/par/backend.hpp"
 #include <algorithm>
-#include <optional>
+#include <numeric>
 
 namespace molmesh::cuda {
 
@@ -21,18 +22,20 @@ public:
   using Ids = contour::detail::List<Backend, int32_t>;
   explicit ElementMaker(Backend& b) : b_(b) {}
 
-  /// The elements of the complex whose view this is; more than make_elements only in where they are made.
-  contour::Elements operator()(const ComplexView& view) {
-    contour::Elements out;
+  /// What it tells of the elements that its sink took.
+  struct Made {
+    int64_t face_points, edge_points;
+  };
+  /// The elements of the complex whose view this is, into a sink: the same as make_elements makes.
+  template <class Sink>
+  Made operator()(const ComplexView& view, Sink& sink) {
     const int32_t own = view.vertices();
     MoreVertices more;
-    make(MakeFaces<false>{view, nullptr}, int64_t{view.tree.leaves}, own, &out, &more);
-    out.face_points = more.points;
+    const int64_t all_faces = make(MakeFaces<false>{view, nullptr}, int64_t{view.tree.leaves}, own, sink, &more);
     const Rings rings = join(more);
-    make(MakeRings<false>{vertices(view, rings), rings.link.data(), rings.first.data()}, rings.edges,
-         own + out.face_points, &out, nullptr);
-    out.edge_points = static_cast<int64_t>(out.position.size()) - out.face_points;
-    return out;
+    const int64_t all = make(MakeRings<false>{vertices(view, rings), rings.link.data(), rings.first.data()},
+                             rings.edges, all_faces, sink, nullptr);
+    return {all_faces - own, all - all_faces};
   }
 
   /// Vertices that elements without positive volume would hang on: of the leaves' faces, and of the rings of edges
@@ -40,31 +43,26 @@ public:
   Ids spoiled_of(const ComplexView& view, const Ids& leaves, const Ids* ends) {
     const Array<uint8_t> flag = b_.filled(view.vertices(), uint8_t{0});
     MoreVertices more;
-    make(MakeFaces<true>{view, leaves.data()}, leaves.n, view.vertices(), nullptr, &more, flag.data());
+    NoSink none;
+    make(MakeFaces<true>{view, leaves.data()}, leaves.n, view.vertices(), none, &more, flag.data());
     const Rings rings = join(more, ends, view.grid_vertices);
     make(MakeRings<true>{vertices(view, rings), rings.link.data(), rings.first.data()}, rings.edges,
-         view.vertices(), nullptr, nullptr, flag.data());
+         view.vertices(), none, nullptr, flag.data());
     return contour::detail::gather<int32_t>(b_, "spoiled", view.vertices(), contour::detail::Flagged{flag.data()});
   }
   int64_t runs() const { return runs_; }
 
 private:
+  struct NoSink { ///< elements are only checked
+    void take(ElementRun<Backend>) {}
+    bool make_room() { return false; }
+  };
   /// What the rings need of the faces, run by run.
   struct MoreVertices {
     std::vector<Array<Link>> link;
     std::vector<Array<Vec3d>> point;
     std::vector<Array<int32_t>> wall;
     std::vector<int64_t> link_count, point_count; ///< of each run
-    int64_t links = 0, points = 0;
-  };
-  /// On its way to the host; empty where elements are only checked.
-  struct Result {
-    std::optional<Pending<Tet>> tet;
-    std::optional<Pending<Tri>> tri;
-    std::optional<Pending<Sides>> tri_sides;
-    std::optional<Pending<int32_t>> boundary;
-    std::optional<Pending<Vec3d>> point;
-    int64_t points = 0;
   };
 
   /// What faces leave for the rings, in order.
@@ -80,61 +78,52 @@ private:
   }
   Rings join(MoreVertices& more, const Ids* ends = nullptr, int32_t grid_vertices = 0) {
     Rings r;
-    Array<Link> link = joined(more.link, more.link_count, more.links);
-    int64_t links = more.links;
+    Array<Link> link = joined<Link>(b_, more.link, more.link_count);
+    int64_t links = std::accumulate(more.link_count.begin(), more.link_count.end(), int64_t{0});
     if (ends) {
       auto kept = contour::detail::gather<Link>(b_, "whole edges", links,
                                                 WholeEdges{link.data(), ends->data(), ends->n, grid_vertices});
       link = std::move(kept.array);
       links = kept.n;
     }
-    r.point = joined(more.point, more.point_count, more.points);
-    r.wall = joined(more.wall, more.point_count, more.points);
+    r.point = joined<Vec3d>(b_, more.point, more.point_count);
+    r.wall = joined<int32_t>(b_, more.wall, more.point_count);
     more = {};
     r.link = sort_links(link, links);
     r.first = first_links(r.link, links, r.edges);
     return r;
   }
 
-  /// number: of the first new point. out: null where elements are only checked.
-  template <class Make>
-  void make(const Make& item, int64_t items, int64_t number, contour::Elements* out, MoreVertices* more,
-            uint8_t* spoiled = nullptr) {
-    std::optional<Result> before;
+  /// number: of the first new point; returns that of the next.
+  template <class Make, class Sink>
+  int64_t make(const Make& item, int64_t items, int64_t number, Sink& sink, MoreVertices* more,
+               uint8_t* spoiled = nullptr) {
     constexpr int64_t most = int64_t{1} << 25; // counts of a run are 32 bits wide
     int64_t run = std::max<int64_t>(1, std::min({items, b_.room() / 256, most}));
     for (int64_t begin = 0; begin < items;) {
       const int64_t n = std::min(run, items - begin);
-      std::optional<Result> result;
       try {
-        result.emplace(make_run(item, begin, n, number, more, spoiled));
+        int64_t points = 0;
+        sink.take(make_run(item, begin, n, number, more, spoiled, points));
+        number += points;
       } catch (const OutOfRoom&) {
-        if (before) {
-          append(*before, *out);
-          before.reset();
-        } else if (n > 1) {
-          run = (n + 1) / 2;
-        } else {
+        if (sink.make_room())
+          continue;
+        if (n == 1)
           throw;
-        }
+        run = (n + 1) / 2;
         continue;
       }
       ++runs_;
       begin += n;
-      number += result->points;
-      if (before)
-        append(*before, *out);
-      before.reset();
-      if (out)
-        before.emplace(std::move(*result));
     }
-    if (before)
-      append(*before, *out);
+    sink.make_room();
+    return number;
   }
 
   template <class Make>
-  Result make_run(const Make& item, int64_t begin, int64_t n, int64_t number, MoreVertices* more,
-                  uint8_t* spoiled) {
+  ElementRun<Backend> make_run(const Make& item, int64_t begin, int64_t n, int64_t number, MoreVertices* more,
+                               uint8_t* spoiled, int64_t& points) {
     const Array<uint32_t> order = b_.template array<uint32_t>(n);
     {
       const Array<uint32_t> key = b_.template array<uint32_t>(n);
@@ -154,13 +143,13 @@ private:
       fail(Status::failed, "contour: a sign-change edge without a ring");
     if (number + total[3] >= int64_t{1} << 30)
       fail(Status::failed, "--mode cuda: the mesh has more than 2^30 points, use seq or omp");
-    Result result;
     if (Make::check && !more)
-      return result;
-    Array<Tet> tet = b_.template array<Tet>(total[0]);
-    Array<Tri> tri = b_.template array<Tri>(total[1]);
-    Array<Sides> sides = b_.template array<Sides>(total[1]);
-    Array<int32_t> boundary = b_.template array<int32_t>(total[1]);
+      return {};
+    ElementRun<Backend> run{b_.template array<Tet>(total[0]),
+                            b_.template array<Tri>(total[1]),
+                            b_.template array<Sides>(total[1]),
+                            b_.template array<int32_t>(total[1]),
+                            {}};
     Array<Link> link = b_.template array<Link>(total[2] + 1); // not null: it writes
     Array<Vec3d> point = b_.template array<Vec3d>(total[3]);
     Array<int32_t> wall = b_.template array<int32_t>(total[3]);
@@ -169,60 +158,26 @@ private:
                                begin,
                                order.data(),
                                at,
-                               {tet.data(), tri.data(), sides.data(), boundary.data(), link.data(), point.data(),
-                                wall.data(), static_cast<int32_t>(number)},
+                               {run.tet.data(), run.tri.data(), run.tri_sides.data(), run.boundary.data(),
+                                link.data(), point.data(), wall.data(), static_cast<int32_t>(number)},
                                spoiled},
              {double(n) * 200 + double(total[0]) * 16 + double(total[1]) * 24 + double(total[2]) * 20 +
               double(total[3]) * 28});
-    result.points = total[3];
-    if (more) {
-      more->link_count.push_back(total[2]);
-      more->point_count.push_back(total[3]);
-      more->links += total[2];
-      more->points += total[3];
-      more->link.push_back(std::move(link));
-      more->wall.push_back(std::move(wall));
-      Array<Vec3d> kept = std::move(point);
-      if (!Make::check) {
-        point = b_.template array<Vec3d>(total[3]);
-        b_.for_n("copy", total[3], CopyItems<Vec3d>{kept.data(), point.data()}, {double(total[3]) * 48});
-      }
-      more->point.push_back(std::move(kept));
+    points = total[3];
+    if (!more) {
+      run.point = std::move(point);
+      return run;
     }
     if (!Make::check) {
-      result.tet.emplace(b_.fetch(std::move(tet)));
-      result.tri.emplace(b_.fetch(std::move(tri)));
-      result.tri_sides.emplace(b_.fetch(std::move(sides)));
-      result.boundary.emplace(b_.fetch(std::move(boundary)));
-      result.point.emplace(b_.fetch(std::move(point)));
+      run.point = b_.template array<Vec3d>(total[3]);
+      b_.for_n("copy", total[3], CopyItems<Vec3d>{point.data(), run.point.data()}, {double(total[3]) * 48});
     }
-    return result;
-  }
-
-  void append(Result& r, contour::Elements& out) const {
-    const auto add = [](auto& to, auto& from) {
-      const auto* p = from->get();
-      to.insert(to.end(), p, p + from->size());
-    };
-    add(out.tet, r.tet);
-    add(out.tri, r.tri);
-    add(out.tri_sides, r.tri_sides);
-    add(out.boundary, r.boundary);
-    add(out.position, r.point);
-  }
-
-  template <class T>
-  Array<T> joined(std::vector<Array<T>>& part, const std::vector<int64_t>& count, int64_t n) {
-    if (part.size() == 1)
-      return std::move(part[0]);
-    Array<T> all = b_.template array<T>(n);
-    int64_t at = 0;
-    for (size_t i = 0; i < part.size(); ++i) {
-      b_.for_n("copy", count[i], CopyItems<T>{part[i].data(), all.data() + at},
-               {2. * double(count[i]) * sizeof(T)});
-      at += count[i];
-    }
-    return all;
+    more->link_count.push_back(total[2]);
+    more->point_count.push_back(total[3]);
+    more->link.push_back(std::move(link));
+    more->point.push_back(std::move(point));
+    more->wall.push_back(std::move(wall));
+    return run;
   }
 
   Array<Link> sort_links(const Array<Link>& link, int64_t n) {

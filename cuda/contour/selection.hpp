@@ -8,13 +8,13 @@
 
 namespace molmesh::cuda {
 
-/// What is selected stays in the Backend's memory; each step also answers with a copy for the host.
+/// What is selected stays in the Backend's memory.
 template <class Backend>
 class Selection {
 public:
   explicit Selection(Backend& b) : b_(b) {}
 
-  contour::Surface find_surface(const contour::Lattice& l) {
+  void find_surface(const contour::Lattice& l) {
     leaves = {};
     surface = {};
     lattice.reset();
@@ -24,13 +24,16 @@ public:
     const auto inside = b_.upload(grid.inside.data(), static_cast<int64_t>(grid.inside.size()));
     surface = contour::detail::find_surface(b_, lattice->view,
                                             {corner.data(), corner.size(), inside.data(), inside.size()});
-    return {host(surface.cells), host(surface.samples)};
   }
-  contour::LeafList select_leaves(const contour::Lattice& l, const contour::RefineOptions& options) {
+  void select_leaves(const contour::Lattice& l, const contour::RefineOptions& options) {
     leaves = contour::detail::LeafSelection<Backend>(
                  b_, lattice->view, l.top_level, {surface.cells.data(), surface.samples.data(), surface.cells.n},
                  options)
                  .run();
+  }
+  /// Copies for the host.
+  contour::Surface surface_on_host() { return {host(surface.cells), host(surface.samples)}; }
+  contour::LeafList leaves_on_host() {
     return {host(leaves.key), host(leaves.level), host(leaves.block), host(leaves.large)};
   }
 

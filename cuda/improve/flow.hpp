@@ -4,10 +4,11 @@
 // whatever moves beside it, and the result does not depend on the order of the threads.
 #pragma once
 #include "cuda/density/search_items.hpp"
+#include "cuda/improve/device_isosurface.hpp"
 #include "cuda/improve/flow_items.hpp"
 #include "cuda/par/backend.hpp"
 #include "improve/improve.hpp"
-#include "improve/isosurface.hpp"
+#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -57,13 +58,9 @@ class Flow {
 public:
   /// surface: null keeps the points of curved surfaces where they are. Uploaded once; its offset is read at each
   /// run.
-  Flow(Backend& b, const improve::Isosurface* surface) : b_(b), surface_(surface) {
-    if (!surface)
-      return;
-    const improve::IsosurfaceView v = surface->view();
-    log_ = b.upload(v.log, surface->values());
-    key_ = b.upload(v.index.key, surface->slots());
-    block_ = b.upload(v.index.block, surface->slots());
+  Flow(Backend& b, const improve::Isosurface* surface) : b_(b) {
+    if (surface)
+      surface_.emplace(b, *surface);
   }
 
   /// Sweeps over the mesh as it is now; changed elements count as never tried. Returns how many moves were done.
@@ -90,17 +87,13 @@ public:
                vertex.data(),
                around.view(),
                sails_around.view(),
-               surface_ != nullptr && pass.guard.lift == 0,
+               surface_ && pass.guard.lift == 0,
                {},
                pass.guard,
                pass.goal,
                pass.worst_first};
-    if (surface_) {
+    if (surface_)
       m.surface = surface_->view();
-      m.surface.log = log_.data();
-      m.surface.index.key = key_.data();
-      m.surface.index.block = block_.data();
-    }
     const Array<uint32_t> order = around.by_valence();
     int64_t moves = 0;
     for (int s = 0; s < sweeps; ++s) {
@@ -171,10 +164,7 @@ private:
   }
 
   Backend& b_;
-  const improve::Isosurface* surface_;
-  Array<float> log_;
-  Array<Vec3i> key_;
-  Array<int64_t> block_;
+  std::optional<DeviceIsosurface<Backend>> surface_;
   std::vector<int32_t> element_of_;
   int64_t elements_ = 0, points_ = 0, visited_ = 0;
 };

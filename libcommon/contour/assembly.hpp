@@ -1,8 +1,8 @@
 // assembly.hpp — the mesh of the wanted regions from the elements of all.
 #pragma once
 #include "contour/components.hpp"
-#include "contour/contour.hpp"
 #include "contour/elements.hpp"
+#include "contour/options.hpp"
 #include "mesh/tet_mesh.hpp"
 
 namespace molmesh::contour {

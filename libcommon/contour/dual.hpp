@@ -23,9 +23,7 @@ struct Dual {
   int64_t restored_points = 0;
 };
 
-/// make_dual, or what does the same on a device. Throws Error(failed) when the surface meets a wall that was not
-/// asked to cut it.
-using DualFunction = std::function<Dual(const DualInput&, const std::function<void(const std::string&)>& on_phase)>;
+/// Throws Error(failed) when the surface meets a wall that was not asked to cut it.
 Dual make_dual(const DualInput& input, const std::function<void(const std::string&)>& on_phase);
 
 /// What a surface at a wall is refused with.

@@ -1,8 +1,8 @@
 // assembly_passes.hpp — the mesh of the wanted regions, pass by pass, over a launcher: one text, one result.
 #pragma once
-#include "contour/contour.hpp"
 #include "contour/detail/assembly_items.hpp"
 #include "contour/detail/passes.hpp"
+#include "contour/options.hpp"
 
 namespace molmesh::contour::detail {
 

@@ -31,6 +31,16 @@ struct GatherInsideAtWall {
     return 1;
   }
 };
+struct SplitLeaves {
+  static constexpr int64_t most = 1;
+  ComplexView c;
+  HD int64_t operator()(int64_t leaf, int32_t* out) const {
+    const bool split = c.is_split(static_cast<int32_t>(leaf));
+    if (split && out)
+      *out = static_cast<int32_t>(leaf);
+    return split;
+  }
+};
 /// Leaves with a corner near the surface.
 struct GatherNear {
   ComplexView c;

@@ -10,7 +10,7 @@ namespace molmesh::contour::detail {
 /// `most`.
 template <class Surface>
 HD bool to_surface(const Surface& surface, const Bounds& bound, int32_t vertex, double most, Vec3d& y) {
-  constexpr double least_along = 0.25; // square of the normal's part within a wall
+  constexpr double least_normal = 0.25; // square of the normal's part within a wall
   double distance;
   Vec3d normal;
   if (!surface.probe(y, distance, normal))
@@ -22,7 +22,7 @@ HD bool to_surface(const Surface& surface, const Bounds& bound, int32_t vertex, 
       normal[a] = 0;
   const double along = norm2(normal);
   y -= (distance - (distance < 0 ? -most : most)) / along * normal;
-  return along > least_along;
+  return along > least_normal;
 }
 
 /// most_distance: of a surface vertex from the surface, in its spacings, if it was nearer. Star, of candidate c:

@@ -90,8 +90,10 @@ void compare(const BlockGrid& grid, const BoxRequest& box, const contour::Refine
   const contour::LeafList leaves = contour::select_leaves(lattice, surface, options, threads);
   cuda::HostBackend backend(threads);
   cuda::Selection<cuda::HostBackend> selection(backend);
-  const contour::Surface device_surface = selection.find_surface(lattice);
-  const contour::LeafList device = selection.select_leaves(lattice, options);
+  selection.find_surface(lattice);
+  selection.select_leaves(lattice, options);
+  const contour::Surface device_surface = selection.surface_on_host();
+  const contour::LeafList device = selection.leaves_on_host();
   CHECK(same(device_surface.cells, surface.cells));
   CHECK(same(device_surface.samples, surface.samples));
   CHECK(same(device.key, leaves.key));

@@ -1,0 +1,197 @@
+// relax.hpp — contour::relax on a Backend: the host's passes; a team looks for a vertex's place, an element of its
+// star to each thread, in the order and with the rounding of improve::Spokes.
+#pragma once
+#include "contour/detail/move_vertex.hpp"
+#include "contour/detail/relax_passes.hpp"
+#include "cuda/improve/device_isosurface.hpp"
+#include "geom/predicates.hpp"
+#include "improve/spoke_quality.hpp"
+
+namespace molmesh::cuda {
+
+using contour::detail::Fate;
+using contour::detail::RelaxView;
+
+/// Of contour::detail::move_vertex: all threads of the team ask the same and get the same answer. What they share
+/// lies in memory; each write is followed by a sync before it is read, each read before the next write.
+template <class Team>
+class TeamStar {
+public:
+  /// spoke, quality, order: scratch for all stars, as MoveTeams has it. side: of 6
+  HD TeamStar(const RelaxView& r, int32_t c, Team team, improve::Spoke<float>* spoke, float* quality,
+              uint16_t* order, float* side)
+      : r_(r), team_(team), vertex_(r.vertex[c]), n_(static_cast<int32_t>(r.first[c + 1] - r.first[c])),
+        groups_((n_ + lanes - 1) / lanes), element_(r.element + r.first[c]), spoke_(spoke + r.first[c]),
+        quality_(quality + r.first[c]), order_(order + r.first[c] / lanes + c), side_(side),
+        origin_(r.e.position[vertex_]) {
+    for (int32_t g = team_.rank(); g < groups_; g += Team::size)
+      order_[g] = static_cast<uint16_t>(g);
+    const double length = norm(corner(0, 1) - corner(0, 2));
+    scale_ = length < 1e-300 ? 1e-300 : length;
+    for (int32_t k = team_.rank(); k < n_; k += Team::size)
+      spoke_[k] = improve::make_spoke(local(corner(k, 1)), local(corner(k, 2)), local(corner(k, 3)));
+    team_.sync();
+  }
+
+  /// Mean of the star's edges at the vertex.
+  HD double length() const {
+    double sum = 0;
+    for (int32_t k = 0; k < n_; ++k)
+      for (size_t i = 0; i < 4; ++i)
+        sum += norm(r_.e.position[r_.e.tet[element_[k]][i]] - origin_);
+    return sum / (3. * double(n_));
+  }
+
+  HD float worst(Vec3d x, float above) {
+    evaluate_all(x);
+    float w = 2;
+    int32_t g = 0;
+    bool enough = false;
+    for (; g < groups_ && !enough; ++g) {
+      const int32_t first = lanes * order_[g];
+      float least = quality_[first];
+      for (int32_t k = first + 1; k < first + lanes && k < n_; ++k)
+        least = quality_[k] < least ? quality_[k] : least;
+      w = least < w ? least : w;
+      enough = !(w > above);
+    }
+    team_.sync();
+    if (enough && g > 1 && team_.rank() == 0) { // the group that decided goes one place forward
+      const uint16_t decided = order_[g - 1];
+      order_[g - 1] = order_[g - 2];
+      order_[g - 2] = decided;
+    }
+    team_.sync();
+    return w;
+  }
+
+  HD Vec3d ascent(Vec3d x, double step) {
+    evaluate_all(x);
+    int32_t worst = lanes * order_[0];
+    float w = 2;
+    for (int32_t g = 0; g < groups_; ++g)
+      for (int32_t k = lanes * order_[g]; k < lanes * (order_[g] + 1) && k < n_; ++k)
+        if (quality_[k] < w)
+          w = quality_[worst = k];
+    const auto d = static_cast<float>(step / scale_);
+    for (int s = team_.rank(); s < 6; s += Team::size) {
+      Vec3f y = local(x);
+      y[s / 2] = s % 2 ? y[s / 2] - d : y[s / 2] + d;
+      side_[s] = evaluate(worst, y);
+    }
+    team_.sync();
+    Vec3d g;
+    for (int a = 0; a < 3; ++a)
+      g[a] = double(side_[2 * a]) - double(side_[2 * a + 1]);
+    const double length = norm(g);
+    return length > 0 ? g / length : Vec3d{};
+  }
+
+  HD bool take(Vec3d x, float worst) {
+    constexpr float refused = -2;
+    for (int32_t k = team_.rank(); k < n_; k += Team::size) {
+      const Tet& t = r_.e.tet[element_[k]];
+      Vec3d p[4];
+      for (size_t i = 0; i < 4; ++i)
+        p[i] = t[i] == vertex_ ? x : r_.e.position[t[i]];
+      const float q = improve::tet_quality(p[0], p[1], p[2], p[3]);
+      quality_[k] = q <= worst || orient3d(p[0], p[1], p[2], p[3]) <= 0 ? refused : q;
+    }
+    team_.sync();
+    for (int32_t k = 0; k < n_; ++k)
+      if (quality_[k] == refused)
+        return false;
+    if (team_.rank() == 0)
+      r_.e.position[vertex_] = x;
+    for (int32_t k = team_.rank(); k < n_; k += Team::size)
+      r_.quality[element_[k]] = quality_[k];
+    return true;
+  }
+
+  static constexpr int32_t lanes = 8; ///< of a group of Spokes
+
+private:
+  /// Of element k, the vertex in front.
+  HD Vec3d corner(int32_t k, int i) const {
+    const Tet& t = r_.e.tet[element_[k]];
+    const int moving = t[0] == vertex_ ? 0 : t[1] == vertex_ ? 1 : t[2] == vertex_ ? 2 : 3;
+    return r_.e.position[t[static_cast<size_t>(improve::spoke_corner(moving, i))]];
+  }
+  HD Vec3f local(Vec3d x) const {
+    const Vec3d u = (x - origin_) / scale_;
+    return {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z)};
+  }
+  HD float evaluate(int32_t k, const Vec3f& y) const {
+    float q;
+    improve::spoke_quality(spoke_[k], y, q);
+    return q;
+  }
+  HD void evaluate_all(Vec3d x) {
+    const Vec3f y = local(x);
+    for (int32_t k = team_.rank(); k < n_; k += Team::size)
+      quality_[k] = evaluate(k, y);
+    team_.sync();
+  }
+
+  const RelaxView& r_;
+  Team team_;
+  int32_t vertex_, n_, groups_;
+  const int32_t* element_;
+  improve::Spoke<float>* spoke_; ///< [n]
+  float* quality_;               ///< [n]
+  uint16_t* order_;              ///< [groups] in which worst() looks at them
+  float* side_;
+  Vec3d origin_;
+  double scale_ = 0;
+};
+
+/// Those who have the turn.
+struct MoveTeams {
+  RelaxView r;
+  improve::IsosurfaceView surface;
+  double most_distance;
+  const int32_t* active;
+  Fate* fate;
+  improve::Spoke<float>* spoke; ///< [star entries]
+  float* quality;               ///< [star entries]
+  uint16_t* order;              ///< [star entries / 8 + candidates]
+  struct Shared {
+    float side[6];
+  };
+  template <class Team>
+  HD void operator()(int64_t i, Team team, Shared& shared) const {
+    if (fate[i] != Fate::stays)
+      return;
+    TeamStar<Team> star(r, active[i], team, spoke, quality, order, shared.side);
+    if (contour::detail::move_vertex(r, surface, most_distance, active[i], star) && team.rank() == 0)
+      fate[i] = Fate::moves;
+  }
+};
+
+template <class Backend>
+class TeamMover {
+public:
+  TeamMover(Backend& b, const improve::Isosurface& surface) : b_(b), surface_(b, surface) {}
+  void begin(const RelaxView&, int64_t candidates, int64_t entries) {
+    entries_ = double(entries) / double(candidates);
+    spoke_ = b_.template array<improve::Spoke<float>>(entries);
+    quality_ = b_.template array<float>(entries);
+    order_ = b_.template array<uint16_t>(entries / TeamStar<Solo>::lanes + candidates);
+  }
+  void move(const RelaxView& r, const int32_t* active, int64_t n, Fate* fate, double most_distance) {
+    b_.for_teams(
+        "move vertices", n,
+        MoveTeams{r, surface_.view(), most_distance, active, fate, spoke_.data(), quality_.data(), order_.data()},
+        {double(n) * entries_ * 112});
+  }
+
+private:
+  Backend& b_;
+  DeviceIsosurface<Backend> surface_;
+  double entries_ = 0; ///< of a star, in the mean
+  typename Backend::template Array<improve::Spoke<float>> spoke_;
+  typename Backend::template Array<float> quality_;
+  typename Backend::template Array<uint16_t> order_;
+};
+
+} // namespace molmesh::cuda

@@ -1,0 +1,60 @@
+// stages.cpp — the stages on the host's threads.
+#include "contour/stages.hpp"
+#include "contour/assembly.hpp"
+#include "contour/detail/at.hpp"
+#include "contour/relax.hpp"
+#include "improve/isosurface.hpp"
+#include "par/par.hpp"
+
+namespace molmesh::contour {
+
+HostStages::HostStages(int threads, const Lattice& lattice, Surface surface, LeafList leaves)
+    : threads_(threads), lattice_(&lattice), surface_(std::move(surface)) {
+  tree_.emplace(lattice.cells, std::move(leaves), threads);
+}
+
+HostStages::HostStages(int threads, const Lattice& lattice, Surface surface, LeafList leaves,
+                       const std::function<Dual(const DualInput&)>& make_dual)
+    : HostStages(threads, lattice, std::move(surface), std::move(leaves)) {
+  dual_ = make_dual(dual_input());
+}
+
+void HostStages::find_surface(const Lattice& lattice) {
+  lattice_ = &lattice;
+  surface_ = contour::find_surface(lattice, threads_);
+}
+
+void HostStages::select_leaves(const RefineOptions& options) {
+  tree_.emplace(lattice_->cells, contour::select_leaves(*lattice_, surface_, options, threads_), threads_);
+}
+
+void HostStages::make_dual(const std::function<void(const std::string&)>& on_phase) {
+  dual_ = contour::make_dual(dual_input(), on_phase);
+}
+
+void HostStages::relax() {
+  const improve::Isosurface surface(lattice_->grid(), threads_);
+  relaxed_ = contour::relax(dual_.elements, lattice_classes(dual_.complex, threads_), &surface, threads_);
+}
+
+std::vector<Component> HostStages::find_regions(const RegionOptions& options) {
+  regions_ = find_components(dual_.complex.view, dual_.elements, options, threads_);
+  return regions_.component;
+}
+
+TetMesh HostStages::assemble(Options::Meshed meshed) {
+  return contour::assemble(dual_.elements, regions_, meshed, threads_);
+}
+
+void HostStages::count(Summary& summary) const {
+  summary.leaves = tree_->size();
+  summary.surface_cells = static_cast<int64_t>(surface_.cells.size());
+  const auto is_split = [&](int64_t leaf) { return dual_.complex.split[detail::at(leaf)] >= 0; };
+  summary.split_cells = static_cast<int64_t>(par::select(tree_->size(), threads_, is_split).size());
+  summary.restored_points = dual_.restored_points;
+  summary.relaxed_points = relaxed_;
+  summary.face_points = dual_.elements.face_points;
+  summary.edge_points = dual_.elements.edge_points;
+}
+
+} // namespace molmesh::contour

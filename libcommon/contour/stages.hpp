@@ -1,0 +1,65 @@
+// stages.hpp — the stages of contour(), by the host's threads or by a device.
+#pragma once
+#include "contour/components.hpp"
+#include "contour/dual.hpp"
+#include "contour/lattice.hpp"
+#include "contour/leaves.hpp"
+#include "contour/options.hpp"
+#include "mesh/tet_mesh.hpp"
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace molmesh::contour {
+
+/// Called in this order, each once. What a stage makes stays where the next needs it.
+class Stages {
+public:
+  virtual ~Stages() = default;
+  /// The lattice stays the caller's until the end.
+  virtual void find_surface(const Lattice& lattice) = 0;
+  virtual void select_leaves(const RefineOptions& options) = 0;
+  /// Complex and elements; on_phase as in contour().
+  virtual void make_dual(const std::function<void(const std::string&)>& on_phase) = 0;
+  virtual void relax() = 0;
+  virtual std::vector<Component> find_regions(const RegionOptions& options) = 0;
+  virtual TetMesh assemble(Options::Meshed meshed) = 0;
+  /// Everything but volumes and parts.
+  virtual void count(Summary& summary) const = 0;
+};
+
+class HostStages final : public Stages {
+public:
+  explicit HostStages(int threads) : threads_(threads) {}
+  /// After the first two stages, or three, were made elsewhere.
+  HostStages(int threads, const Lattice& lattice, Surface surface, LeafList leaves);
+  HostStages(int threads, const Lattice& lattice, Surface surface, LeafList leaves,
+             const std::function<Dual(const DualInput&)>& make_dual);
+
+  void find_surface(const Lattice& lattice) override;
+  void select_leaves(const RefineOptions& options) override;
+  void make_dual(const std::function<void(const std::string&)>& on_phase) override;
+  void relax() override;
+  std::vector<Component> find_regions(const RegionOptions& options) override;
+  TetMesh assemble(Options::Meshed meshed) override;
+  void count(Summary& summary) const override;
+
+  const Octree& tree() const { return *tree_; }
+  const Surface& surface() const { return surface_; }
+  const Dual& dual() const { return dual_; }
+  const Components& regions() const { return regions_; }
+
+private:
+  DualInput dual_input() const { return {*lattice_, *tree_, surface_, threads_}; }
+  int threads_;
+  const Lattice* lattice_ = nullptr;
+  Surface surface_;
+  std::optional<Octree> tree_;
+  Dual dual_;
+  int64_t relaxed_ = 0;
+  Components regions_;
+};
+
+} // namespace molmesh::contour
