@@ -1,6 +1,5 @@
 // block_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "density/block_kernel.hpp"
-#include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "density/block_kernel.cpp"
@@ -61,127 +60,13 @@ HWY_INLINE void accumulate(const float* x, const float* yz, int32_t n, Power pow
     }
 }
 
-/// log2 of what multiplies T^p everywhere. Half{} gives twice the square root.
-HWY_INLINE float log2_scale(float p, float log2_term) {
-  return p * log2_term - (p == 0.5f ? 1.0f : 0.0f);
-}
-
-/// The arguments of a row: of an atom, or of what multiplies a power.
-struct Row {
-  float constant, slope[3];
-};
-
-#if HWY_TARGET <= HWY_AVX3
-/// Exponentials of two rows and products of their y and z factors, in registers: x and y of a row share one, the z
-/// of both rows another. curvature: of every argument.
-class Rows {
-public:
-  explicit Rows(float curvature) : q_(hn::Set(f, curvature)), low_(hn::FirstN(f, 8)) {
-    for (int v = 0; v < 6; ++v)
-      index_[v] = hn::SetTableIndices(f, order[v]);
-    t_ = hn::Load(f, steps);
-  }
-  void atoms(const float* ax, const float* ay, const float* az, const float* ac, int32_t n, float* x,
-             float* yz) const {
-    for (int32_t a = 0; a < n; a += 2) { // one row too many is overwritten
-      const V z = exp2(argument(az[a], az[a + 1], 0));
-      write(exp2(argument(ax[a], ay[a], ac[a])), hn::TableLookupLanes(z, index_[4]), x + 8 * a, yz + 64 * a);
-      write(exp2(argument(ax[a + 1], ay[a + 1], ac[a + 1])), hn::TableLookupLanes(z, index_[5]), x + 8 * a + 8,
-            yz + 64 * a + 64);
-    }
-  }
-  void one(const Row& r, float* x, float* yz) const {
-    const V z = exp2(argument(r.slope[2], 0, 0));
-    write(exp2(argument(r.slope[0], r.slope[1], r.constant)), hn::TableLookupLanes(z, index_[4]), x, yz);
-  }
-
-private:
-  V pair(float low, float high) const { return hn::IfThenElse(low_, hn::Set(f, low), hn::Set(f, high)); }
-  V argument(float low, float high, float low_constant) const {
-    return hn::MulAdd(hn::MulAdd(q_, t_, pair(low, high)), t_, hn::IfThenElseZero(low_, hn::Set(f, low_constant)));
-  }
-  void write(V xy, V z, float* x, float* yz) const {
-    hn::StoreU(hn::LowerHalf(xy), hn::Half<F>(), x);
-    for (int v = 0; v < 4; ++v)
-      hn::StoreU(hn::Mul(hn::TableLookupLanes(xy, index_[v]), z), f, yz + 16 * v);
-  }
-  // Of y for two j at a time; of z of either row.
-  alignas(64) static constexpr int32_t order[6][16] = {
-      {8, 8, 8, 8, 8, 8, 8, 8, 9, 9, 9, 9, 9, 9, 9, 9},
-      {10, 10, 10, 10, 10, 10, 10, 10, 11, 11, 11, 11, 11, 11, 11, 11},
-      {12, 12, 12, 12, 12, 12, 12, 12, 13, 13, 13, 13, 13, 13, 13, 13},
-      {14, 14, 14, 14, 14, 14, 14, 14, 15, 15, 15, 15, 15, 15, 15, 15},
-      {0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7},
-      {8, 9, 10, 11, 12, 13, 14, 15, 8, 9, 10, 11, 12, 13, 14, 15}};
-  alignas(64) static constexpr float steps[16] = {-3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f,
-                                                  -3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f};
-  decltype(hn::SetTableIndices(f, order[0])) index_[6];
-  V q_, t_;
-  hn::Mask<F> low_;
-};
-#else
-class Rows {
-public:
-  explicit Rows(float curvature) : q_(curvature) {}
-  void atoms(const float* ax, const float* ay, const float* az, const float* ac, int32_t n, float* x,
-             float* yz) const {
-    for (int32_t a = 0; a < n; ++a)
-      one({ac[a], {ax[a], ay[a], az[a]}}, x + 8 * a, yz + 64 * a);
-  }
-  void one(const Row& r, float* x, float* yz) const {
-    float y[8];
-    for (int32_t l = 0; l < 8; l += lanes8) {
-      const auto t = hn::Add(hn::Iota(f8, static_cast<float>(l)), hn::Set(f8, -3.5f));
-      const auto factor = [&](float slope, float constant) {
-        return exp2(f8, hn::MulAdd(hn::MulAdd(hn::Set(f8, q_), t, hn::Set(f8, slope)), t, hn::Set(f8, constant)));
-      };
-      hn::StoreU(factor(r.slope[0], r.constant), f8, x + l);
-      hn::StoreU(factor(r.slope[1], 0), f8, y + l);
-    }
-    for (int32_t l = 0; l < 8; l += lanes8) {
-      const auto t = hn::Add(hn::Iota(f8, static_cast<float>(l)), hn::Set(f8, -3.5f));
-      const auto z = exp2(f8, hn::Mul(hn::MulAdd(hn::Set(f8, q_), t, hn::Set(f8, r.slope[2])), t));
-      for (int32_t j = 0; j < 8; ++j)
-        hn::StoreU(hn::Mul(hn::Set(f8, y[j]), z), f8, yz + 8 * j + l);
-    }
-  }
-
-private:
-  using F8 = hn::CappedTag<float, 8>;
-  static constexpr F8 f8{};
-  static constexpr int32_t lanes8 = static_cast<int32_t>(HWY_MIN(8, HWY_LANES(float)));
-  float q_;
-};
-#endif
-
-void make_rows_simd(const BlockUnits& u, const BlockShape& b, BlockRows& rows) {
-  float *const x = rows.x.data(), *const yz = rows.yz.data();
-  if (u.direct)
-    return Rows(b.curvature)
-        .atoms(u.atom_x.data(), u.atom_y.data(), u.atom_z.data(), u.atom_constant.data(),
-               u.begin[static_cast<size_t>(u.n)], x, yz);
-  const Rows make(0);
-  for (int32_t n = 0; n < u.n; ++n) {
-    const auto s = static_cast<size_t>(n), a = static_cast<size_t>(u.begin[s]), row = a + s;
-    const int32_t atoms = u.begin[s + 1] - u.begin[s];
-    make.atoms(&u.atom_x[a], &u.atom_y[a], &u.atom_z[a], &u.atom_constant[a], atoms, x + 8 * row, yz + 64 * row);
-    const size_t last = row + static_cast<size_t>(atoms);
-    const float p = u.exponent[s];
-    Rows(p * b.curvature)
-        .one({log2_scale(p, u.log2_term[s]),
-              {p * b.slope * (u.x[s] - b.middle[0]), p * b.slope * (u.y[s] - b.middle[1]),
-               p * b.slope * (u.z[s] - b.middle[2])}},
-             x + 8 * last, yz + 64 * last);
-  }
-}
-
 template <bool direct>
 HWY_INLINE void add_unit(const BlockUnits& u, const BlockRows& rows, int32_t n, float* sum) {
   const auto s = static_cast<size_t>(n);
   const auto row = static_cast<size_t>(u.begin[s] + (direct ? 0 : n));
   const int32_t atoms = u.begin[s + 1] - u.begin[s];
-  const float *const x = rows.x.data() + 8 * row, *const yz = rows.yz.data() + 64 * row, p = u.exponent[s],
-                     scale = direct ? hn::GetLane(exp2(hn::Set(f, log2_scale(p, u.log2_term[s])))) : 1;
+  const float *const x = &rows.x[8 * row], *const yz = &rows.yz[64 * row], p = u.exponent[s],
+                     scale = direct ? rows.scale[s] : 1;
   if (p == 1.0f)
     accumulate<direct>(x, yz, atoms, One{}, scale, sum);
   else if (p == 0.5f)
@@ -218,14 +103,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace molmesh::density {
 
-HWY_EXPORT(make_rows_simd);
 HWY_EXPORT(add_units_simd);
 HWY_EXPORT(raise_group_simd);
 HWY_EXPORT(instruction_set_name);
 
-void make_rows(const BlockUnits& units, const BlockShape& shape, BlockRows& rows) {
-  HWY_DYNAMIC_DISPATCH(make_rows_simd)(units, shape, rows);
-}
 void add_units(const BlockUnits& units, const BlockRows& rows, int32_t first, int32_t last, float* sum) {
   HWY_DYNAMIC_DISPATCH(add_units_simd)(units, rows, first, last, sum);
 }

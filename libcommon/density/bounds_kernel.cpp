@@ -1,6 +1,7 @@
 // bounds_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "density/bounds_kernel.hpp"
 #include <algorithm>
+#include <numbers>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "density/bounds_kernel.cpp"
@@ -13,6 +14,38 @@ namespace molmesh::density {
 namespace HWY_NAMESPACE {
 namespace {
 
+constexpr double log2e = std::numbers::log2e;
+
+void place_atoms_simd(const double* x, const double* y, const double* z, const double* peak, size_t count,
+                      const double* middle, size_t i, LocalClusters& to) {
+#if HWY_TARGET != HWY_SCALAR
+  constexpr hn::CappedTag<double, 8> d;
+  constexpr hn::Rebind<float, hn::CappedTag<double, 8>> h;
+  const auto place = [&](const double* from, double origin, double scale, size_t a, Floats& slots) {
+    const auto v = hn::Mul(hn::Sub(hn::LoadU(d, from + a), hn::Set(d, origin)), hn::Set(d, scale));
+    return hn::StoreU(hn::DemoteTo(h, v), h, &slots[16 * i + a]);
+  };
+  for (size_t a = 0; a < 16; a += hn::Lanes(d)) {
+    place(x, middle[0], 1, a, to.atom_x);
+    place(y, middle[1], 1, a, to.atom_y);
+    place(z, middle[2], 1, a, to.atom_z);
+    place(peak, 0, log2e, a, to.atom_peak);
+  }
+#else
+  for (size_t a = 0; a < 16; ++a) {
+    to.atom_x[16 * i + a] = static_cast<float>(x[a] - middle[0]);
+    to.atom_y[16 * i + a] = static_cast<float>(y[a] - middle[1]);
+    to.atom_z[16 * i + a] = static_cast<float>(z[a] - middle[2]);
+    to.atom_peak[16 * i + a] = static_cast<float>(log2e * peak[a]);
+  }
+#endif
+  for (size_t a = 0; a < 16; a += lanes) {
+    float* const slot = &to.atom_peak[16 * i + a];
+    const auto used = hn::Lt(hn::Iota(f, static_cast<float>(a)), hn::Set(f, static_cast<float>(count)));
+    hn::StoreU(hn::IfThenElse(used, hn::LoadU(f, slot), hn::Set(f, -1e30f)), f, slot);
+  }
+}
+
 HWY_INLINE V distance_beyond(V lo, V hi, float middle, float half) {
   const V below = hn::Sub(lo, hn::Set(f, middle + half)), above = hn::Sub(hn::Set(f, middle - half), hi);
   return hn::Max(hn::Max(below, above), hn::Zero(f));
@@ -21,7 +54,7 @@ HWY_INLINE V distance_beyond(V lo, V hi, float middle, float half) {
 int32_t near_clusters_simd(const LocalClusters& c, int32_t n, const LocalBox& b, int32_t* out) {
   int32_t found = 0;
   for (int32_t i = 0; i < n; i += lanes) {
-    const auto get = [&](const std::vector<float>& v) { return hn::LoadU(f, v.data() + i); };
+    const auto get = [&](const Floats& v) { return hn::LoadU(f, v.data() + i); };
     const V dx = distance_beyond(get(c.lo_x), get(c.hi_x), b.middle[0], b.half[0]);
     const V dy = distance_beyond(get(c.lo_y), get(c.hi_y), b.middle[1], b.half[1]);
     const V dz = distance_beyond(get(c.lo_z), get(c.hi_z), b.middle[2], b.half[2]);
@@ -149,6 +182,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace molmesh::density {
 
+HWY_EXPORT(place_atoms_simd);
 HWY_EXPORT(near_clusters_simd);
 HWY_EXPORT(bound_units_simd);
 HWY_EXPORT(bound_octants_simd);
@@ -156,6 +190,10 @@ HWY_EXPORT(power_terms_simd);
 HWY_EXPORT(sum_up_to_simd);
 HWY_EXPORT(larger_than_simd);
 
+void place_atoms(const double* x, const double* y, const double* z, const double* peak, size_t count,
+                 const double* middle, size_t i, LocalClusters& to) {
+  HWY_DYNAMIC_DISPATCH(place_atoms_simd)(x, y, z, peak, count, middle, i, to);
+}
 int32_t near_clusters(const LocalClusters& c, int32_t n, const LocalBox& box, int32_t* out) {
   return HWY_DYNAMIC_DISPATCH(near_clusters_simd)(c, n, box, out);
 }

@@ -1,6 +1,8 @@
 // bounds_kernel.hpp — which clusters and atoms matter in a box, in single precision, for the best instruction set
 // of this machine. Logarithms here are to base 2; κ comes as decay = κ·log2(e), Å⁻².
 #pragma once
+#include "density/floats.hpp"
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -14,13 +16,17 @@ struct LocalBox {
 /// The clusters near a node, positions relative to its middle (Å), so that single precision suffices for bounds.
 /// Atoms in slots of 16 a cluster; unused slots have peak -1e30.
 struct LocalClusters {
-  std::vector<int32_t> cluster;                          ///< index in Field
-  std::vector<int64_t> group;                            ///< innermost group
-  std::vector<float> exponent;                           ///< its
-  std::vector<float> lo_x, lo_y, lo_z, hi_x, hi_y, hi_z; ///< box, padded to a multiple of 16
-  std::vector<float> cutoff2;                            ///< Å², padded likewise
-  std::vector<float> atom_x, atom_y, atom_z, atom_peak;  ///< [16 n], peak to base 2
+  std::vector<int32_t> cluster;              ///< index in Field
+  std::vector<int64_t> group;                ///< innermost group
+  Floats exponent;                           ///< its
+  Floats lo_x, lo_y, lo_z, hi_x, hi_y, hi_z; ///< box, padded to a multiple of 16
+  Floats cutoff2;                            ///< Å², padded likewise
+  Floats atom_x, atom_y, atom_z, atom_peak;  ///< [16 n], peak to base 2
 };
+
+/// Fills atom slots 16·i … 16·i + 15 with `count` ≤ 16 atoms relative to `middle` (Å). The arrays hold 16 atoms.
+void place_atoms(const double* x, const double* y, const double* z, const double* peak, size_t count,
+                 const double* middle, size_t i, LocalClusters& to);
 
 /// Those of the n clusters whose box is nearer to `box` than their cutoff, in order. out holds n + 16. Returns how
 /// many.
@@ -32,7 +38,7 @@ struct NearUnits {
   std::vector<int32_t> begin;   ///< [n + 1] position in `cluster`
   std::vector<int32_t> cluster; ///< index in the node's clusters
   std::vector<int64_t> group;   ///< [n] innermost group
-  std::vector<float> exponent;  ///< [n + 16]
+  Floats exponent;              ///< [n + 16]
 };
 
 /// log2 of an upper bound over `box` of each unit's sum. log2_upper holds n + 16. Without `scaled`, bounds below

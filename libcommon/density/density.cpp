@@ -17,7 +17,7 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
   s.atoms = o.atoms;
   s.threads = o.threads;
   s.progress = o.progress;
-  const Field f = make_field(hierarchy, o.decay, budget_for(s).far);
+  const Field f = make_field(hierarchy, o.decay, budget_for(s).far, o.threads);
   const Box box = f.bounds();
   const bool derived = o.margin < 0;
   double margin = o.margin, h = o.spacing;

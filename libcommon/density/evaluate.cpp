@@ -76,9 +76,10 @@ void Evaluator::in_single(const Field& f, const Selection& s, double h, float* o
   const double step = 2 * f.decay * h * log2e;
   BlockShape shape{{}, static_cast<float>(step), static_cast<float>(-0.5 * step * h)};
   std::copy_n(s.box.middle, 3, shape.middle);
-  const auto rows = static_cast<size_t>(s.atoms + s.units + 2);
+  const auto rows = static_cast<size_t>(s.atoms + s.units);
   rows_.x.resize(std::max(rows_.x.size(), 8 * rows));
   rows_.yz.resize(std::max(rows_.yz.size(), 64 * rows));
+  rows_.scale.resize(std::max(rows_.scale.size(), static_cast<size_t>(s.units) + 16));
   make_rows(u, shape, rows_);
   std::fill_n(out, points, 0.0f);
   OpenGroups groups(f);

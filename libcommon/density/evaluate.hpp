@@ -16,7 +16,7 @@ private:
   void in_double(const Field& f, const Selection& s, Vec3d middle, double h, float* out);
   void by_logarithms(const Field& f, const Selection& s, Vec3d middle, double h, float* out);
   BlockRows rows_;
-  std::vector<float> single_;
+  Floats single_;
   std::vector<double> double_;
 };
 

@@ -1,5 +1,6 @@
 // field.cpp — clusters and cutoff distances from a hierarchy.
 #include "density/field.hpp"
+#include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -56,7 +57,23 @@ void add_levels(Field& f, const Hierarchy& h) {
   }
 }
 
-void add_clusters(Field& f, const Hierarchy& h) {
+/// Box and ln_peak of cluster c.
+void measure_cluster(Field& f, size_t c) {
+  const auto begin = static_cast<size_t>(f.begin[c]), end = static_cast<size_t>(f.begin[c + 1]);
+  Box b{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+  double largest = -infinity, sum = 0;
+  for (size_t a = begin; a < end; ++a) {
+    b.lo = {std::min(b.lo.x, f.x[a]), std::min(b.lo.y, f.y[a]), std::min(b.lo.z, f.z[a])};
+    b.hi = {std::max(b.hi.x, f.x[a]), std::max(b.hi.y, f.y[a]), std::max(b.hi.z, f.z[a])};
+    largest = std::max(largest, f.peak[a]);
+  }
+  for (size_t a = begin; a < end; ++a)
+    sum += std::exp(f.peak[a] - largest);
+  f.box[c] = b;
+  f.ln_peak[c] = largest + std::log(sum);
+}
+
+void add_clusters(Field& f, const Hierarchy& h, int threads) {
   std::vector<int64_t> order(h.atom.size()), cuts;
   std::iota(order.begin(), order.end(), int64_t{0});
   const auto add_group = [&](int64_t g, int64_t begin, int64_t end) {
@@ -72,32 +89,31 @@ void add_clusters(Field& f, const Hierarchy& h) {
   }
   f.begin = std::move(cuts);
   f.begin.push_back(static_cast<int64_t>(h.atom.size()));
-  for (const int64_t a : order) {
-    const Atom& atom = h.atom[static_cast<size_t>(a)];
-    f.x.push_back(atom.center.x);
-    f.y.push_back(atom.center.y);
-    f.z.push_back(atom.center.z);
-    f.peak.push_back(f.decay * atom.radius * atom.radius);
-  }
+  const auto n = static_cast<int64_t>(order.size());
+  for (std::vector<double>* v : {&f.x, &f.y, &f.z, &f.peak})
+    v->resize(order.size());
+  par::for_n(n, threads, 16384, [&](int64_t i) {
+    const auto a = static_cast<size_t>(i);
+    const Atom& atom = h.atom[static_cast<size_t>(order[a])];
+    f.x[a] = atom.center.x;
+    f.y[a] = atom.center.y;
+    f.z[a] = atom.center.z;
+    f.peak[a] = f.decay * atom.radius * atom.radius;
+  });
   f.source = std::move(order);
-  for (size_t c = 0; c < f.group.size(); ++c) {
-    Box b{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-    double ln = -infinity;
-    for (auto a = static_cast<size_t>(f.begin[c]); a < static_cast<size_t>(f.begin[c + 1]); ++a) {
-      b.lo = {std::min(b.lo.x, f.x[a]), std::min(b.lo.y, f.y[a]), std::min(b.lo.z, f.z[a])};
-      b.hi = {std::max(b.hi.x, f.x[a]), std::max(b.hi.y, f.y[a]), std::max(b.hi.z, f.z[a])};
-      ln = log_add(ln, f.peak[a]);
-    }
-    f.box.push_back(b);
-    f.ln_peak.push_back(ln);
-  }
+  f.box.resize(f.group.size());
+  f.ln_peak.resize(f.group.size());
+  par::for_n(f.clusters(), threads, [&](int64_t c) { measure_cluster(f, static_cast<size_t>(c)); });
 }
 
 /// For every innermost group the logarithm of the largest change of its sum that changes G by at most `allowed`.
 std::vector<double> allowed_change(const Field& f, double allowed) {
   // Largest possible ln of each group's sum, anywhere; only exponents above 1 need it.
   std::vector<std::vector<double>> largest(f.level.size());
-  for (size_t l = 0; l < f.level.size(); ++l) {
+  const bool steep = std::any_of(f.level.begin(), f.level.end(), [](const FieldLevel& l) {
+    return std::any_of(l.exponent.begin(), l.exponent.end(), [](double p) { return p > 1; });
+  });
+  for (size_t l = 0; steep && l < f.level.size(); ++l) {
     largest[l].assign(f.level[l].exponent.size(), -infinity);
     if (l == 0)
       for (size_t c = 0; c < f.group.size(); ++c) {
@@ -153,17 +169,18 @@ Box Field::bounds() const {
   return b;
 }
 
-Field make_field(const Hierarchy& h, double decay, double far_error) {
+Field make_field(const Hierarchy& h, double decay, double far_error, int threads) {
   Field f;
   f.decay = decay;
   f.far_error = far_error;
   add_levels(f, h);
-  add_clusters(f, h);
+  add_clusters(f, h, threads);
   f.steepest = steepest_path(f);
   for (size_t l = 1; l < f.level.size(); ++l)
     for (const double p : f.level[l].exponent)
       f.plain_above = f.plain_above && p == 1;
   const std::vector<double> change = allowed_change(f, far_error / static_cast<double>(f.clusters()));
+  f.cutoff2.reserve(f.group.size());
   for (size_t c = 0; c < f.group.size(); ++c)
     f.cutoff2.push_back(std::max(0.0, (f.ln_peak[c] - change[static_cast<size_t>(f.group[c])]) / decay));
   return f;

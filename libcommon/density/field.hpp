@@ -53,7 +53,7 @@ struct Field {
 };
 
 /// far_error: bound on what all clusters beyond their cutoff2 together add to G anywhere (no unit).
-Field make_field(const Hierarchy& h, double decay, double far_error);
+Field make_field(const Hierarchy& h, double decay, double far_error, int threads = 1);
 
 /// The groups above the innermost level that are open while innermost groups pass by in ascending order.
 class OpenGroups {

@@ -4,15 +4,33 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace molmesh::density {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// ln of an upper bound of G where coordinate `axis` is `margin` or more beyond the box on one side; without
-/// clusters beyond their cutoff when `near_only`.
-double ln_bound_behind(const Field& f, const Box& all, int axis, bool high, double margin, bool near_only) {
+/// A cluster and how deep behind a face of the box it begins, Å.
+struct Deep {
+  size_t cluster;
+  double depth;
+};
+
+/// Those nearer than their cutoff to what lies `margin` beyond the face.
+std::vector<Deep> near_face(const Field& f, const Box& all, int axis, bool high, double margin, bool near_only) {
+  std::vector<Deep> near;
+  for (size_t c = 0; c < f.group.size(); ++c) {
+    const double depth = high ? all.hi[axis] - f.box[c].hi[axis] : f.box[c].lo[axis] - all.lo[axis];
+    if (!near_only || (margin + depth) * (margin + depth) < f.cutoff2[c])
+      near.push_back({c, depth});
+  }
+  return near;
+}
+
+/// ln of an upper bound of G `margin` or more beyond a face of the box; without clusters beyond their cutoff when
+/// `near_only`.
+double ln_bound_behind(const Field& f, const std::vector<Deep>& near, double margin, bool near_only) {
   OpenGroups groups(f);
   std::vector<double> open(groups.levels() + 1, -infinity); // [0]: G; [last]: the innermost group
   double& innermost = open.back();
@@ -30,8 +48,7 @@ double ln_bound_behind(const Field& f, const Box& all, int axis, bool high, doub
     to = log_add(to, f.level[0].exponent[static_cast<size_t>(current)] * innermost);
     innermost = -infinity;
   };
-  for (size_t c = 0; c < f.group.size(); ++c) {
-    const double depth = high ? all.hi[axis] - f.box[c].hi[axis] : f.box[c].lo[axis] - all.lo[axis];
+  for (const auto& [c, depth] : near) {
     if (near_only && (margin + depth) * (margin + depth) >= f.cutoff2[c])
       continue;
     if (f.group[c] != current)
@@ -65,7 +82,8 @@ double sufficient_margin(const Field& f, double value) {
   double margin = 0;
   for (int axis = 0; axis < 3; ++axis)
     for (const bool high : {false, true}) {
-      const auto enough = [&](double m) { return ln_bound_behind(f, all, axis, high, m, near_only) < limit; };
+      const std::vector<Deep> near = near_face(f, all, axis, high, margin, near_only);
+      const auto enough = [&](double m) { return ln_bound_behind(f, near, m, near_only) < limit; };
       if (enough(margin))
         continue;
       double lo = margin, hi = std::max(1.0, 2 * margin);

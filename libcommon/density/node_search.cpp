@@ -29,6 +29,20 @@ int64_t points_in_grid(const GridFrame& frame, Vec3i corner) {
   return n;
 }
 
+bool any(const uint64_t* mask) {
+  return std::any_of(mask, mask + 8, [](uint64_t v) { return v != 0; });
+}
+
+/// The same without points on the node's faces, of which its neighbors may know better.
+bool any_within(const uint64_t* mask, int b) {
+  const Vec3i at = block_at(b);
+  uint64_t inner = ~uint64_t{0};
+  inner &= at.y == 0 ? ~uint64_t{0} << 8 : at.y == node_blocks - 1 ? ~uint64_t{0} >> 8 : inner;
+  inner &= at.z == 0 ? ~uint64_t{0} / 255 * 254 : at.z == node_blocks - 1 ? ~uint64_t{0} / 255 * 127 : inner;
+  return std::any_of(mask + (at.x == 0), mask + 8 - (at.x == node_blocks - 1),
+                     [=](uint64_t v) { return (v & inner) != 0; });
+}
+
 } // namespace
 
 NodeSearch::NodeSearch(const Field& f, const GridFrame& frame, const SearchOptions& o, const NodeList& nodes)
@@ -109,6 +123,28 @@ void NodeSearch::settle(NodeState& s, Workspace& w) const {
     store(s, w);
 }
 
+/// Values of blocks that bounds left out: they have corners of band cells, and lie where the bounds say.
+void NodeSearch::evaluate_left_out(uint64_t blocks, Vec3i node, Workspace& w) const {
+  for (int octant = 0; octant < 8; ++octant) {
+    const Vec3i part = 2 * Vec3i{octant >> 2, octant >> 1 & 1, octant & 1};
+    const auto number = [&](int i) {
+      return 16 * (part.x + (i >> 2)) + 4 * (part.y + (i >> 1 & 1)) + part.z + (i & 1);
+    };
+    bool entered = false;
+    for (int i = 0; i < 8; ++i) {
+      const int b = number(i);
+      if (!(blocks >> b & 1))
+        continue;
+      if (!entered)
+        w.selection.narrow(middle_of(node + part, 2), frame_.spacing);
+      entered = true;
+      ++w.counts.blocks_visited;
+      w.selection.select_alone(i);
+      evaluate(node + block_at(b), w, w.value[b]);
+    }
+  }
+}
+
 /// Packs what looks like band while it is at hand: two thirds of the values never leave the processor's cache.
 void NodeSearch::store(NodeState& s, Workspace& w) const {
   NodePoints& to = *s.sides;
@@ -116,6 +152,11 @@ void NodeSearch::store(NodeState& s, Workspace& w) const {
   rows_from_words(w.far_above, w.beyond.above);
   likely_band_points(to, w.beyond, cells_of(s.corner), to.stored);
   words_from_rows(to.stored, w.stored);
+  uint64_t left_out = 0;
+  for (int b = 0; b < blocks_a_node; ++b)
+    left_out |= any_within(w.stored.word[b], b) ? uint64_t{1} << b & ~s.known : 0;
+  evaluate_left_out(left_out, s.corner, w);
+  s.known |= left_out;
   for (uint64_t left = s.known; left; left &= left - 1) {
     const int b = std::countr_zero(left);
     to.value[b] = w.packed.take(512 + 16);
@@ -161,44 +202,39 @@ void NodeSearch::finish(NodeState& s, const NodeBits* const* below, const NodeBi
   words_from_rows(*above[13], w.above);
   if (s.known)
     words_from_rows(s.sides->stored, w.stored);
-  bool entered = false;
-  s.band.reserve(static_cast<size_t>(std::popcount(s.known)) + 4);
+  uint64_t wanting = 0; // blocks that bounds left out, or of which too few values were kept
   for (int b = 0; b < blocks_a_node; ++b) {
-    const uint64_t *const active = w.active.word[b], bit = uint64_t{1} << b;
-    if (std::all_of(active, active + 8, [](uint64_t v) { return v == 0; })) {
+    const uint64_t *const active = w.active.word[b], *const stored = w.stored.word[b], bit = uint64_t{1} << b;
+    if (any(active))
+      s.kept |= bit;
+    else
       s.closed |= s.known & bit && w.above.word[b][0] & 1 ? bit : 0;
-      continue;
-    }
-    const Vec3i corner = s.corner + block_at(b);
-    const uint64_t* const stored = w.stored.word[b];
-    const bool at_hand =
-        s.known & bit && std::equal(active, active + 8, stored, [](uint64_t a, uint64_t v) { return !(a & ~v); });
+    if (s.kept & bit && !(s.known & bit &&
+                          std::equal(active, active + 8, stored, [](uint64_t a, uint64_t v) { return !(a & ~v); })))
+      wanting |= bit;
+  }
+  s.closed &= ~s.kept;
+  if (wanting) {
+    w.selection.enter(middle_of(s.corner, node_blocks), nodes_.clusters_at(s.corner));
+    evaluate_left_out(wanting, s.corner, w);
+  }
+  s.band.reserve(static_cast<size_t>(std::popcount(s.kept)));
+  for (uint64_t left = s.kept; left; left &= left - 1) {
+    const int b = std::countr_zero(left);
+    const uint64_t* const active = w.active.word[b];
     float* value;
     int32_t n = 0;
-    if (at_hand) {
-      value = s.sides->value[b];
-      n = keep_active(value, stored, active);
-    } else {
-      // Bounds left it out: its points are on corners of band cells, and lie where the bounds say. Or its values
-      // were not kept.
-      if (!entered)
-        w.selection.enter(middle_of(s.corner, node_blocks), nodes_.clusters_at(s.corner));
-      entered = true;
-      const Vec3i in_node = block_at(b), part{in_node.x & 2, in_node.y & 2, in_node.z & 2},
-                  in_part = in_node - part;
-      w.selection.narrow(middle_of(s.corner + part, 2), frame_.spacing);
-      ++w.counts.blocks_visited;
-      w.selection.select(4 * in_part.x + 2 * in_part.y + in_part.z, false);
-      evaluate(corner, w, w.value[0]);
+    if (wanting >> b & 1) {
       value = w.packed.take(512 + 16);
-      n = pack_active(w.value[0], active, value);
+      n = pack_active(w.value[b], active, value);
       w.packed.keep(static_cast<size_t>(n));
+    } else {
+      value = s.sides->value[b];
+      n = keep_active(value, w.stored.word[b], active);
     }
-    s.closed &= ~bit;
-    s.kept |= bit;
     w.counts.active_points += n;
     BandBlock& to = s.band.emplace_back();
-    to.corner = 8 * corner;
+    to.corner = 8 * (s.corner + block_at(b));
     std::copy_n(active, 8, to.active.begin());
     std::copy_n(w.above.word[b], 8, to.above.begin());
     to.value = value;

@@ -20,6 +20,7 @@ private:
   void work_through_block(int b, int octant, Vec3i corner, NodeState& s, Workspace& w) const;
   void settle(NodeState& s, Workspace& w) const;
   void store(NodeState& s, Workspace& w) const;
+  void evaluate_left_out(uint64_t blocks, Vec3i node, Workspace& w) const;
   void need_neighbors(NodeState& s) const;
   void evaluate(Vec3i corner, Workspace& w, float* value) const;
   CellRange cells_of(Vec3i corner) const;

@@ -30,6 +30,40 @@ bool in_grid(const GridFrame& frame, Vec3i block) {
   return true;
 }
 
+namespace {
+
+/// Of `clusters`, those nearer than their cutoff to each of the eight cubes that begin at `corner`. Distances along
+/// an axis serve four cubes; summed in the order of distance2().
+void halve(const Field& f, const GridFrame& frame, std::span<const int32_t> clusters, Vec3i corner, int32_t blocks,
+           std::vector<int32_t>* lists) {
+  const Box low = points_box(frame, corner, blocks),
+            high = points_box(frame, corner + blocks * Vec3i{1, 1, 1}, blocks);
+  std::vector<int32_t> near[8];
+  size_t found[8] = {};
+  for (std::vector<int32_t>& list : near)
+    list.resize(clusters.size());
+  for (const int32_t c : clusters) {
+    const Box& box = f.box[static_cast<size_t>(c)];
+    double d2[3][2];
+    for (int a = 0; a < 3; ++a)
+      for (const bool second : {false, true}) {
+        const Box& cube = second ? high : low;
+        const double d = std::max(std::max(cube.lo[a] - box.hi[a], box.lo[a] - cube.hi[a]), 0.0);
+        d2[a][second] = d * d;
+      }
+    for (size_t i = 0; i < 8; ++i) {
+      near[i][found[i]] = c;
+      found[i] += d2[0][i >> 2] + d2[1][i >> 1 & 1] + d2[2][i & 1] < f.cutoff2[static_cast<size_t>(c)];
+    }
+  }
+  for (size_t i = 0; i < 8; ++i)
+    if (const auto at = static_cast<int32_t>(i);
+        in_grid(frame, corner + blocks * Vec3i{at >> 2, at >> 1 & 1, at & 1}))
+      lists[i].assign(near[i].begin(), near[i].begin() + static_cast<std::ptrdiff_t>(found[i]));
+}
+
+} // namespace
+
 NodeList nodes_by_halving(const Field& f, const GridFrame& frame, bool every, int threads) {
   int32_t blocks = node_blocks;
   const Vec3i first = first_block(frame);
@@ -42,22 +76,22 @@ NodeList nodes_by_halving(const Field& f, const GridFrame& frame, bool every, in
   parents.node.push_back({first, 0, f.clusters()});
   while (blocks > node_blocks) {
     blocks /= 2;
-    const auto n = static_cast<int64_t>(parents.node.size()) * 8;
-    std::vector<std::vector<int32_t>> lists(static_cast<size_t>(n));
+    const auto n = static_cast<int64_t>(parents.node.size());
+    std::vector<std::vector<int32_t>> lists(static_cast<size_t>(8 * n));
     const auto corner = [&](int64_t i) {
       const auto c = static_cast<int32_t>(i & 7);
       return parents.node[static_cast<size_t>(i >> 3)].corner + blocks * Vec3i{c >> 2, c >> 1 & 1, c & 1};
     };
-    par::for_n(n, threads, 1, [&](int64_t i) {
-      if (!in_grid(frame, corner(i)))
-        return;
-      const Box box = points_box(frame, corner(i), blocks);
-      for (const int32_t c : parents.clusters(parents.node[static_cast<size_t>(i >> 3)]))
-        if (distance2(box, f.box[static_cast<size_t>(c)]) < f.cutoff2[static_cast<size_t>(c)])
-          lists[static_cast<size_t>(i)].push_back(c);
+    par::for_n(n, threads, 1, [&](int64_t p) {
+      halve(f, frame, parents.clusters(parents.node[static_cast<size_t>(p)]), corner(8 * p), blocks,
+            &lists[static_cast<size_t>(8 * p)]);
     });
     NodeList children;
-    for (int64_t i = 0; i < n; ++i) {
+    size_t total = 0;
+    for (const std::vector<int32_t>& list : lists)
+      total += list.size();
+    children.cluster.reserve(total);
+    for (int64_t i = 0; i < 8 * n; ++i) {
       const std::vector<int32_t>& list = lists[static_cast<size_t>(i)];
       if (list.empty() && !(every && in_grid(frame, corner(i))))
         continue;

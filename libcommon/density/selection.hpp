@@ -54,6 +54,8 @@ public:
   /// Block (i, j, k) of the part, octant 4·i + 2·j + k. With `classify`, blocks that are surely below `lower` or
   /// above `upper` get their side and no units; otherwise side is mixed.
   void select(int octant, bool classify);
+  /// The same units and atoms, never a side, where few blocks of the part are wanted.
+  void select_alone(int octant);
 
   Side side = Side::mixed;
   Arithmetic arithmetic;        ///< that this block needs: the one asked for, or a safer one
@@ -67,15 +69,17 @@ public:
   std::vector<double> ln_weight, offset_x, offset_y, offset_z; ///< offsets in Å
 
 private:
+  static constexpr double single = 1e-3; ///< more than single precision can do to a bound, relative
   LocalBox local(Vec3d middle, Vec3d half) const;
   void gather(const LocalBox& part);
   void keep_only();
   void find_effects();
   void find_effects_of_levels();
-  void bound_octants_of_part();
+  void bound_octants_of_part(int alone);
+  void take_octant(int octant, bool classify);
   double upper_bound();
   bool surely_outside() { return (1 + slack_) * upper_bound() + 2 * budget_.total() < lower_; }
-  void drop(double budget);
+  double drop(double budget);
   bool take_single();
   void take_double(Vec3d middle);
   bool surely_inside(Vec3d middle, Vec3d half);
@@ -93,15 +97,16 @@ private:
   bool scaled_;            ///< upper bounds need more range than single precision has
   Vec3d node_middle_, part_middle_;
   double h_ = 0;
+  double left_ = 0;                   ///< of what groups dropped in the block at work may change
   LocalClusters local_;               ///< of the node
   NearUnits near_;                    ///< of the part of it at work
   std::vector<int32_t> found_, kept_; ///< clusters of local_; units of near_ that are not dropped
   LocalBox octant_[8];
   bool octants_bounded_ = false;
-  std::vector<float> octant_upper_; ///< of near_, per octant: bound on log2 S over it
-  int32_t stride_ = 0;              ///< from octant to octant
-  const float* log2_upper_;         ///< of near_ over the box at work
-  std::vector<float> upper_of_part_, effect_,
+  Floats octant_upper_;     ///< of near_, per octant: bound on log2 S over it
+  int32_t stride_ = 0;      ///< from octant to octant
+  const float* log2_upper_; ///< of near_ over the box at work
+  Floats upper_of_part_, effect_,
       ones_; ///< of near_: the same over the part; effect on G of dropping it
   UnitMiddles middles_;
   std::vector<std::vector<double>> sum_; ///< per level, per run of units of one group: upper bound of ln S

@@ -102,7 +102,7 @@ bool Selection::surely_inside(Vec3d middle, Vec3d half) {
       return false;
   }
   if (arithmetic == Arithmetic::in_single) {
-    for (std::vector<float>* v : {&middles_.log2_sum, &middles_.x, &middles_.y, &middles_.z})
+    for (Floats* v : {&middles_.log2_sum, &middles_.x, &middles_.y, &middles_.z})
       v->resize(static_cast<size_t>(block_units.n) + 16);
     unit_middles(block_units, box, static_cast<float>(log2e * f_.decay), middles_);
   }

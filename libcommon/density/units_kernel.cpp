@@ -85,14 +85,22 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
     const auto along = [&](V x, V y, V z) {
       return hn::Mul(hn::Set(f, 3.5f), hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z))));
     };
+    // The largest slope·t - bend·t² up to t = 3.5.
+    const float bent = !absolute ? 0 : decay / 12.25f * std::min(1.0f, p);
+    const auto most = [&](V slope, float half) {
+      const float bend = bent * half * half;
+      const V up = hn::Abs(slope),
+              t = absolute ? hn::Min(hn::Mul(up, hn::Set(f, 0.5f / bend)), hn::Set(f, 3.5f)) : hn::Set(f, 3.5f);
+      return hn::Mul(t, absolute ? hn::NegMulAdd(hn::Set(f, bend), t, up) : up);
+    };
     for_atoms(from.cluster.data() + from.begin[at], from.begin[at + 1] - from.begin[at], [&](size_t a) {
       const V weight = hn::Sub(middle(node, a), log2_largest);
       V x = hn::Mul(hn::Sub(hn::LoadU(f, &node.atom_x[a]), middle.x), sx),
         y = hn::Mul(hn::Sub(hn::LoadU(f, &node.atom_y[a]), middle.y), sy),
         z = hn::Mul(hn::Sub(hn::LoadU(f, &node.atom_z[a]), middle.z), sz);
-      const V effect =
-          hn::Add(hn::Add(weight, change),
-                  along(hn::NegMulAdd(share, cx, x), hn::NegMulAdd(share, cy, y), hn::NegMulAdd(share, cz, z)));
+      const V effect = hn::Add(
+          hn::Add(hn::Add(weight, change), most(hn::NegMulAdd(share, cx, x), b.half[0])),
+          hn::Add(most(hn::NegMulAdd(share, cy, y), b.half[1]), most(hn::NegMulAdd(share, cz, z), b.half[2])));
       // Unused slots have a peak of -1e30: never kept. The unit's center stays.
       const auto keep =
           hn::Or(hn::And(hn::Ge(effect, least), hn::Gt(weight, hn::Set(f, -1e29f))), hn::Ge(weight, hn::Zero(f)));
@@ -115,14 +123,14 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
   }
   to.n = n;
   dropped = absolute ? hn::GetLane(hn::SumOfLanes(f, lost)) : 0;
-  for (std::vector<float>* v : {&to.exponent, &to.log2_term, &to.x, &to.y, &to.z})
+  for (Floats* v : {&to.exponent, &to.log2_term, &to.x, &to.y, &to.z})
     std::fill_n(v->begin() + n, 16, 0.0f);
   const V twice = hn::Set(f, 2 * decay);
   const float bend = decay * (b.half[0] * b.half[0] + b.half[1] * b.half[1] + b.half[2] * b.half[2]);
   for (int32_t u = 0; u < n; u += lanes) {
     V away = hn::Zero(f);
     int axis = 0;
-    for (const std::vector<float>* v : {&to.x, &to.y, &to.z}) {
+    for (const Floats* v : {&to.x, &to.y, &to.z}) {
       const V center = hn::LoadU(f, v->data() + u);
       away = hn::MulAdd(hn::Set(f, b.half[axis]), hn::Abs(hn::Sub(center, hn::Set(f, b.middle[axis]))), away);
       ++axis;
@@ -156,7 +164,7 @@ bool take_units_simd(const LocalClusters& node, const NearUnits& from, const int
   // A threshold that mostly does; what it drops is summed. The last one cannot fail.
   const auto absolute = to.direct ? take<true, true> : take<true, false>;
   const float last = safe(16 * std::max(1, slots * n));
-  for (float least = std::max(last, log2_within - 4);; least = std::max(last, least - 2)) {
+  for (float least = std::max(last, log2_within - 2.5f);; least = std::max(last, least - 1.5f)) {
     const bool holds = absolute(node, from, list, n, block, decay, middle, log2_upper, least, to, dropped);
     if (1.001f * dropped <= within || least <= last)
       return holds;

@@ -14,8 +14,8 @@ struct BlockUnits {
   int32_t n = 0;
   bool direct = false;
   std::vector<int32_t> begin{0}; ///< [n + 1]
-  std::vector<float> exponent, log2_term, x, y, z;
-  std::vector<float> atom_x, atom_y, atom_z, atom_constant;
+  Floats exponent, log2_term, x, y, z;
+  Floats atom_x, atom_y, atom_z, atom_constant;
 };
 
 /// Largest change of a logarithm over a block that leaves single precision far from overflow.
@@ -30,7 +30,7 @@ bool take_units(const LocalClusters& node, const NearUnits& from, const int32_t*
 
 /// log2 S in the middle of the block, and the mean of the atoms' positions weighted with their terms there, Å.
 struct UnitMiddles {
-  std::vector<float> log2_sum, x, y, z; ///< [n + 16]
+  Floats log2_sum, x, y, z; ///< [n + 16]
 };
 void unit_middles(const BlockUnits& units, const LocalBox& block, float decay, UnitMiddles& to);
 

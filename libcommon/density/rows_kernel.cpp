@@ -1,0 +1,182 @@
+// rows_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
+#include "density/rows_kernel.hpp"
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "density/rows_kernel.cpp"
+#include <hwy/foreach_target.h>
+
+#include "density/simd_math-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace molmesh::density {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// log2 of what multiplies T^p everywhere. Half{} gives twice the square root.
+HWY_INLINE V log2_scale(V p, V log2_term) {
+  return hn::MulSub(p, log2_term, hn::IfThenElseZero(hn::Eq(p, hn::Set(f, 0.5f)), hn::Set(f, 1.0f)));
+}
+
+#if HWY_TARGET <= HWY_AVX3
+/// What bends the exponents of a row: 2^(curvature·t²) along x, and y times z.
+struct Bend {
+  explicit Bend(float curvature) {
+    alignas(64) static constexpr float steps[16] = {-3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f,
+                                                    -3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f};
+    alignas(64) static constexpr int32_t pair[16] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1};
+    const V t = hn::Load(f, steps), bend = exp2(hn::Mul(hn::Set(f, curvature), hn::Mul(t, t)));
+    x = _mm512_castps512_ps256(bend.raw);
+    for (int32_t v = 0; v < 4; ++v)
+      yz[v] = hn::Mul(bend, hn::TableLookupLanes(
+                                bend, hn::IndicesFromVec(f, hn::Add(hn::Load(I(), pair), hn::Set(I(), 2 * v)))));
+  }
+  __m256 x;
+  V yz[4];
+};
+
+/// Rows of 16 atoms. An exponent that is linear along an axis makes a geometric series: its terms r^(i - 4) are
+/// products of r, r² and r⁻⁴, of those that the bits of i choose.
+class Rows {
+public:
+  Rows(V x, V y, V z, V constant) {
+    const V half = hn::Set(f, 0.5f);
+    hn::Store(exp2(hn::MulAdd(half, x, constant)), f, start_x_);
+    hn::Store(exp2(hn::Mul(half, hn::Add(y, z))), f, start_yz_);
+    keep_powers(x, x_);
+    keep_powers(y, y_);
+    keep_powers(z, z_);
+  }
+  template <bool bent>
+  void write(int32_t row, const Bend& bend, float* x, float* yz) const {
+    __m256 tx = _mm256_set1_ps(start_x_[row]);
+    tx = _mm256_mask_mul_ps(tx, 0xaa, tx, _mm256_set1_ps(x_[0][row]));
+    tx = _mm256_mask_mul_ps(tx, 0xcc, tx, _mm256_set1_ps(x_[1][row]));
+    tx = _mm256_mask_mul_ps(tx, 0x0f, tx, _mm256_set1_ps(x_[2][row]));
+    _mm256_storeu_ps(x, bent ? _mm256_mul_ps(tx, bend.x) : tx);
+    __m512 t[4]; // of y two j at a time
+    __m512 tz = _mm512_set1_ps(start_yz_[row]);
+    tz = _mm512_mask_mul_ps(tz, 0xaaaa, tz, _mm512_set1_ps(z_[0][row]));
+    tz = _mm512_mask_mul_ps(tz, 0xcccc, tz, _mm512_set1_ps(z_[1][row]));
+    tz = _mm512_mask_mul_ps(tz, 0x0f0f, tz, _mm512_set1_ps(z_[2][row]));
+    t[2] = _mm512_mask_mul_ps(tz, 0xff00, tz, _mm512_set1_ps(y_[0][row]));
+    t[3] = _mm512_mul_ps(t[2], _mm512_set1_ps(y_[1][row]));
+    t[0] = _mm512_mul_ps(t[2], _mm512_set1_ps(y_[2][row]));
+    t[1] = _mm512_mul_ps(t[3], _mm512_set1_ps(y_[2][row]));
+    for (int32_t v = 0; v < 4; ++v)
+      _mm512_storeu_ps(yz + 16 * v, bent ? _mm512_mul_ps(t[v], bend.yz[v].raw) : t[v]);
+  }
+
+private:
+  static void keep_powers(V slope, float (&to)[3][16]) {
+    const V r = exp2(slope);
+    hn::Store(r, f, to[0]);
+    hn::Store(hn::Mul(r, r), f, to[1]);
+    hn::Store(exp2(hn::Mul(hn::Set(f, -4.0f), slope)), f, to[2]);
+  }
+  HWY_ALIGN float start_x_[16], start_yz_[16], x_[3][16], y_[3][16], z_[3][16];
+};
+#else
+struct Bend {
+  explicit Bend(float c) : curvature(c) {}
+  float curvature;
+};
+
+class Rows {
+public:
+  Rows(V x, V y, V z, V constant) {
+    hn::Store(x, f, x_);
+    hn::Store(y, f, y_);
+    hn::Store(z, f, z_);
+    hn::Store(constant, f, constant_);
+  }
+  template <bool bent>
+  void write(int32_t row, const Bend& bend, float* x, float* yz) const {
+    float y[8];
+    const auto q = hn::Set(f8, bent ? bend.curvature : 0);
+    const auto factors = [&](int32_t l, float slope, float constant) {
+      const auto t = hn::Add(hn::Iota(f8, static_cast<float>(l)), hn::Set(f8, -3.5f));
+      return exp2(f8, hn::MulAdd(hn::MulAdd(q, t, hn::Set(f8, slope)), t, hn::Set(f8, constant)));
+    };
+    for (int32_t l = 0; l < 8; l += lanes8) {
+      hn::StoreU(factors(l, x_[row], constant_[row]), f8, x + l);
+      hn::StoreU(factors(l, y_[row], 0), f8, y + l);
+    }
+    for (int32_t l = 0; l < 8; l += lanes8) {
+      const auto z = factors(l, z_[row], 0);
+      for (int32_t j = 0; j < 8; ++j)
+        hn::StoreU(hn::Mul(hn::Set(f8, y[j]), z), f8, yz + 8 * j + l);
+    }
+  }
+
+private:
+  using F8 = hn::CappedTag<float, 8>;
+  static constexpr F8 f8{};
+  static constexpr int32_t lanes8 = static_cast<int32_t>(HWY_MIN(8, HWY_LANES(float)));
+  HWY_ALIGN float x_[lanes], y_[lanes], z_[lanes], constant_[lanes];
+};
+#endif
+
+/// Rows of all atoms: one after the other when direct, else with room for one more after those of each unit.
+template <bool direct>
+HWY_INLINE void make_atom_rows(const BlockUnits& u, float curvature, float* x, float* yz) {
+  const Bend bend(curvature);
+  const int32_t atoms = u.begin[static_cast<size_t>(u.n)];
+  size_t unit = 0;
+  for (int32_t a = 0; a < atoms; a += lanes) {
+    const auto get = [&](const Floats& v) { return hn::LoadU(f, v.data() + a); };
+    const Rows rows(get(u.atom_x), get(u.atom_y), get(u.atom_z), get(u.atom_constant));
+    for (int32_t l = 0; l < std::min(lanes, atoms - a); ++l) {
+      if (!direct)
+        unit += a + l == u.begin[unit + 1];
+      const auto row = static_cast<size_t>(a + l) + unit;
+      rows.write<direct>(l, bend, x + 8 * row, yz + 64 * row);
+    }
+  }
+}
+
+/// The last row of each unit: what multiplies its power.
+HWY_INLINE void make_unit_rows(const BlockUnits& u, const BlockShape& b, float* x, float* yz) {
+  for (int32_t n = 0; n < u.n; n += lanes) {
+    const V p = hn::LoadU(f, u.exponent.data() + n), slope = hn::Mul(p, hn::Set(f, b.slope));
+    const auto along = [&](const Floats& center, int axis) {
+      return hn::Mul(slope, hn::Sub(hn::LoadU(f, center.data() + n), hn::Set(f, b.middle[axis])));
+    };
+    const Rows rows(along(u.x, 0), along(u.y, 1), along(u.z, 2),
+                    log2_scale(p, hn::LoadU(f, u.log2_term.data() + n)));
+    for (int32_t l = 0; l < std::min(lanes, u.n - n); ++l) {
+      const auto unit = static_cast<size_t>(n + l);
+      const size_t row = static_cast<size_t>(u.begin[unit + 1]) + unit;
+      rows.write<true>(l, Bend(u.exponent[unit] * b.curvature), x + 8 * row, yz + 64 * row);
+    }
+  }
+}
+
+void make_rows_simd(const BlockUnits& u, const BlockShape& b, BlockRows& rows) {
+  float *const x = rows.x.data(), *const yz = rows.yz.data();
+  if (!u.direct) {
+    make_atom_rows<false>(u, 0, x, yz);
+    return make_unit_rows(u, b, x, yz);
+  }
+  make_atom_rows<true>(u, b.curvature, x, yz);
+  for (int32_t n = 0; n < u.n; n += lanes)
+    hn::StoreU(exp2(log2_scale(hn::LoadU(f, u.exponent.data() + n), hn::LoadU(f, u.log2_term.data() + n))), f,
+               rows.scale.data() + n);
+}
+
+} // namespace
+} // namespace HWY_NAMESPACE
+} // namespace molmesh::density
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace molmesh::density {
+
+HWY_EXPORT(make_rows_simd);
+
+void make_rows(const BlockUnits& units, const BlockShape& shape, BlockRows& rows) {
+  HWY_DYNAMIC_DISPATCH(make_rows_simd)(units, shape, rows);
+}
+
+} // namespace molmesh::density
+#endif

@@ -1,0 +1,87 @@
+// selection_near.cpp — the clusters near a node, and their units near a part of it.
+#include "density/selection.hpp"
+#include <algorithm>
+#include <utility>
+
+namespace molmesh::density {
+
+void Selection::enter(Vec3d middle, std::span<const int32_t> clusters) {
+  node_middle_ = middle;
+  const size_t n = clusters.size(), padded = (n + 15) / 16 * 16;
+  LocalClusters& l = local_;
+  l.cluster.assign(clusters.begin(), clusters.end());
+  l.group.resize(n);
+  l.exponent.resize(n);
+  for (Floats* v : {&l.lo_x, &l.lo_y, &l.lo_z, &l.hi_x, &l.hi_y, &l.hi_z, &l.cutoff2})
+    v->resize(padded);
+  for (Floats* v : {&l.atom_x, &l.atom_y, &l.atom_z, &l.atom_peak})
+    v->resize(16 * n);
+  for (size_t i = 0; i < n; ++i) {
+    const auto c = static_cast<size_t>(clusters[i]);
+    l.group[i] = f_.group[c];
+    l.exponent[i] = static_cast<float>(f_.level[0].exponent[static_cast<size_t>(f_.group[c])]);
+    const Vec3d lo = f_.box[c].lo - middle, hi = f_.box[c].hi - middle;
+    l.lo_x[i] = static_cast<float>(lo.x), l.lo_y[i] = static_cast<float>(lo.y),
+    l.lo_z[i] = static_cast<float>(lo.z);
+    l.hi_x[i] = static_cast<float>(hi.x), l.hi_y[i] = static_cast<float>(hi.y),
+    l.hi_z[i] = static_cast<float>(hi.z);
+    l.cutoff2[i] = static_cast<float>((1 + single) * f_.cutoff2[c]);
+    const auto first = static_cast<size_t>(f_.begin[c]), count = static_cast<size_t>(f_.begin[c + 1]) - first;
+    const double origin[3] = {middle.x, middle.y, middle.z};
+    const double* from[4] = {&f_.x[first], &f_.y[first], &f_.z[first], &f_.peak[first]};
+    double last[4][16] = {};
+    for (int v = 0; first + 16 > f_.x.size() && v < 4; ++v)
+      std::copy_n(std::exchange(from[v], last[v]), count, last[v]);
+    place_atoms(from[0], from[1], from[2], from[3], count, origin, i, l);
+  }
+}
+
+/// near_: the units of the clusters of the node that are near a part of it.
+void Selection::gather(const LocalBox& part) {
+  found_.resize(local_.cluster.size() + 16);
+  const int32_t n = near_clusters(local_, static_cast<int32_t>(local_.cluster.size()), part, found_.data());
+  const auto clusters = static_cast<size_t>(n);
+  NearUnits& u = near_;
+  u.begin.clear();
+  u.group.clear();
+  u.cluster.assign(found_.begin(), found_.begin() + n);
+  u.exponent.resize(clusters + 16);
+  for (size_t i = 0; i < clusters; ++i) {
+    const auto c = static_cast<size_t>(found_[i]);
+    // With P = 1 a cluster can go without the others of its group.
+    if (u.group.empty() || local_.exponent[c] == 1 || u.group.back() != local_.group[c]) {
+      u.exponent[u.group.size()] = local_.exponent[c];
+      u.begin.push_back(static_cast<int32_t>(i));
+      u.group.push_back(local_.group[c]);
+    }
+  }
+  u.n = static_cast<int32_t>(u.group.size());
+  u.begin.push_back(n);
+  std::fill_n(u.exponent.begin() + u.n, 16, 1.0f);
+}
+
+/// Forgets the units of near_ that are not kept.
+void Selection::keep_only() {
+  NearUnits& u = near_;
+  size_t units_to = 0, to = 0;
+  for (const int32_t k : kept_) {
+    const auto n = static_cast<size_t>(k);
+    const auto begin = static_cast<size_t>(u.begin[n]), end = static_cast<size_t>(u.begin[n + 1]);
+    std::copy(u.cluster.begin() + static_cast<std::ptrdiff_t>(begin),
+              u.cluster.begin() + static_cast<std::ptrdiff_t>(end),
+              u.cluster.begin() + static_cast<std::ptrdiff_t>(to));
+    u.begin[units_to] = static_cast<int32_t>(to);
+    u.group[units_to] = u.group[n];
+    u.exponent[units_to++] = u.exponent[n];
+    to += end - begin;
+  }
+  u.n = static_cast<int32_t>(units_to);
+  u.begin[units_to] = static_cast<int32_t>(to);
+  u.begin.resize(units_to + 1);
+  u.group.resize(units_to);
+  u.cluster.resize(to);
+  u.exponent.resize(units_to + 16);
+  std::fill_n(u.exponent.begin() + u.n, 16, 1.0f);
+}
+
+} // namespace molmesh::density
