@@ -147,13 +147,19 @@ void bound_octants_simd(const LocalClusters& node, const NearUnits& u, const Loc
   bound_boxes<2>(node, u, octant, decay, scaled, log2_upper, stride);
 }
 
-void power_terms_simd(const float* log2_sum, const float* exponent, int32_t n, float* term) {
-  for (int32_t i = 0; i < n; i += lanes)
-    hn::StoreU(exp2(hn::Min(hn::Mul(hn::LoadU(f, log2_sum + i), hn::LoadU(f, exponent + i)), hn::Set(f, 127.0f))),
-               f, term + i);
+float power_terms_simd(const float* log2_sum, const float* exponent, int32_t n, float* term) {
+  V sum = hn::Zero(f);
+  for (int32_t i = 0; i < n; i += lanes) {
+    const auto used = hn::Lt(hn::Iota(f, static_cast<float>(i)), hn::Set(f, static_cast<float>(n)));
+    const V t = exp2(hn::Min(hn::Mul(hn::LoadU(f, log2_sum + i), hn::LoadU(f, exponent + i)), hn::Set(f, 127.0f)));
+    hn::StoreU(t, f, term + i);
+    sum = hn::Add(sum, hn::IfThenElseZero(used, t));
+  }
+  return hn::GetLane(hn::SumOfLanes(f, sum));
 }
 
-float sum_up_to_simd(const float* v, int32_t n, float limit) {
+/// Sum of those of v[n] that are at most `limit`; v holds n + 16.
+HWY_INLINE float sum_up_to(const float* v, int32_t n, float limit) {
   V sum = hn::Zero(f);
   for (int32_t i = 0; i < n; i += lanes) {
     const V x = hn::LoadU(f, v + i);
@@ -163,11 +169,21 @@ float sum_up_to_simd(const float* v, int32_t n, float limit) {
   return hn::GetLane(hn::SumOfLanes(f, sum));
 }
 
-int32_t larger_than_simd(const float* v, int32_t n, float limit, int32_t* out) {
+/// The largest of a few thresholds that the budget allows; the last cannot fail.
+int32_t keep_large_simd(const float* effect, int32_t n, float budget, int32_t* out, float* left) {
+  constexpr float rounding = 1.001f;
+  float limit = budget / std::max(1.0f, rounding * static_cast<float>(n));
+  *left = 0;
+  for (const float share : {0.7f, 0.5f, 0.35f, 0.25f, 0.18f, 0.12f, 0.08f, 0.05f})
+    if (const float used = rounding * sum_up_to(effect, n, share * budget); used <= budget) {
+      limit = share * budget;
+      *left = budget - used;
+      break;
+    }
   int32_t found = 0;
   for (int32_t i = 0; i < n; i += lanes) {
     const auto used = hn::Lt(hn::Iota(f, static_cast<float>(i)), hn::Set(f, static_cast<float>(n)));
-    const auto keep = hn::And(used, hn::Gt(hn::LoadU(f, v + i), hn::Set(f, limit)));
+    const auto keep = hn::And(used, hn::Gt(hn::LoadU(f, effect + i), hn::Set(f, limit)));
     hn::StoreU(hn::Compress(hn::Iota(I(), i), hn::RebindMask(I(), keep)), I(), out + found);
     found += static_cast<int32_t>(hn::CountTrue(f, keep));
   }
@@ -187,8 +203,7 @@ HWY_EXPORT(near_clusters_simd);
 HWY_EXPORT(bound_units_simd);
 HWY_EXPORT(bound_octants_simd);
 HWY_EXPORT(power_terms_simd);
-HWY_EXPORT(sum_up_to_simd);
-HWY_EXPORT(larger_than_simd);
+HWY_EXPORT(keep_large_simd);
 
 void place_atoms(const double* x, const double* y, const double* z, const double* peak, size_t count,
                  const double* middle, size_t i, LocalClusters& to) {
@@ -205,14 +220,11 @@ void bound_octants(const LocalClusters& node, const NearUnits& units, const Loca
                    bool scaled, float* log2_upper, int32_t stride) {
   HWY_DYNAMIC_DISPATCH(bound_octants_simd)(node, units, octant, decay, scaled, log2_upper, stride);
 }
-void power_terms(const float* log2_sum, const float* exponent, int32_t n, float* term) {
-  HWY_DYNAMIC_DISPATCH(power_terms_simd)(log2_sum, exponent, n, term);
+float power_terms(const float* log2_sum, const float* exponent, int32_t n, float* term) {
+  return HWY_DYNAMIC_DISPATCH(power_terms_simd)(log2_sum, exponent, n, term);
 }
-float sum_up_to(const float* v, int32_t n, float limit) {
-  return HWY_DYNAMIC_DISPATCH(sum_up_to_simd)(v, n, limit);
-}
-int32_t larger_than(const float* v, int32_t n, float limit, int32_t* out) {
-  return HWY_DYNAMIC_DISPATCH(larger_than_simd)(v, n, limit, out);
+int32_t keep_large(const float* effect, int32_t n, float budget, int32_t* out, float* left) {
+  return HWY_DYNAMIC_DISPATCH(keep_large_simd)(effect, n, budget, out, left);
 }
 
 } // namespace molmesh::density

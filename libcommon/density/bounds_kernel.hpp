@@ -50,12 +50,11 @@ void bound_units(const LocalClusters& node, const NearUnits& units, const LocalB
 void bound_octants(const LocalClusters& node, const NearUnits& units, const LocalBox* octant, float decay,
                    bool scaled, float* log2_upper, int32_t stride);
 
-/// term = 2^(exponent·log2_sum), from 2^-126 to 2^127. n is rounded up to a multiple of 16.
-void power_terms(const float* log2_sum, const float* exponent, int32_t n, float* term);
+/// term = 2^(exponent·log2_sum), from 2^-126 to 2^127; returns the sum of n of them. Writes a multiple of 16.
+float power_terms(const float* log2_sum, const float* exponent, int32_t n, float* term);
 
-/// Sum of those of v[n] that are at most `limit`; v holds n + 16.
-float sum_up_to(const float* v, int32_t n, float limit);
-/// Where v[n] is above `limit`, ascending; out holds n + 16. Returns how many.
-int32_t larger_than(const float* v, int32_t n, float limit, int32_t* out);
+/// Where effect[n] is above a threshold, ascending; those up to it add up to at most `budget`, and *left of it is
+/// not used. effect and out hold n + 16. Returns how many.
+int32_t keep_large(const float* effect, int32_t n, float budget, int32_t* out, float* left);
 
 } // namespace molmesh::density

@@ -47,24 +47,35 @@ void quadratic(const Unit& u, double decay, Vec3d middle, double h, int axis, do
 
 /// sum += (S)^P at every point.
 void add_power(const Unit& u, double decay, Vec3d middle, double h, const double* T, double* sum) {
-  double qx[edge], qy[edge], qz[edge];
-  double qyz[64];
-  quadratic(u, decay, middle, h, 0, qx);
-  quadratic(u, decay, middle, h, 1, qy);
-  quadratic(u, decay, middle, h, 2, qz);
+  double q[3][edge], qyz[64], eyz[64];
+  double widest = std::abs(u.exponent * u.ln_center);
+  for (int axis = 0; axis < 3; ++axis) {
+    quadratic(u, decay, middle, h, axis, q[axis]);
+    for (const double v : q[axis])
+      widest = std::max(widest, std::abs(v));
+  }
+  const bool separable = widest < 200; // then no factor leaves what a double holds
+  for (double& v : q[0])
+    v += u.exponent * u.ln_center;
   for (int j = 0; j < edge; ++j)
-    for (int k = 0; k < edge; ++k)
-      qyz[8 * j + k] = qy[j] + qz[k];
+    for (int k = 0; k < edge; ++k) {
+      qyz[8 * j + k] = q[1][j] + q[2][k];
+      eyz[8 * j + k] = separable ? std::exp(qyz[8 * j + k]) : 0;
+    }
   const auto p = u.exponent;
   for (int i = 0; i < edge; ++i) {
-    const auto q = qx[i] + u.exponent * u.ln_center;
-    for (int jk = 0; jk < 64; ++jk) {
-      const double t = T[64 * i + jk];
-      const double e = q + qyz[jk];
-      sum[64 * i + jk] += p == 1     ? std::exp(e) * t
-                          : p == 0.5 ? std::exp(e) * std::sqrt(t)
-                                     : std::exp(e + p * std::log(t));
-    }
+    const double ex = separable ? std::exp(q[0][i]) : 0;
+    double* const to = sum + 64 * i;
+    const double* const t = T + 64 * i;
+    if (separable && p == 1)
+      for (int jk = 0; jk < 64; ++jk)
+        to[jk] += ex * eyz[jk] * t[jk];
+    else if (separable && p == 0.5)
+      for (int jk = 0; jk < 64; ++jk)
+        to[jk] += ex * eyz[jk] * std::sqrt(t[jk]);
+    else
+      for (int jk = 0; jk < 64; ++jk)
+        to[jk] += std::exp(q[0][i] + qyz[jk] + p * std::log(t[jk]));
   }
 }
 

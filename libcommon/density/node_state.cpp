@@ -114,6 +114,12 @@ void append(const SlabState& slab, Band& band, int threads) {
   const size_t blocks = band.block.size(), inside = band.inside.size();
   band.block.resize(blocks + static_cast<size_t>(par::exclusive_scan(kept)));
   band.inside.resize(inside + static_cast<size_t>(par::exclusive_scan(closed)));
+  constexpr size_t at_once = 1024; // whose pages come together
+  const size_t added = band.block.size() - blocks;
+  par::for_n(static_cast<int64_t>((added + at_once - 1) / at_once), threads, 1, [&](int64_t p) {
+    const size_t first = static_cast<size_t>(p) * at_once;
+    prepare_pages(band.block.data() + blocks + first, std::min(at_once, added - first) * sizeof(BandBlock));
+  });
   par::for_n(parts, threads, 1, [&](int64_t p) {
     BandBlock* block = band.block.data() + blocks + kept[static_cast<size_t>(p)];
     Vec3i* enclosed = band.inside.data() + inside + closed[static_cast<size_t>(p)];

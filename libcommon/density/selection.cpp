@@ -88,37 +88,29 @@ void Selection::bound_octants_of_part(int alone) {
 /// effect_: the most that dropping each unit can change G.
 void Selection::find_effects() {
   if (f_.plain_above)
-    power_terms(log2_upper_, near_.exponent.data(), near_.n, effect_.data());
+    total_effect_ = power_terms(log2_upper_, near_.exponent.data(), near_.n, effect_.data());
   else
     find_effects_of_levels();
 }
 
-/// Drops units of small effect while their total is within the budget: those up to a threshold, the largest of a
-/// few that the budget allows. What it leaves of the budget.
+/// Drops units of small effect while their total is within the budget. What it leaves of the budget.
 double Selection::drop(double budget) {
-  double used = budget;
-  const auto limit = [&] {
-    for (const double share : {0.7, 0.5, 0.35, 0.25, 0.18, 0.12, 0.08, 0.05})
-      if (const auto most = static_cast<float>(share * budget);
-          (used = sum_up_to(effect_.data(), near_.n, most) * (1 + single)) <= budget)
-        return most;
-    used = budget;
-    return static_cast<float>(budget / std::max(1.0, near_.n * (1 + single)));
-  }();
-  kept_.resize(static_cast<size_t>(near_.n) + 16);
-  kept_.resize(static_cast<size_t>(larger_than(effect_.data(), near_.n, limit, kept_.data())));
-  return budget - used;
+  float left;
+  if (kept_.size() < static_cast<size_t>(near_.n) + 16)
+    kept_.resize(2 * static_cast<size_t>(near_.n) + 16);
+  units = keep_large(effect_.data(), near_.n, static_cast<float>(budget), kept_.data(), &left);
+  return left;
 }
 
 /// Units for arithmetic in single precision. False when it does not hold here.
 bool Selection::take_single() {
   BlockUnits& u = block_units;
-  const auto n = static_cast<int32_t>(kept_.size());
+  const auto n = static_cast<int32_t>(units);
   // Where a block is small beside an atom's reach, its terms need no reference of their own.
   const double half = std::sqrt(double{box.half[0]} * box.half[0] + double{box.half[1]} * box.half[1] +
                                 double{box.half[2]} * box.half[2]);
   u.direct = log2e * f_.decay * half * (2 * (reach_ + half) + half) < 0.8 * log2_range;
-  const size_t room = kept_.size() + 17, atom_room = 16 * near_.cluster.size() + 32;
+  const size_t room = static_cast<size_t>(n) + 17, atom_room = 16 * near_.cluster.size() + 32;
   if (u.x.size() < room) {
     u.begin.resize(2 * room);
     for (Floats* v : {&u.exponent, &u.log2_term, &u.x, &u.y, &u.z})
@@ -132,8 +124,7 @@ bool Selection::take_single() {
                   absolute ? log2_upper_ : nullptr, static_cast<float>(absolute ? budget_.within + left_ : within_),
                   u))
     return false;
-  units = n;
-  atoms = u.begin[kept_.size()];
+  atoms = u.begin[static_cast<size_t>(n)];
   return true;
 }
 

@@ -70,6 +70,8 @@ public:
 
 private:
   static constexpr double single = 1e-3; ///< more than single precision can do to a bound, relative
+  /// Units of near_ that are not dropped.
+  std::span<const int32_t> kept() const { return std::span(kept_).first(static_cast<size_t>(units)); }
   LocalBox local(Vec3d middle, Vec3d half) const;
   void gather(const LocalBox& part);
   void keep_only();
@@ -100,11 +102,12 @@ private:
   double left_ = 0;                   ///< of what groups dropped in the block at work may change
   LocalClusters local_;               ///< of the node
   NearUnits near_;                    ///< of the part of it at work
-  std::vector<int32_t> found_, kept_; ///< clusters of local_; units of near_ that are not dropped
+  std::vector<int32_t> found_, kept_; ///< clusters of local_; kept(), with room
   LocalBox octant_[8];
   bool octants_bounded_ = false;
-  Floats octant_upper_;     ///< of near_, per octant: bound on log2 S over it
-  int32_t stride_ = 0;      ///< from octant to octant
+  Floats octant_upper_; ///< of near_, per octant: bound on log2 S over it
+  int32_t stride_ = 0;  ///< from octant to octant
+  float total_effect_ = 0;
   const float* log2_upper_; ///< of near_ over the box at work
   Floats upper_of_part_, effect_,
       ones_; ///< of near_: the same over the part; effect on G of dropping it

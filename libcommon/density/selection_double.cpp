@@ -16,7 +16,7 @@ void Selection::take_double(Vec3d middle) {
   unit.clear();
   for (std::vector<double>* v : {&ln_weight, &offset_x, &offset_y, &offset_z})
     v->clear();
-  for (const int32_t k : kept_) {
+  for (const int32_t k : kept()) {
     const auto n = static_cast<size_t>(k);
     const int64_t group = near_.group[n];
     Unit u{group, f_.level[0].exponent[static_cast<size_t>(group)], static_cast<int32_t>(ln_weight.size()), 0, 0,

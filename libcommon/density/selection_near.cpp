@@ -64,7 +64,7 @@ void Selection::gather(const LocalBox& part) {
 void Selection::keep_only() {
   NearUnits& u = near_;
   size_t units_to = 0, to = 0;
-  for (const int32_t k : kept_) {
+  for (const int32_t k : kept()) {
     const auto n = static_cast<size_t>(k);
     const auto begin = static_cast<size_t>(u.begin[n]), end = static_cast<size_t>(u.begin[n + 1]);
     std::copy(u.cluster.begin() + static_cast<std::ptrdiff_t>(begin),

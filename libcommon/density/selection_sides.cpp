@@ -68,7 +68,7 @@ void Selection::find_effects_of_levels() {
 /// Of G over the box that the effects are for.
 double Selection::upper_bound() {
   if (f_.plain_above)
-    return sum_up_to(effect_.data(), near_.n, std::numeric_limits<float>::infinity());
+    return total_effect_;
   double root = -infinity;
   std::vector<double> open(f_.level.size(), -infinity);
   OpenGroups up(f_);
@@ -98,7 +98,8 @@ bool Selection::surely_inside(Vec3d middle, Vec3d half) {
                   gradient);
     const float slope = std::abs(gradient[0]) * box.half[0] + std::abs(gradient[1]) * box.half[1] +
                         std::abs(gradient[2]) * box.half[2];
-    if (3 * sum * std::exp(-bend - 0.7 * slope / sum) <= upper_)
+    const double fall = bend + 0.7 * slope / sum; // e^fall is above the series
+    if (3 * sum <= upper_ * (1 + fall * (1 + fall / 2 * (1 + fall / 3 * (1 + fall / 4)))))
       return false;
   }
   if (arithmetic == Arithmetic::in_single) {
