@@ -90,15 +90,24 @@ public:
       });
       return out;
     } else {
+      static_assert(grain % 64 == 0); // no two chunks share a word
+      std::vector<uint64_t> any(static_cast<size_t>((n + 63) / 64));
       par::for_n(chunks, threads_, 1, [&](int64_t c) {
         int64_t count = 0;
-        each(c, [&](int64_t i) { count += item(i, static_cast<T*>(nullptr)); });
+        each(c, [&](int64_t i) {
+          const int64_t here = item(i, static_cast<T*>(nullptr));
+          any[static_cast<size_t>(i >> 6)] |= uint64_t{here > 0} << (i & 63);
+          count += here;
+        });
         start_of(c) = count;
       });
       Array<T> out(static_cast<size_t>(exclusive_scan(start)));
       par::for_n(chunks, threads_, 1, [&](int64_t c) {
         T* to = out.data() + start_of(c);
-        each(c, [&](int64_t i) { to += item(i, to); });
+        each(c, [&](int64_t i) {
+          if (any[static_cast<size_t>(i >> 6)] >> (i & 63) & 1)
+            to += item(i, to);
+        });
       });
       return out;
     }
