@@ -28,6 +28,24 @@ TEST_CASE("parts are even and compact") {
     CHECK(partition(m, 8, threads) == part);
 }
 
+TEST_CASE("a mesh that is partitioned by clusters: even, compact, the same at any number of threads") {
+  const TetMesh m = cubes(30, all_molecule);
+  REQUIRE(m.tet.size() > 150000);
+  const std::vector<int32_t> part = partition(m, 8, 2);
+  std::vector<size_t> size(8);
+  for (int32_t p : part)
+    ++size.at(static_cast<size_t>(p));
+  for (size_t s : size)
+    CHECK(s == Approx(double(m.tet.size()) / 8).epsilon(0.05));
+  const std::vector<int32_t> across = face_neighbors(m, 1);
+  size_t cut = 0;
+  for (size_t f = 0; f < across.size(); ++f)
+    cut += across[f] >= 0 && part[f / 4] != part[static_cast<size_t>(across[f]) / 4];
+  CHECK(cut / 2 < 2 * 3 * 30 * 30 * 2);
+  for (int threads : {1, 5})
+    CHECK(partition(m, 8, threads) == part);
+}
+
 TEST_CASE("one part, and more parts than tetrahedra") {
   const TetMesh m = cubes(1, all_molecule);
   CHECK(partition(m, 1, 1) == std::vector<int32_t>(6, 0));
