@@ -74,6 +74,6 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads);
 
 /// Elements, vertices and triangles in slot order, unused slots squeezed out; triangles point as they did.
 /// isovalue, source and creator are the caller's.
-TetMesh extract(const DynamicMesh& mesh);
+TetMesh extract(const DynamicMesh& mesh, int threads = 1);
 
 } // namespace molmesh::improve

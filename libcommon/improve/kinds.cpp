@@ -1,0 +1,106 @@
+// kinds.cpp — labels that are flat, vertices by the labels they are on, and sharp edges.
+#include "improve/kinds.hpp"
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace molmesh::improve {
+namespace {
+
+// A label is flat when all its triangles lie in one plane normal to an axis, up to rounding.
+void find_flat_labels(DynamicMesh& m, const TetMesh& mesh) {
+  std::vector<Vec3d> low(m.labels.size(), Vec3d{1e300, 1e300, 1e300}),
+      high(m.labels.size(), Vec3d{-1e300, -1e300, -1e300});
+  std::map<int32_t, size_t> index;
+  for (size_t l = 1; l < m.labels.size(); ++l)
+    index[m.labels[l].name] = l;
+  for (size_t t = 0; t < mesh.tri.size(); ++t) {
+    const size_t l = index[mesh.boundary[t]];
+    for (const int32_t v : mesh.tri[t])
+      for (int a = 0; a < 3; ++a) {
+        low[l][a] = std::min(low[l][a], mesh.point[size_t(v)][a]);
+        high[l][a] = std::max(high[l][a], mesh.point[size_t(v)][a]);
+      }
+  }
+  for (size_t l = 1; l < m.labels.size(); ++l)
+    for (int a = 0; a < 3; ++a)
+      if (high[l][a] - low[l][a] <= 1e-12 * std::max(std::abs(low[l][a]), std::abs(high[l][a])))
+        m.labels[l].axis = a;
+}
+
+} // namespace
+
+void set_kinds(DynamicMesh& m, const TetMesh& mesh, double sharp) {
+  find_flat_labels(m, mesh);
+  std::vector<std::array<uint8_t, 3>> seen(m.point.size(), {0, 0, 0});
+  std::vector<uint8_t> many(m.point.size(), 0);
+  struct Edge {
+    int32_t a, b;
+    uint8_t label;
+    int32_t tri;
+  };
+  std::vector<Edge> edges;
+  edges.reserve(3 * mesh.tri.size());
+  std::map<int32_t, uint8_t> index;
+  for (size_t l = 1; l < m.labels.size(); ++l)
+    index[m.labels[l].name] = static_cast<uint8_t>(l);
+  for (size_t t = 0; t < mesh.tri.size(); ++t) {
+    const uint8_t label = index[mesh.boundary[t]];
+    for (size_t i = 0; i < 3; ++i) {
+      const int32_t v = mesh.tri[t][i], w = mesh.tri[t][(i + 1) % 3];
+      auto& s = seen[size_t(v)];
+      size_t k = 0;
+      while (k < 3 && s[k] != 0 && s[k] != label)
+        ++k;
+      if (k == 3)
+        many[size_t(v)] = 1;
+      else
+        s[k] = label;
+      edges.push_back({std::min(v, w), std::max(v, w), label, static_cast<int32_t>(t)});
+    }
+  }
+  for (size_t v = 0; v < m.point.size(); ++v) {
+    Vertex& x = m.vertex[v];
+    const auto& s = seen[v];
+    if (s[0] == 0)
+      continue;
+    x = {Kind::fixed, 0, s[0]};
+    if (many[v])
+      continue;
+    if (s[1] == 0 && m.labels[s[0]].curved())
+      x.kind = Kind::surface;
+    bool flat = true;
+    int frozen = 0, planes = 0;
+    for (const uint8_t l : s) {
+      if (l == 0)
+        continue;
+      flat = flat && !m.labels[l].curved();
+      if (flat)
+        frozen |= 1 << m.labels[l].axis, ++planes;
+    }
+    const int bits = (frozen & 1) + (frozen >> 1 & 1) + (frozen >> 2 & 1);
+    if (flat && bits == planes && bits < 3)
+      x.kind = Kind::sliding, x.frozen = static_cast<uint8_t>(frozen);
+  }
+  const auto normal = [&](int32_t t) {
+    const Tri& f = mesh.tri[size_t(t)];
+    const Vec3d p = mesh.point[size_t(f[0])];
+    const Vec3d n = cross(mesh.point[size_t(f[1])] - p, mesh.point[size_t(f[2])] - p);
+    return n / std::max(norm(n), 1e-300);
+  };
+  const double limit = std::cos(sharp * 3.14159265358979323846 / 180);
+  std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) {
+    return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.tri < y.tri;
+  });
+  for (size_t i = 0, j; i < edges.size(); i = j) {
+    for (j = i; j < edges.size() && edges[j].a == edges[i].a && edges[j].b == edges[i].b;)
+      ++j;
+    bool keep = j - i != 2;
+    if (!keep && edges[i].label == edges[i + 1].label && m.labels[edges[i].label].curved())
+      keep = dot(normal(edges[i].tri), normal(edges[i + 1].tri)) < limit;
+    if (keep)
+      m.vertex[size_t(edges[i].a)].kind = m.vertex[size_t(edges[i].b)].kind = Kind::fixed;
+  }
+}
+
+} // namespace molmesh::improve
