@@ -52,10 +52,15 @@ nlohmann::ordered_json json(const improve::Angles& a) {
 }
 
 nlohmann::ordered_json json(const improve::Fidelity& f) {
-  return {{"points", f.points},       {"points_off", f.points_off},
-          {"triangles", f.triangles}, {"centroids_off", f.centroids_off},
-          {"turned_45", f.turned},    {"area", f.area},
-          {"volume", f.volume},       {"volume_missing", f.missing}};
+  return {{"points", f.points},
+          {"points_off", f.points_off},
+          {"points_off_cavity", f.points_off_cavity},
+          {"triangles", f.triangles},
+          {"centroids_off", f.centroids_off},
+          {"turned_45", f.turned},
+          {"area", f.area},
+          {"volume", f.volume},
+          {"volume_missing", f.missing}};
 }
 
 std::string text(const WorstTet& t, const std::optional<Hierarchy>& h) {
@@ -87,11 +92,8 @@ Status run_tool(const Options& o, cli::Run& run) {
   cli::InputFile input(o.input);
   TetMesh mesh = formats::read_vtu(input.stream(), input.name(), nullptr, formats::CellArrays::keep);
   const CarriedArrays arrays(mesh);
-  run.counts["elements_before"] = mesh.tet.size();
-  run.counts["points_before"] = mesh.point.size();
-  improve::Options options;
-  options.iterations = o.iterations;
-  options.threads = threads;
+  run.counts.update({{"elements_before", mesh.tet.size()}, {"points_before", mesh.point.size()}});
+  improve::Options options{.iterations = o.iterations, .threads = threads};
   options.min_dihedral = std::max(options.min_dihedral, o.min_dihedral);
   options.max_dihedral = std::min(options.max_dihedral, o.max_dihedral);
   if (mesh.creator.rfind("density2tet", 0) == 0)
@@ -109,19 +111,17 @@ Status run_tool(const Options& o, cli::Run& run) {
     fail(e.status, input.name() + ": " + e.what());
   }
   const improve::Counts& c = result.counts;
-  run.counts["elements"] = mesh.tet.size();
-  run.counts["points"] = mesh.point.size();
-  run.counts["rounds"] = result.rounds;
+  run.counts.update({{"elements", mesh.tet.size()}, {"points", mesh.point.size()}, {"rounds", result.rounds}});
   run.counts.update({{"moves", c.moves},
                      {"edge_removals", c.edge_removals},
                      {"surface_flips", c.surface_flips},
                      {"face_swaps", c.face_swaps},
                      {"contractions", c.contractions},
-                     {"splits", c.splits}});
+                     {"splits", c.splits},
+                     {"quality_before", json(result.before)},
+                     {"quality_after", json(result.after)}});
   if (grid)
     run.counts["surface"] = json(result.fidelity);
-  run.counts["quality_before"] = json(result.before);
-  run.counts["quality_after"] = json(result.after);
   run.phase("partition");
   mesh.part = partition(mesh, o.parts, threads);
   arrays.put_into(mesh, threads);

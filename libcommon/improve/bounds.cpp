@@ -110,7 +110,7 @@ double Editor::off(int32_t v) const {
   if (m_.vertex[size_t(v)].kind != Kind::surface || !target_ ||
       !target_->probe(m_.point[size_t(v)], distance, normal))
     return 0;
-  return std::abs(distance) / (0.02 * target_->spacing());
+  return std::abs(distance + target_->offset()) / (0.02 * target_->spacing());
 }
 
 bool Editor::crowded(const std::array<int32_t, 3>& t) const {

@@ -10,6 +10,7 @@
 #include "improve/target.hpp"
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace molmesh::improve {
@@ -33,6 +34,26 @@ struct Candidate {
   int32_t region;
   float q;
   std::array<uint8_t, 4> outside{}; ///< labels of faces that may come to lie on the outside, where they differ
+};
+
+/// What restore() needs.
+struct Snapshot {
+  struct Corner {
+    int32_t id;
+    Vec3d point;
+    Vertex vertex;
+    int32_t incident, touched;
+  };
+  struct Side {
+    int32_t element, n;
+    uint8_t face, label;
+  };
+  std::vector<std::pair<int32_t, Element>> element;
+  std::vector<Corner> corner;
+  std::vector<Side> side; ///< faces of other parts' elements towards these
+  PartRoom room;
+  Sheets sheets{1};
+  Counts counts;
 };
 
 /// How badly triangles fit the target.
@@ -72,12 +93,24 @@ public:
   bool merge(int32_t e, int i, int j);         ///< v[i] and v[j] meet where their elements are best
   bool split(int32_t e, int i, int j);         ///< a new vertex near the middle of the edge
   bool is_tiny(int32_t e, int i, int j) const; ///< under a tenth of a spacing
+  /// Gives the elements on one side of a surface vertex that is off the target to the other side: the surface then
+  /// runs past it. No element changes its shape but for a vertex that comes to lie on the surface.
+  bool hand_over(int32_t v);
   /// Whether the face is a surface triangle, counted from this side, that does not keep the guard.
   bool bent(int32_t e, size_t face) const;
   /// Of a surface vertex: how far off the target, in units of a fiftieth of a spacing (what I8 allows).
   double off(int32_t v) const;
   /// Moves a surface vertex onto the target, all the way or part of it; no element falls under `floor`.
   bool settle(int32_t v, float floor);
+
+  /// Slots that new elements may come to lie in.
+  const std::vector<int32_t>& reserve() const { return room_.element; }
+  /// Of the elements `inner`, all of this part, as they are now, and of what the part has in reserve.
+  Snapshot save(const std::vector<int32_t>& inner) const;
+  /// Everything as it was: operations since save() were on those elements and on reserved slots.
+  void restore(const Snapshot& s);
+  /// All vertices in this part.
+  bool owned(int32_t e) const;
 
   /// Elements made or changed by operations since the caller last cleared it.
   std::vector<int32_t> changed;
@@ -87,11 +120,11 @@ public:
   float goal = 1; ///< quality that elements are missed by in the deficit
   bool worst_first = true;
   bool straighten = false; ///< operations are to make the surface fit
+  bool bold = false;       ///< operations may bend the surface
   float yield = 1;  ///< contractions may lower the worst element to this share where the deficit falls by a tenth
   int32_t time = 1; ///< what operations write to DynamicMesh::touched
 
 private:
-  bool owned(int32_t e) const;
   bool star(int32_t v, std::vector<int32_t>& out);
   bool ring(int32_t e, int32_t a, int32_t b, Ring& r) const;
   bool judge(Candidate& c, float above) const;
@@ -124,7 +157,7 @@ private:
   Fit fit_of_sails() const;
   Fit fit_of_sails(Vec3d x) const; ///< with the vertex there
   bool fits(const Fit& now, const Fit& before) const {
-    return straighten ? now.excess < 0.98 * before.excess : now.worst <= before.worst;
+    return bold || (straighten ? now.excess < 0.98 * before.excess : now.worst <= before.worst);
   }
   bool sails_fit(Vec3d x, const Fit& before) const;
   /// What new elements must be better than.
@@ -133,6 +166,16 @@ private:
   }
   void gather(const std::vector<int32_t>& elements, int32_t v, double& length, Fit& before);
   float worth(Vec3d x, float above);
+  /// What hand_over() moves to the other side.
+  struct Side {
+    std::vector<int32_t> element;
+    int32_t to = -1, fresh = -1; ///< region they come to; vertex that is new on the surface, or -1
+    uint8_t label = 0;
+    bool grows = false; ///< the inside does
+    Fit before;         ///< of the triangles at the vertex
+  };
+  bool find_side(int32_t v, Side& side) const;
+  bool place_on_target(Vec3d& x, double length, const Fit& before, float above);
   bool search(const Vertex& k, Vec3d& x, float& best, float aim, double length, const Fit& before, float above);
   bool take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above, float allowed);
   bool may_contract(const Vertex& a, const Vertex& b) const;

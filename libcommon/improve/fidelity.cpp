@@ -41,6 +41,7 @@ Fidelity add(Fidelity a, const Fidelity& b) {
   a.points += b.points;
   a.triangles += b.triangles;
   a.points_off += b.points_off;
+  a.points_off_cavity += b.points_off_cavity;
   a.centroids_off += b.centroids_off;
   a.turned += b.turned;
   a.volume += b.volume;
@@ -83,6 +84,11 @@ Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int t
                        return one;
                      },
                      add));
+  std::vector<uint8_t> in_cavity(m.point.size());
+  for (const Element& e : m.element)
+    if (e.alive() && e.region == cavity)
+      for (const int32_t v : e.v)
+        in_cavity[size_t(v)] = 1;
   return add(sum, par::reduce(
                       static_cast<int64_t>(m.point.size()), threads, Fidelity{},
                       [&](int64_t v) {
@@ -94,6 +100,7 @@ Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int t
                         Vec3d normal;
                         one.points_off = !surface.probe(m.point[size_t(v)], distance, normal) ||
                                          std::abs(distance + surface.offset()) > 0.02 * surface.spacing();
+                        one.points_off_cavity = one.points_off && in_cavity[size_t(v)];
                         return one;
                       },
                       add));
@@ -101,7 +108,7 @@ Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int t
 
 double chord_offset(const DynamicMesh& m, const Isosurface& surface, int threads) {
   const Fidelity f = measure_triangles(m, surface, threads);
-  const double most = 0.0185 * surface.spacing(), now = surface.offset();
+  const double most = 0.0175 * surface.spacing(), now = surface.offset();
   return f.area > 0 ? std::clamp(now + f.missing / f.area, -most, most) - now : 0;
 }
 

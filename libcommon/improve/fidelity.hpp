@@ -8,18 +8,19 @@ namespace molmesh::improve {
 /// Over the curved surfaces, each triangle once. Distances are to the isosurface itself, whatever the offset.
 struct Fidelity {
   int64_t points = 0, triangles = 0;
-  int64_t points_off = 0;    ///< further than 0.02 spacings from it, or where it is not known
-  int64_t centroids_off = 0; ///< further than 0.25 spacings, or not known
-  int64_t turned = 0;        ///< normals more than 45° from its own
-  double volume = 0;         ///< Å³ of what lies inside: elements of the lowest region at a curved surface
-  double missing = 0;        ///< Å³ that the isosurface encloses beyond that (to first order; negative: less)
-  double area = 0;           ///< Å²
+  int64_t points_off = 0;        ///< further than 0.02 spacings from it, or where it is not known
+  int64_t points_off_cavity = 0; ///< of these, on closed cavities: where one is smaller than the grid can show
+  int64_t centroids_off = 0;     ///< further than 0.25 spacings, or not known
+  int64_t turned = 0;            ///< normals more than 45° from its own
+  double volume = 0;             ///< Å³ of what lies inside: elements of the lowest region at a curved surface
+  double missing = 0;            ///< Å³ that the isosurface encloses beyond that (to first order; negative: less)
+  double area = 0;               ///< Å²
 };
 
 Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int threads);
 
 /// Chords enclose less than the surface they hang on: how far their points must lie outside it (Å, from where they
-/// are now) to make up for that, at most 0.0185 spacings in all (I8 allows 0.02).
+/// are now) to make up for that, at most 0.0175 spacings in all (I8 allows 0.02).
 double chord_offset(const DynamicMesh& m, const Isosurface& surface, int threads);
 
 } // namespace molmesh::improve

@@ -20,7 +20,7 @@ public:
   IsosurfaceView view() const { return {frame_, index_.view(), log_.data(), offset_}; }
   /// Points are projected this far outside the isosurface (Å), so that chords enclose the isosurface's own volume.
   void set_offset(double offset) { offset_ = offset; }
-  double offset() const { return offset_; }
+  double offset() const override { return offset_; }
 
   int64_t values() const { return static_cast<int64_t>(log_.size()); } ///< of view().log
   int64_t slots() const { return index_.capacity(); }                  ///< of view().index

@@ -1,5 +1,5 @@
 // passes.cpp — what a pass works on, and the order of operations on one element.
-#include "improve/schedule.hpp"
+#include "improve/element_pass.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 
@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
-// One operation on a bad element, the cheap and local ones first. True when something was done.
+} // namespace
+
 bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass& pass) {
   const auto element = [&]() -> const Element& { return m.element[size_t(t)]; };
   if (pass.yield < 1)
@@ -44,7 +45,6 @@ bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass
   return done;
 }
 
-// One operation on each bent face of an element and on each vertex off the target.
 void straighten_element(Editor& editor, const DynamicMesh& m, int32_t t) {
   const auto vertex = [&](int i) { return m.element[size_t(t)].v[size_t(i)]; };
   for (int f = 0; f < 4; ++f) {
@@ -72,7 +72,13 @@ void straighten_element(Editor& editor, const DynamicMesh& m, int32_t t) {
       editor.smooth(vertex(i));
 }
 
-} // namespace
+void sort_worst_first(const DynamicMesh& m, std::vector<int32_t>& list) {
+  std::sort(list.begin(), list.end(), [&](int32_t a, int32_t b) {
+    const float qa = m.element[size_t(a)].q, qb = m.element[size_t(b)].q;
+    return qa != qb ? qa < qb : a < b;
+  });
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
 
 Counts Schedule::run(const Pass& pass) {
   if (pass != last_)
@@ -102,11 +108,7 @@ Counts Schedule::run(const Pass& pass) {
     editor.yield = pass.yield;
     for (int32_t sweep = 1; sweep <= sweeps && !list.empty(); ++sweep) {
       editor.time = start + sweep;
-      std::sort(list.begin(), list.end(), [&](int32_t a, int32_t b) {
-        const float qa = m_.element[size_t(a)].q, qb = m_.element[size_t(b)].q;
-        return qa != qb ? qa < qb : a < b;
-      });
-      list.erase(std::unique(list.begin(), list.end()), list.end());
+      sort_worst_first(m_, list);
       editor.changed.clear();
       for (const int32_t e : list)
         if (worthwhile(e) && !improve_element(editor, m_, e, pass))

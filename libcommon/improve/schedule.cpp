@@ -98,7 +98,7 @@ int32_t Schedule::part_of(const Element& e) const {
 
 // Items of one part, in order, go to one editor with slots of its own.
 Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item,
-                           const Guard& guard, const Work& work) {
+                           const Guard& guard, const Work& work, double slots_per_item) {
   struct Job {
     PartRoom room;
     std::vector<int32_t> items;
@@ -119,7 +119,8 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     jobs[size_t(j)].items.push_back(items[i]);
   }
   for (Job& job : jobs) {
-    const size_t elements = 64 + 2 * job.items.size(), vertices = 16 + job.items.size() / 2;
+    const auto elements = 64 + static_cast<size_t>(slots_per_item * double(job.items.size())),
+               vertices = 16 + elements / 4;
     const auto reserve = [](std::vector<int32_t>& pool, std::vector<int32_t>& room, size_t count, size_t& size) {
       while (room.size() < count && !pool.empty())
         room.push_back(pool.back()), pool.pop_back();

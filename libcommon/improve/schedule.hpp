@@ -28,6 +28,9 @@ public:
   /// Surface triangles that do not keep the guard, and surface vertices off the target: made to fit, where no
   /// element falls under the goal.
   Counts straighten(const Pass& pass);
+  /// Surface vertices off the target: put on it, or off the surface, where the elements around can be brought over
+  /// the goal afterwards. Nothing else changes.
+  Counts recover(const Pass& pass);
   /// Puts surface vertices on the target where no element falls under `floor`.
   Counts settle(float floor, const Guard& guard);
   /// Where the mesh ends in a surface, it is kept from crossing itself; at first only near opposed sheets. This
@@ -38,8 +41,9 @@ public:
 
 private:
   using Work = std::function<void(Editor&, std::vector<int32_t>&)>;
+  /// slots_per_item: kept for new elements.
   Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
-                   const Work& work);
+                   const Work& work, double slots_per_item = 2);
   void set_owners(int shift, double cell);
   int32_t part_of(const Element& e) const;
 

@@ -14,6 +14,8 @@ public:
   /// Signed distance of p (Å, positive outside) to first order and the unit normal, pointing out. False when not
   /// known.
   virtual bool probe(Vec3d p, double& distance, Vec3d& normal) const = 0;
+  /// How far outside the surface that is meant points are put (Å).
+  virtual double offset() const { return 0; }
   /// Length that distances are measured against: the grid spacing, or the mean edge of the surface (Å).
   virtual double spacing() const = 0;
 };

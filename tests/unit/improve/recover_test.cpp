@@ -1,0 +1,163 @@
+// recover_test.cpp — points that were pushed off the isosurface come back or leave it; what fails leaves no trace.
+#include "improve/improve.hpp"
+#include "improve/schedule.hpp"
+#include "lattice_mesh.hpp"
+#include <catch2/catch.hpp>
+#include <set>
+
+using namespace molmesh;
+using namespace molmesh::test;
+
+namespace {
+
+constexpr double h = 0.5;
+constexpr int n = 22;
+
+struct Case {
+  BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  improve::Isosurface surface{grid, 1};
+  TetMesh mesh = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
+  improve::DynamicMesh m;
+  Case() {
+    improve::improve(mesh, &grid, {});
+    m = improve::build(mesh, 180, 1);
+  }
+  std::vector<int32_t> star(int32_t v) const {
+    std::vector<int32_t> all;
+    for (size_t e = 0; e < m.element.size(); ++e)
+      if (m.element[e].find(v) >= 0)
+        all.push_back(static_cast<int32_t>(e));
+    return all;
+  }
+  /// Every 20th surface point goes 0.05 h to 0.2 h along the normal, where its elements stay positive.
+  int push_off() {
+    int pushed = 0;
+    for (size_t v = 0; v < m.point.size(); ++v) {
+      double distance;
+      Vec3d normal;
+      if (m.vertex[v].kind != improve::Kind::surface || v % 20 != 0 || !surface.probe(m.point[v], distance, normal))
+        continue;
+      m.point[v] += h * (0.05 + 0.01 * double(v % 16)) * (v % 40 == 0 ? 1. : -1.) * normal;
+      for (const int32_t e : star(static_cast<int32_t>(v)))
+        m.element[size_t(e)].q = m.quality(m.element[size_t(e)].v);
+      ++pushed;
+    }
+    return pushed;
+  }
+};
+
+/// Of the molecular surface.
+int64_t euler(const TetMesh& mesh) {
+  std::set<int32_t> points;
+  std::set<std::pair<int32_t, int32_t>> edges;
+  int64_t triangles = 0;
+  for (size_t t = 0; t < mesh.tri.size(); ++t)
+    for (size_t i = 0; i < 3 && mesh.boundary[t] == Boundary::surface; ++i) {
+      const int32_t a = mesh.tri[t][i], b = mesh.tri[t][(i + 1) % 3];
+      points.insert(a);
+      edges.insert({std::min(a, b), std::max(a, b)});
+      triangles += i == 0;
+    }
+  return int64_t(points.size()) - int64_t(edges.size()) + triangles;
+}
+
+} // namespace
+
+TEST_CASE("points pushed off the isosurface are recovered, no element is the worse for it") {
+  Case c;
+  REQUIRE(c.push_off() > 10);
+  const improve::Fidelity before = improve::measure_fidelity(c.m, c.surface, 1);
+  REQUIRE(before.points_off > 10);
+  improve::Schedule schedule(c.m, &c.surface, 32 * h, 1);
+  improve::Pass pass;
+  pass.goal = static_cast<float>(improve::angle_quality(26));
+  pass.effort = 1;
+  pass.cell = 0.5;
+  pass.guard = {44, 0.24, 1, 0};
+  const float worst = schedule.worst();
+  const int64_t below = schedule.below(0.94f * pass.goal);
+  for (int k = 0; k < 4; ++k)
+    schedule.recover(pass);
+  const improve::Fidelity after = improve::measure_fidelity(c.m, c.surface, 1);
+  CHECK(after.points_off == 0);
+  CHECK(after.turned <= before.turned);
+  CHECK(schedule.worst() >= worst);
+  CHECK(schedule.below(0.94f * pass.goal) <= below);
+  CHECK(euler(improve::extract(c.m)) == 2);
+  CHECK_NOTHROW(improve::build(improve::extract(c.m), 180, 1));
+}
+
+TEST_CASE("what is restored is as it was saved") {
+  Case c;
+  const improve::DynamicMesh before = c.m;
+  const auto size = static_cast<int32_t>(c.m.element.size()), points = static_cast<int32_t>(c.m.point.size());
+  improve::PartRoom room{0, {}, {}};
+  for (int32_t k = 0; k < 1000; ++k)
+    room.element.push_back(size + k), room.vertex.push_back(points + k);
+  c.m.element.resize(size_t(size) + 1000);
+  c.m.point.resize(size_t(points) + 1000);
+  c.m.vertex.resize(size_t(points) + 1000);
+  c.m.incident.resize(size_t(points) + 1000, -1);
+  c.m.touched.resize(size_t(points) + 1000);
+  // One part owns what lies below half the box, so that some elements are of neither.
+  std::vector<int32_t> owner(c.m.point.size());
+  for (size_t v = 0; v < owner.size(); ++v)
+    owner[v] = v < size_t(points) && c.m.point[v].x > h * n / 2;
+  std::vector<uint32_t> stamp(c.m.element.size());
+  improve::Editor editor(c.m, &c.surface, nullptr, owner, stamp, room, {44, 0.24, 1, 0});
+  editor.goal = static_cast<float>(improve::angle_quality(35));
+  std::vector<int32_t> inner;
+  for (int32_t e = 0; e < size; ++e)
+    if (editor.owned(e))
+      inner.push_back(e);
+  const improve::Snapshot snapshot = editor.save(inner);
+  for (const int32_t e : inner)
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j)
+        if (i != j && c.m.element[size_t(e)].alive() && !editor.split(e, i, j) && !editor.remove_edge(e, i, j) &&
+            !editor.contract(e, i, j))
+          editor.smooth(c.m.element[size_t(e)].v[size_t(i)]);
+  REQUIRE(editor.counts.moves > 10);
+  REQUIRE(editor.counts.splits + editor.counts.contractions > 10);
+  editor.restore(snapshot);
+  CHECK(editor.counts.total() == 0);
+  CHECK(room.element.size() == 1000);
+  for (int32_t v = 0; v < points; ++v)
+    REQUIRE(
+        (c.m.point[size_t(v)] == before.point[size_t(v)] && c.m.incident[size_t(v)] == before.incident[size_t(v)]));
+  for (int32_t e = 0; e < size + 1000; ++e) {
+    const improve::Element& x = c.m.element[size_t(e)];
+    if (e >= size)
+      REQUIRE_FALSE(x.alive());
+    else
+      REQUIRE((x.v == before.element[size_t(e)].v && x.n == before.element[size_t(e)].n &&
+               x.label == before.element[size_t(e)].label && x.q == before.element[size_t(e)].q));
+  }
+}
+
+TEST_CASE("a surface point that leaves the surface leaves a surface behind") {
+  Case c;
+  std::vector<int32_t> owner(c.m.point.size());
+  std::vector<uint32_t> stamp(c.m.element.size());
+  improve::PartRoom room;
+  improve::Editor editor(c.m, &c.surface, nullptr, owner, stamp, room, {44, 0.24, 1, 0});
+  editor.straighten = editor.bold = true;
+  editor.goal = 1e-4f;
+  int gone = 0;
+  double volume = improve::measure_fidelity(c.m, c.surface, 1).volume;
+  for (size_t v = 0; v < owner.size() && gone < 40; ++v) {
+    if (!editor.hand_over(static_cast<int32_t>(v)))
+      continue;
+    ++gone;
+    CHECK(c.m.vertex[v].kind == improve::Kind::interior);
+    const double now = improve::measure_fidelity(c.m, c.surface, 1).volume;
+    CHECK(now != volume);
+    volume = now;
+  }
+  CHECK(gone > 2);
+  const TetMesh mesh = improve::extract(c.m);
+  CHECK(euler(mesh) == 2);
+  const improve::DynamicMesh again = improve::build(mesh, 180, 1); // throws when faces or labels are wrong
+  for (size_t v = 0; v < again.point.size(); ++v)
+    REQUIRE(again.vertex[v].kind == c.m.vertex[v].kind);
+}
