@@ -22,7 +22,7 @@ struct PlaceDual {
     const auto leaf = static_cast<int32_t>(i);
     Vec3d& dual = c.position[c.dual(leaf)];
     if (c.side[leaf] == Side::crossed) {
-      dual = onto_surface(leaf, mean_crossing(leaf));
+      dual = c.tree.level[leaf] == 0 ? fine_dual(leaf) : merged_dual(leaf);
       if (c.is_split(leaf))
         place_split(leaf);
       return;
@@ -50,8 +50,52 @@ private:
     return sum / double(crossings);
   }
 
+  HD Vec3d fine_dual(int32_t leaf) const {
+    const Vec3d x = mean_crossing(leaf), moved = onto_surface(leaf, x), low = lower(leaf), size = upper(leaf) - low;
+    for (int a = 0; a < 3; ++a)
+      if (!(std::fabs(moved[a] - low[a] - 0.5 * size[a]) < 0.45 * size[a]))
+        return x;
+    return moved;
+  }
+
+  /// Where elements are best: near the cell's middle and off its faces, behind which there may be smaller cells. A
+  /// little beyond the fine surface where that is curved: chords then lie on both sides of it.
+  HD Vec3d merged_dual(int32_t leaf) const {
+    constexpr double to_middle = 0.6, beyond = 1.5, off_faces = 0.3; // the last in fine spacings
+    const int32_t extent = c.tree.extent(leaf);
+    const Vec3d low = lower(leaf), size = upper(leaf) - low;
+    const double least = off_faces / extent;
+    Vec3d x = mean_crossing(leaf);
+    x += to_middle * (low + 0.5 * size - x);
+    const Vec3d further = beyond * bulge(leaf);
+    for (int round = 0; round < 2; ++round) {
+      x = onto_surface(leaf, x) + further;
+      for (int a = 0; a < 3; ++a) {
+        const double share = (x[a] - low[a]) / size[a];
+        x[a] = low[a] + size[a] * (share < least ? least : share > 1 - least ? 1 - least : share);
+      }
+    }
+    return x;
+  }
+
+  /// From the mean of the leaf's fine surface onto it.
+  HD Vec3d bulge(int32_t leaf) const {
+    Vec3d mean;
+    const int32_t begin = c.first_cell[leaf], end = c.end_cell(leaf);
+    for (int32_t k = begin; k < end; ++k)
+      mean += c.samples[k].point;
+    mean = c.lattice.between(mean / double(end - begin));
+    return onto_surface(leaf, mean) - mean;
+  }
+
+  HD Vec3d lower(int32_t leaf) const { return c.lattice.position(c.tree.corner(leaf)); }
+  HD Vec3d upper(int32_t leaf) const {
+    const int32_t extent = c.tree.extent(leaf);
+    return c.lattice.position(c.tree.corner(leaf) + Vec3i{extent, extent, extent});
+  }
+
   /// x moved onto the tangent plane of the nearest fine surface in the leaf: the mean of a curved sheet's crossings
-  /// lies on its hollow side. Not out of the leaf's box.
+  /// lies on its hollow side.
   HD Vec3d onto_surface(int32_t leaf, Vec3d x) const {
     Vec3d nearest, normal;
     double least = 1e300;
@@ -63,15 +107,7 @@ private:
         normal = c.samples[k].normal;
       }
     }
-    const Vec3d moved = x + dot(nearest - x, normal) * normal;
-    const Vec3i corner = c.tree.corner(leaf);
-    const int32_t extent = c.tree.extent(leaf);
-    const Vec3d low = c.lattice.position(corner),
-                size = c.lattice.position(corner + Vec3i{extent, extent, extent}) - low;
-    for (int a = 0; a < 3; ++a)
-      if (!(std::fabs(moved[a] - low[a] - 0.5 * size[a]) < 0.45 * size[a]))
-        return x;
-    return moved;
+    return x + dot(nearest - x, normal) * normal;
   }
 
   HD void place_split(int32_t leaf) const {

@@ -2,28 +2,11 @@
 #pragma once
 #include "contour/detail/batch.hpp"
 #include "contour/detail/crossing.hpp"
+#include "contour/detail/face_shape.hpp"
 #include "geom/predicates.hpp"
-#include "geom/tet_measures.hpp"
 #include <cmath>
 
 namespace molmesh::contour::detail {
-
-/// A convex polygon of vertices of the complex, counter-clockwise seen from the cell in front.
-struct Polygon {
-  int n = 0;
-  int32_t vertex[8];
-  HD void add(int32_t v) { vertex[n++] = v; }
-};
-
-HD inline double lesser(double a, double b) {
-  return b < a ? b : a;
-}
-
-/// Volumes below this share of the cube of the face's shortest edge get a face point instead.
-inline constexpr double least_volume = 0.003;
-
-/// The same between boxes of one size, whose grid points may have moved.
-inline constexpr double least_moved_volume = 1e-4;
 
 /// Out: Batch, Checks, or what counts or writes on a device.
 template <class Out>
@@ -159,9 +142,12 @@ private:
       front = out_.add_point(front_position, box_x0 + f);
     } else {
       front_position = c_.position[front];
-      if (!pierced(p, behind, front, test ? least_volume : check ? least_moved_volume : -1)) {
+      const bool direct = pierced(c_, p, behind, front, test ? least_volume : check ? least_moved_volume : -1);
+      const double shape = direct && test && check ? direct_shape(c_, p, behind, front) : direct ? 1 : -1;
+      if (shape < flat_sine) {
         via_position = face_point(p);
-        via = out_.add_point(via_position, 0);
+        if (!direct || via_shape(c_, p, behind, via_position, front) > shape)
+          via = out_.add_point(via_position, 0);
       }
     }
     bool positive = true;
@@ -212,21 +198,6 @@ private:
       ++crossings;
     }
     return crossings ? crossed / double(crossings) : all / double(p.n);
-  }
-
-  /// least: share as below; negative: no test.
-  HD bool pierced(const Polygon& p, int32_t behind, int32_t front, double least_share) const {
-    if (least_share < 0)
-      return true;
-    const Vec3d d = c_.position[behind], e = c_.position[front];
-    double size2 = 1e300;
-    for (int i = 0; i < p.n; ++i)
-      size2 = lesser(size2, norm2(c_.position[p.vertex[i]] - c_.position[p.vertex[(i + 1) % p.n]]));
-    const double least = 6 * least_share * size2 * std::sqrt(size2);
-    for (int i = 0; i < p.n; ++i)
-      if (six_volume(c_.position[p.vertex[i]], c_.position[p.vertex[(i + 1) % p.n]], d, e) < least)
-        return false;
-    return true;
   }
 
   /// Triangles from the cell's edges (and its faces' diagonals) to the centre.

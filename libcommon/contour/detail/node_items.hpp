@@ -93,10 +93,10 @@ struct MakeParents {
 /// topology: the signs at the middles of its edges, faces and volume each agree with a corner of that edge, face or
 /// volume (Ju et al. 2002, the paper's reference 22).
 struct MergeNodes {
-  static constexpr double least_cosine = 0.82; // normals within 35° of their mean: one sheet, no crease
+  static constexpr double least_cosine = 0.6; // normals within 53° of their mean: one sheet, no crease
   /// Of the surface's middle from a face with smaller cells behind, in the node's edge length: seen from nearer,
   /// those cells' faces are aslant, and their elements flat.
-  static constexpr double least_margin = 0.2;
+  static constexpr double least_margin = 0.15;
 
   LatticeView l;
   const SurfaceSample* sample;

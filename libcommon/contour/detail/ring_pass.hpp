@@ -71,14 +71,6 @@ HD inline void trace(const Link* begin, const Link* end, Ring& ring) {
   ring.broken = ring.broken || (!ring.closed && link);
 }
 
-HD inline double least_sine(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
-  const DihedralTrig t = dihedral_trig(a, b, c, d);
-  double least = t.sine[0];
-  for (int e = 1; e < 6; ++e)
-    least = lesser(least, t.sine[e]);
-  return six_volume(a, b, c, d) > 0 ? least : -1;
-}
-
 /// Whether one of the splits of a ring of three or four has only elements so far from flat that whatever is chosen
 /// has positive volumes: sines of dihedral angles are at least six volumes over the cube of the longest edge.
 HD inline bool clearly_positive(const RingVertices& v, int32_t inside, int32_t outside, const Ring& ring) {

@@ -345,7 +345,7 @@ TEST_CASE("boxes: exact walls, a cut through the molecule, few elements far away
     v = checked(far);
     CHECK(v.high.x - v.low.x == Approx(40 * 6));
     // A shell for each doubling of the box, whatever the molecule's size.
-    CHECK(double(far.tet.size() - near) < 6000 * std::log2(40. / 3));
+    CHECK(double(far.tet.size()) - double(near) < 6000 * std::log2(40. / 3));
     options.box.scale = 20; // 130 spacings: no multiple of a large cell's edge
     CHECK(mesh_of(grid, options).tet.size() < far.tet.size());
   }

@@ -1,0 +1,58 @@
+// face_shape.hpp — whether a dual edge pierces its face, and how flat the face's elements are. Host and device.
+#pragma once
+#include "contour/detail/complex_view.hpp"
+#include "contour/detail/element_shape.hpp"
+#include <cmath>
+
+namespace molmesh::contour::detail {
+
+/// A convex polygon of vertices of the complex, counter-clockwise seen from the cell in front.
+struct Polygon {
+  int n = 0;
+  int32_t vertex[8];
+  HD void add(int32_t v) { vertex[n++] = v; }
+};
+
+/// Volumes below this share of the cube of the face's shortest edge get a face point instead.
+inline constexpr double least_volume = 0.003;
+
+/// The same between boxes of one size, whose grid points may have moved.
+inline constexpr double least_moved_volume = 1e-4;
+
+/// Elements with a smaller sine of a dihedral angle (14.5° or 165.5°) get a face point if that makes them better.
+inline constexpr double flat_sine = 0.25;
+
+/// least: a share as above; negative: no test.
+HD inline bool pierced(const ComplexView& c, const Polygon& p, int32_t behind, int32_t front, double least_share) {
+  if (least_share < 0)
+    return true;
+  const Vec3d d = c.position[behind], e = c.position[front];
+  double size2 = 1e300;
+  for (int i = 0; i < p.n; ++i)
+    size2 = lesser(size2, norm2(c.position[p.vertex[i]] - c.position[p.vertex[(i + 1) % p.n]]));
+  const double least = 6 * least_share * size2 * std::sqrt(size2);
+  for (int i = 0; i < p.n; ++i)
+    if (six_volume(c.position[p.vertex[i]], c.position[p.vertex[(i + 1) % p.n]], d, e) < least)
+      return false;
+  return true;
+}
+
+/// The least sine of the elements without a face point, and with one.
+HD inline double direct_shape(const ComplexView& c, const Polygon& p, int32_t behind, int32_t front) {
+  double least = 1;
+  for (int i = 0; i < p.n; ++i)
+    least = lesser(least, least_sine(c.position[p.vertex[i]], c.position[p.vertex[(i + 1) % p.n]],
+                                     c.position[behind], c.position[front]));
+  return least;
+}
+HD inline double via_shape(const ComplexView& c, const Polygon& p, int32_t behind, Vec3d via, int32_t front) {
+  double least = 1;
+  for (int i = 0; i < p.n; ++i) {
+    const Vec3d a = c.position[p.vertex[i]], b = c.position[p.vertex[(i + 1) % p.n]];
+    least =
+        lesser(least, lesser(least_sine(a, b, c.position[behind], via), least_sine(a, b, via, c.position[front])));
+  }
+  return least;
+}
+
+} // namespace molmesh::contour::detail
