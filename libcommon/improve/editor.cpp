@@ -91,6 +91,8 @@ bool Editor::ring(int32_t e, int32_t a, int32_t b, Ring& r) const {
   r.border.clear();
   r.label.clear();
   for (int32_t t = start;;) {
+    if (r.element.size() > longest || !owned(t))
+      return false; // an open ring goes on beyond e
     others(t, c, d);
     const Element& el = m_.element[size_t(t)];
     const size_t behind = size_t(el.find(d)), ahead = size_t(el.find(c));

@@ -156,10 +156,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     if (done == 0 && size_t(round) + 1 >= std::size(stages))
       break;
   }
-  // A mesh of one region has taken 24 GB here: until that is understood its points stay where they were let go.
-  const auto [least, most] = std::minmax_element(mesh.region.begin(), mesh.region.end());
-  const bool two_sided = !mesh.region.empty() && *least != *most;
-  for (int repeat = 0; density && let_go && two_sided && repeat < recoveries; ++repeat) {
+  for (int repeat = 0; density && let_go && repeat < recoveries; ++repeat) {
     Pass pass;
     pass.goal = goal;
     pass.effort = 1;
