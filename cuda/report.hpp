@@ -10,11 +10,15 @@ inline nlohmann::ordered_json json(const DeviceReport& r) {
   for (const KernelTime& k : r.kernels)
     kernels.push_back({{"name", k.name},
                        {"launches", k.launches},
+                       {"items", k.items},
                        {"seconds", k.seconds},
                        {"bytes", k.work.bytes},
                        {"multiply_adds", k.work.multiply_adds},
                        {"in_double", k.work.in_double}});
-  nlohmann::ordered_json out = {{"name", r.device}, {"most_bytes", r.most_bytes}, {"kernels", kernels}};
+  nlohmann::ordered_json out = {{"name", r.device},
+                                {"most_bytes", r.most_used.own},
+                                {"most_paged_bytes", r.most_used.paged},
+                                {"kernels", kernels}};
   if (!r.note.empty())
     out["note"] = r.note;
   return out;

@@ -16,19 +16,19 @@ std::string device_name() {
   return {};
 }
 
-density::Band compute_density(const Hierarchy&, const density::Options&, density::Counts&, DeviceReport&) {
+density::Band compute_density(const Hierarchy&, const density::Options&, density::Counts&, DeviceReport&, int64_t) {
   require_device();
   return {};
 }
 
 TetMesh contour_mesh(const BlockGrid&, const contour::Options&, contour::Summary&,
-                     const std::function<void(const std::string&)>&, DeviceReport&) {
+                     const std::function<void(const std::string&)>&, DeviceReport&, int64_t) {
   require_device();
   return {};
 }
 
 improve::Result improve_mesh(TetMesh&, const BlockGrid*, const improve::Options&,
-                             const std::function<void(const std::string&)>&, DeviceReport&) {
+                             const std::function<void(const std::string&)>&, DeviceReport&, int64_t) {
   require_device();
   return {};
 }

@@ -4,6 +4,7 @@
 #include "contour/detail/complex_passes.hpp"
 #include "contour/detail/face_pass.hpp"
 #include "contour/detail/ring_pass.hpp"
+#include "cuda/par/items.hpp"
 
 namespace molmesh::cuda {
 
@@ -192,13 +193,6 @@ struct LinkEdge {
     key[i] = uint64_t(uint32_t(l.inside)) << 32 | uint32_t(l.outside);
   }
 };
-template <class T>
-struct Gather {
-  const T* from;
-  const uint32_t* index;
-  T* to;
-  HD void operator()(int64_t i) const { to[i] = from[index[i]]; }
-};
 struct FirstLink {
   const Link* link;
   int64_t *first, *index;
@@ -206,12 +200,6 @@ struct FirstLink {
     first[i] = i == 0 || !link[i].same_edge(link[i - 1]);
     index[i] = i;
   }
-};
-template <class T>
-struct CopyItems {
-  const T* from;
-  T* to;
-  HD void operator()(int64_t i) const { to[i] = from[i]; }
 };
 
 } // namespace molmesh::cuda

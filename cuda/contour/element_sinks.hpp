@@ -1,10 +1,8 @@
-// element_sinks.hpp — where the elements of each run go: to the host beside the next run, or into one array on the
-// device.
+// element_sinks.hpp — where the elements of each run go: into one array.
 #pragma once
 #include "contour/elements.hpp"
 #include "cuda/contour/element_items.hpp"
 #include "cuda/par/backend.hpp"
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -41,57 +39,12 @@ typename Backend::template Array<T> joined(Backend& b, std::vector<typename Back
   return all;
 }
 
-/// Elements on the host; position: the new points alone.
-template <class Backend>
-class SinkToHost {
-  template <class T>
-  using Pending = typename Backend::template Pending<T>;
-
-public:
-  explicit SinkToHost(Backend& b) : b_(b) {}
-  void take(ElementRun<Backend> run) {
-    OnTheWay next{b_.fetch(std::move(run.tet)), b_.fetch(std::move(run.tri)), b_.fetch(std::move(run.tri_sides)),
-                  b_.fetch(std::move(run.boundary)), b_.fetch(std::move(run.point))};
-    make_room();
-    before_.emplace(std::move(next));
-  }
-  /// False where nothing was to be gained.
-  bool make_room() {
-    if (!before_)
-      return false;
-    const auto add = [](auto& to, auto& from) {
-      const auto* p = from.get();
-      to.insert(to.end(), p, p + from.size());
-    };
-    add(elements.tet, before_->tet);
-    add(elements.tri, before_->tri);
-    add(elements.tri_sides, before_->tri_sides);
-    add(elements.boundary, before_->boundary);
-    add(elements.position, before_->point);
-    before_.reset();
-    return true;
-  }
-  contour::Elements elements;
-
-private:
-  struct OnTheWay {
-    Pending<Tet> tet;
-    Pending<Tri> tri;
-    Pending<Sides> tri_sides;
-    Pending<int32_t> boundary;
-    Pending<Vec3d> point;
-  };
-  Backend& b_;
-  std::optional<OnTheWay> before_;
-};
-
 /// All in the Backend's memory.
 template <class Backend>
 class SinkOnDevice {
 public:
   explicit SinkOnDevice(Backend& b) : b_(b) {}
   void take(ElementRun<Backend> run) { runs_.push_back(std::move(run)); }
-  bool make_room() { return false; }
   /// position: of the complex, then the new points.
   contour::ElementArrays<Backend> elements(const ComplexView& c) {
     contour::ElementArrays<Backend> out;

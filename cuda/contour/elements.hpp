@@ -4,7 +4,6 @@
 #include "contour/elements.hpp"
 #include "cuda/contour/element_items.hpp"
 #include "cuda/contour/element_sinks.hpp"
-#include "cuda/density/search_items.hpp"
 #include "cuda/par/backend.hpp"
 #include <algorithm>
 #include <numeric>
@@ -15,12 +14,10 @@ template <class Backend>
 class ElementMaker {
   template <class T>
   using Array = typename Backend::template Array<T>;
-  template <class T>
-  using Pending = typename Backend::template Pending<T>;
 
 public:
   using Ids = contour::detail::List<Backend, int32_t>;
-  explicit ElementMaker(Backend& b) : b_(b) {}
+  ElementMaker(Backend& b, int64_t least_run) : b_(b), least_run_(least_run) {}
 
   /// What it tells of the elements that its sink took.
   struct Made {
@@ -55,7 +52,6 @@ public:
 private:
   struct NoSink { ///< elements are only checked
     void take(ElementRun<Backend>) {}
-    bool make_room() { return false; }
   };
   /// What the rings need of the faces, run by run.
   struct MoreVertices {
@@ -99,25 +95,12 @@ private:
   int64_t make(const Make& item, int64_t items, int64_t number, Sink& sink, MoreVertices* more,
                uint8_t* spoiled = nullptr) {
     constexpr int64_t most = int64_t{1} << 25; // counts of a run are 32 bits wide
-    int64_t run = std::max<int64_t>(1, std::min({items, b_.room() / 256, most}));
-    for (int64_t begin = 0; begin < items;) {
-      const int64_t n = std::min(run, items - begin);
-      try {
-        int64_t points = 0;
-        sink.take(make_run(item, begin, n, number, more, spoiled, points));
-        number += points;
-      } catch (const OutOfRoom&) {
-        if (sink.make_room())
-          continue;
-        if (n == 1)
-          throw;
-        run = (n + 1) / 2;
-        continue;
-      }
-      ++runs_;
-      begin += n;
+    const int64_t run = std::clamp(b_.room() / 1024, least_run_, most);
+    for (int64_t begin = 0; begin < items; begin += run, ++runs_) {
+      int64_t points = 0;
+      sink.take(make_run(item, begin, std::min(run, items - begin), number, more, spoiled, points));
+      number += points;
     }
-    sink.make_room();
     return number;
   }
 
@@ -202,7 +185,7 @@ private:
   }
 
   Backend& b_;
-  int64_t runs_ = 0;
+  int64_t least_run_, runs_ = 0;
 };
 
 } // namespace molmesh::cuda

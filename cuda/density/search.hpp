@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <memory>
 
 namespace molmesh::cuda {
 
@@ -36,15 +36,15 @@ public:
   density::Band run(density::SearchCounts& counts) {
     density::Band band = density::empty_band(field_, frame_.grid, o_);
     find_nodes();
-    std::optional<SlabResult> before;
+    std::unique_ptr<SlabResult> before;
     std::vector<SlabRange> todo = plan();
     std::reverse(todo.begin(), todo.end());
     while (!todo.empty()) {
       const SlabRange s = todo.back();
       todo.pop_back();
-      std::optional<SlabResult> result;
+      std::unique_ptr<SlabResult> result;
       try {
-        result.emplace(run_slab(s));
+        result = std::make_unique<SlabResult>(run_slab(s));
       } catch (const OutOfRoom&) {
         if (before) { // what is still on its way to the host
           blocks_.append(*before, band);
@@ -61,8 +61,7 @@ public:
       }
       if (before)
         blocks_.append(*before, band);
-      before.reset();
-      before.emplace(std::move(*result));
+      before = std::move(result);
       ++slabs_;
       if (o_.progress)
         o_.progress(s.end, frame_.blocks.x);
@@ -114,14 +113,18 @@ private:
     std::sort(nodes_.begin(), nodes_.end());
   }
 
-  /// As few slabs as memory allows if every block near an atom were evaluated with a generous list.
+  /// As few slabs as memory allows if every block near an atom were evaluated with a generous list; a few where
+  /// there is much to do, so that copies have kernels to run beside.
   std::vector<SlabRange> plan() const {
     constexpr int64_t bytes_a_block =
         512 * 4 + 512 * 4 + 16 * 8 + 8 * 40 + 4 * 256; // values, packed, bits, keys, list
-    const int64_t most = std::max<int64_t>(b_.room() / bytes_a_block, 1);
+    constexpr int64_t node_blocks = node_edge * node_edge * node_edge, slabs_beside = 4, worth = int64_t{1} << 16;
+    const int64_t all = node_blocks * static_cast<int64_t>(nodes_.size());
+    const int64_t most =
+        std::max<int64_t>(std::min(b_.room() / bytes_a_block, std::max(worth, all / slabs_beside + 1)), 1);
     std::vector<int64_t> blocks(static_cast<size_t>((frame_.blocks.x + node_edge - 1) / node_edge), 0);
     for (const Key k : nodes_)
-      blocks[static_cast<size_t>(BlockFrame::block(k).x / node_edge)] += node_edge * node_edge * node_edge;
+      blocks[static_cast<size_t>(BlockFrame::block(k).x / node_edge)] += node_blocks;
     std::vector<SlabRange> slabs;
     int64_t sum = 0;
     for (size_t i = 0; i < blocks.size(); ++i) {

@@ -1,7 +1,8 @@
-// search_items.hpp — the small steps between the large ones: cubes halved, keys compacted, known blocks merged.
+// search_items.hpp — the small steps between the large ones: cubes halved, blocks told apart, known ones merged.
 #pragma once
 #include "cuda/density/band_items.hpp"
 #include "cuda/density/bounds.hpp"
+#include "cuda/par/items.hpp"
 
 namespace molmesh::cuda {
 
@@ -29,18 +30,6 @@ struct HalveCubes {
       });
     }
     kept[i] = keep;
-  }
-};
-
-/// to[at[i]] = from[i] where the scanned count rises.
-template <class T>
-struct Compact {
-  const T* from;
-  const int64_t* at;
-  T* to;
-  HD void operator()(int64_t i) const {
-    if (at[i + 1] != at[i])
-      to[at[i]] = from[i];
   }
 };
 

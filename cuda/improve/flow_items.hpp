@@ -9,13 +9,32 @@
 
 namespace molmesh::cuda {
 
-/// Corners of an element.
-struct Corners {
+/// Corners of an element; of a free slot v[0] < 0.
+struct alignas(16) Corners {
   int32_t v[4];
 };
 /// A triangle on the curved surface, running as the isosurface's normal does.
 struct Sail {
   int32_t v[3];
+};
+/// Which faces of an element are sails: bit f, and bit 4 + f where face f runs against the normal.
+struct GatherSails {
+  const Corners* element;
+  const uint8_t* faces;
+  HD int64_t operator()(int64_t i, Sail* out) const {
+    int64_t n = 0;
+    for (int f = 0; f < 4; ++f)
+      if (faces[i] >> f & 1) {
+        if (out) {
+          const int32_t* const v = element[i].v;
+          const int swapped = faces[i] >> (4 + f) & 1; // as improve::outward_face has them, or the other way round
+          const int face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+          out[n] = {{v[face[f][0]], v[face[f][1 + swapped]], v[face[f][2 - swapped]]}};
+        }
+        ++n;
+      }
+    return n;
+  }
 };
 /// Entries [begin[v], begin[v + 1]) of `item` are what hangs on point v.
 struct Star {
@@ -51,8 +70,9 @@ struct ElementQuality {
   const Vec3d* point;
   float* q;
   HD void operator()(int64_t i) const {
-    const Corners& e = element[i];
-    q[i] = improve::tet_quality(point[e.v[0]], point[e.v[1]], point[e.v[2]], point[e.v[3]]);
+    const Corners e = element[i];
+    if (e.v[0] >= 0)
+      q[i] = improve::tet_quality(point[e.v[0]], point[e.v[1]], point[e.v[2]], point[e.v[3]]);
   }
 };
 
@@ -236,15 +256,35 @@ struct TakeBack {
 struct CommitMoves {
   const uint32_t* active;
   const Vec3d* to;
-  uint8_t* moving;
+  const uint8_t* moving;
   Vec3d* point;
-  int64_t* moved;
+  int64_t* moves;
+  uint8_t* has_moved;
   HD void operator()(int64_t n) const {
     const uint32_t v = active[n];
-    moved[n] = moving[v];
-    if (moving[v])
-      point[v] = to[v];
-    moving[v] = 0;
+    moves[n] = moving[v];
+    if (!moving[v])
+      return;
+    point[v] = to[v];
+    has_moved[v] = 1;
+  }
+};
+/// Quality of an element with a corner that has moved.
+struct NewQuality {
+  int32_t element;
+  float q;
+};
+struct GatherNewQualities {
+  const Corners* element;
+  const Vec3d* point;
+  const uint8_t* has_moved;
+  HD int64_t operator()(int64_t i, NewQuality* out) const {
+    const Corners e = element[i];
+    if (e.v[0] < 0 || !(has_moved[e.v[0]] || has_moved[e.v[1]] || has_moved[e.v[2]] || has_moved[e.v[3]]))
+      return 0;
+    if (out)
+      *out = {int32_t(i), improve::tet_quality(point[e.v[0]], point[e.v[1]], point[e.v[2]], point[e.v[3]])};
+    return 1;
   }
 };
 
@@ -265,12 +305,13 @@ struct StarBegin {
     begin[v] = low;
   }
 };
+/// Free slots hang on no point.
 template <class Item, int corners>
 struct StarPairs {
   const Item* item;
   uint32_t *point_of, *item_of;
   HD void operator()(int64_t i) const {
-    point_of[i] = uint32_t(item[i / corners].v[i % corners]);
+    point_of[i] = uint32_t(item[i / corners].v[0] < 0 ? -1 : item[i / corners].v[i % corners]);
     item_of[i] = uint32_t(i / corners);
   }
 };

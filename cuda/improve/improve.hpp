@@ -6,10 +6,11 @@
 namespace molmesh::cuda {
 
 /// improve::improve with sweeps of geometric flow on the GPU before each round; the topological passes stay on
-/// options.threads threads of the host. Without a density, points of curved surfaces stay in the flow. Throws
-/// Error(mode_unavailable) where there is no GPU.
+/// options.threads threads of the host. Without a density, points of curved surfaces stay in the flow. Memory as in
+/// contour_mesh. Throws Error(mode_unavailable) where there is no GPU.
 improve::Result improve_mesh(TetMesh& mesh, const BlockGrid* density, const improve::Options& options,
-                             const std::function<void(const std::string&)>& phase, DeviceReport& report);
+                             const std::function<void(const std::string&)>& phase, DeviceReport& report,
+                             int64_t most_bytes = 0);
 
 /// Sweeps in a round.
 inline constexpr int flow_sweeps = 8;

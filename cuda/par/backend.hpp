@@ -11,10 +11,13 @@
 //   for_teams(name, n, item, work)     item(i, team, shared): Item::team_size threads work on i together
 //   T scan(name, pointer, n)           count[i] → sum of count[0..i), in place; slot n, one more, gets the total
 //   sort_pairs(name, keys, values, n)  ascending keys, unsigned integers; equal keys keep their order
-//   int64_t room()                     bytes that may still be taken
-// An item is a struct of plain views with a const operator() marked HD, in a header that compiles without CUDA.
+//   int64_t room()                     bytes of the device's memory that may still be taken
+//   void plan(bytes)                   what follows takes so many at once: says what is to be paged (Ledger)
+// Where the device's memory does not suffice, array() throws OutOfRoom, or, as the backend was made, takes memory
+// of the host that the device pages: slower, and else the same. An item is a struct of plain views with a const
+// operator() marked HD, in a header that compiles without CUDA.
 #pragma once
-#include "error.hpp"
+#include "cuda/par/ledger.hpp"
 #include "geom/hd.hpp"
 #include "par/work.hpp"
 #include <cstdint>
@@ -29,7 +32,7 @@ using par::Work;
 /// All launches of one name.
 struct KernelTime {
   std::string name;
-  int64_t launches = 0;
+  int64_t launches = 0, items = 0;
   double seconds = 0;
   Work work;
 };
@@ -37,9 +40,9 @@ struct KernelTime {
 /// What a run on the device was, for the run report.
 struct DeviceReport {
   std::string device;
-  int64_t most_bytes = 0; ///< of device memory at once
+  Bytes most_used{0, 0}; ///< at once
   std::vector<KernelTime> kernels;
-  std::string note{}; ///< what the device did not do, and why; may be empty
+  std::string note{}; ///< what was not as usual; may be empty
 };
 
 /// One thread of a team of `size`. The host's teams are one thread; a GPU's are a warp.
@@ -49,19 +52,18 @@ struct Solo {
   HD void sync() const {}
 };
 
-/// An array did not fit: what asked for it may try with less at a time.
-struct OutOfRoom : Error {
-  OutOfRoom(int64_t asked, int64_t room)
-      : Error(Status::failed, "not enough memory on the device: " + std::to_string((asked >> 20) + 1) +
-                                  " MiB more were needed, " + std::to_string(room >> 20) + " MiB are free") {}
+/// Memory of a backend.
+struct Taken {
+  void* data = nullptr;
+  bool paged = false;
 };
 
-/// n elements of a backend's memory. Owner: void* take(bytes), give_back(pointer, bytes) noexcept.
+/// n elements of a backend's memory. Owner: Taken take(bytes), give_back(Taken, bytes) noexcept.
 template <class Owner, class T>
 class OwnedArray {
 public:
   OwnedArray() = default;
-  OwnedArray(Owner& owner, int64_t n) : owner_(&owner), n_(n), data_(static_cast<T*>(owner.take(bytes()))) {}
+  OwnedArray(Owner& owner, int64_t n) : owner_(&owner), n_(n), taken_(owner.take(bytes())) {}
   OwnedArray(OwnedArray&& o) noexcept { swap(o); }
   OwnedArray& operator=(OwnedArray&& o) noexcept {
     OwnedArray(std::move(o)).swap(*this);
@@ -69,9 +71,9 @@ public:
   }
   ~OwnedArray() {
     if (owner_)
-      owner_->give_back(data_, bytes());
+      owner_->give_back(taken_, bytes());
   }
-  T* data() const { return data_; }
+  T* data() const { return static_cast<T*>(taken_.data); }
   int64_t size() const { return n_; }
 
 private:
@@ -79,25 +81,37 @@ private:
   void swap(OwnedArray& o) noexcept {
     std::swap(owner_, o.owner_);
     std::swap(n_, o.n_);
-    std::swap(data_, o.data_);
+    std::swap(taken_, o.taken_);
   }
   Owner* owner_ = nullptr;
   int64_t n_ = 0;
-  T* data_ = nullptr;
+  Taken taken_;
 };
 
 /// Adds to the entry of that name, made when new.
-inline void add_time(std::vector<KernelTime>& times, const char* name, double seconds, const Work& work) {
+inline void add_time(std::vector<KernelTime>& times, const char* name, int64_t items, double seconds,
+                     const Work& work) {
   for (KernelTime& t : times)
     if (t.name == name) {
       ++t.launches;
+      t.items += items;
       t.seconds += seconds;
       t.work.bytes += work.bytes;
       t.work.multiply_adds += work.multiply_adds;
       t.work.in_double = t.work.in_double || work.in_double;
       return;
     }
-  times.push_back({name, 1, seconds, work});
+  times.push_back({name, 1, items, seconds, work});
+}
+
+/// Of all that the backend has done.
+template <class Backend>
+DeviceReport report_of(Backend& backend, std::string device) {
+  DeviceReport r{std::move(device), backend.most_used(), backend.times()};
+  if (r.most_used.paged > 0)
+    r.note =
+        std::to_string((r.most_used.paged >> 20) + 1) + " MiB did not fit the device: paged from the host's memory";
+  return r;
 }
 
 } // namespace molmesh::cuda

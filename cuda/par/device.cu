@@ -1,7 +1,8 @@
-// device.cu — the driver and the device, asked once.
+// device.cu — the driver, the device and the host's memory, asked once.
 #include "cuda/par/device.hpp"
 #include "error.hpp"
 #include <cuda_runtime.h>
+#include <fstream>
 
 namespace molmesh::cuda {
 
@@ -28,6 +29,15 @@ std::string device_name() {
     fail(Status::mode_unavailable, "--mode cuda: the GPU does not answer, use seq or omp");
   return std::string(p.name) + ", " + std::to_string(p.multiProcessorCount) + " multiprocessors, " +
          std::to_string(p.totalGlobalMem >> 30) + " GiB";
+}
+
+int64_t free_host_memory() {
+  std::ifstream in("/proc/meminfo");
+  std::string name, unit;
+  for (int64_t kib = 0; in >> name >> kib && std::getline(in, unit);)
+    if (name == "MemAvailable:")
+      return kib * 1024;
+  return 0;
 }
 
 } // namespace molmesh::cuda

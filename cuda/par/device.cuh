@@ -1,23 +1,14 @@
-// device.cuh — the backend on one GPU: launches, scans and sorts of CUB, memory in stream order, checked calls,
-// event times.
+// device.cuh — the backend on one GPU: launches, scans and sorts of CUB, event times.
 #pragma once
-#include "cuda/par/backend.hpp"
-#include "cuda/par/device.hpp"
-#include <algorithm>
+#include "cuda/par/device_memory.cuh"
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
-#include <cuda_runtime.h>
 #include <limits>
-#include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace molmesh::cuda {
-
-/// Every call of CUDA goes through here: the ordinary one-line error.
-inline void check(cudaError_t e, const char* what) {
-  if (e != cudaSuccess)
-    fail(Status::failed, std::string("GPU: ") + what + ": " + cudaGetErrorString(e));
-}
 
 /// The threads of a warp.
 struct Warp {
@@ -58,59 +49,34 @@ __global__ void __launch_bounds__(threads_a_block) fill(int64_t n, T* to, T valu
     to[i] = value;
 }
 
-struct StreamDelete {
-  void operator()(cudaStream_t s) const { cudaStreamDestroy(s); }
-};
-struct EventDelete {
-  void operator()(cudaEvent_t e) const { cudaEventDestroy(e); }
-};
-using Stream = std::unique_ptr<CUstream_st, StreamDelete>;
-using Event = std::unique_ptr<CUevent_st, EventDelete>;
-
-inline Stream make_stream() {
-  cudaStream_t s{};
-  check(cudaStreamCreateWithFlags(&s, cudaStreamNonBlocking), "a stream");
-  return Stream(s);
-}
-inline Event make_event(unsigned flags) {
-  cudaEvent_t e{};
-  check(cudaEventCreateWithFlags(&e, flags), "an event");
-  return Event(e);
-}
-
 } // namespace detail
 
 /// One thread of the host uses it. Kernels run one after the other; copies to the host beside them.
 class DeviceBackend {
 public:
-  DeviceBackend() {
+  /// most: bytes of the device's memory that may be taken; 0: nine tenths of what is free. pages: what does not fit
+  /// goes to the host's memory.
+  explicit DeviceBackend(int64_t most, bool pages = false) {
     require_device();
     check(cudaSetDevice(0), "choosing the device");
     work_ = detail::make_stream();
     copy_ = detail::make_stream();
-    cudaMemPool_t pool{};
-    check(cudaDeviceGetDefaultMemPool(&pool, 0), "the memory pool");
-    uint64_t all = std::numeric_limits<uint64_t>::max(); // freed memory stays ours until the end
-    check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &all), "the memory pool");
-    size_t free = 0, total = 0;
-    check(cudaMemGetInfo(&free, &total), "asking for its memory");
-    budget_ = static_cast<int64_t>(free) / 10 * 9; // the rest: kernels' own, fragments
+    memory_.emplace(work_.get(), copy_.get(), most, pages);
   }
   DeviceBackend(const DeviceBackend&) = delete;
   DeviceBackend& operator=(const DeviceBackend&) = delete;
 
   template <class T>
-  using Array = OwnedArray<DeviceBackend, T>;
+  using Array = OwnedArray<DeviceMemory, T>;
 
   /// A copy on its way to page-locked memory.
   template <class T>
   class Pending {
   public:
     Pending(DeviceBackend& owner, Array<T> from)
-        : n_(from.size()), done_(detail::make_event(cudaEventDisableTiming)) {
-      void* to = nullptr;
-      check(cudaMallocHost(&to, std::max<size_t>(1, static_cast<size_t>(n_) * sizeof(T))), "page-locked memory");
-      to_.reset(static_cast<T*>(to));
+        : n_(from.size()), done_(detail::make_event(cudaEventDisableTiming)),
+          to_(owner.locked_, static_cast<size_t>(n_) * sizeof(T)) {
+      void* const to = to_.data();
       check(cudaEventRecord(done_.get(), owner.work_.get()), "an event");
       check(cudaStreamWaitEvent(owner.copy_.get(), done_.get()), "an event");
       owner.copy_timed(to, from.data(), static_cast<size_t>(n_) * sizeof(T), cudaMemcpyDeviceToHost,
@@ -127,27 +93,24 @@ public:
     const T* get() {
       check(cudaEventSynchronize(done_.get()), "copying to the host");
       from_ = {};
-      return to_.get();
+      return static_cast<const T*>(to_.data());
     }
     int64_t size() const { return n_; }
 
   private:
-    struct HostFree {
-      void operator()(T* p) const { cudaFreeHost(p); }
-    };
     int64_t n_;
     detail::Event done_;
-    std::unique_ptr<T[], HostFree> to_;
+    detail::Locked to_;
     Array<T> from_;
   };
 
   template <class T>
   Array<T> array(int64_t n) {
-    return Array<T>(*this, n);
+    return Array<T>(*memory_, n);
   }
   template <class T>
   Array<T> filled(int64_t n, T value) {
-    Array<T> a(*this, n);
+    Array<T> a(*memory_, n);
     launch("fill", n, {double(n) * sizeof(T)}, [&](unsigned blocks) {
       detail::fill<T><<<blocks, detail::threads_a_block, 0, work_.get()>>>(n, a.data(), value);
     });
@@ -155,9 +118,10 @@ public:
   }
   template <class T>
   Array<T> upload(const T* from, int64_t n) {
-    Array<T> a(*this, n);
+    Array<T> a(*memory_, n);
     copy_timed(a.data(), from, static_cast<size_t>(n) * sizeof(T), cudaMemcpyHostToDevice, work_.get(),
                "copies to the device");
+    wait(); // `from` may go
     return a;
   }
   template <class T>
@@ -179,19 +143,21 @@ public:
   }
   template <class Item>
   void for_teams(const char* name, int64_t n, const Item& item, const Work& work = {}) {
-    if (n <= 0)
-      return;
-    const auto blocks = static_cast<unsigned>((n + detail::warps_a_block - 1) / detail::warps_a_block);
-    timed(name, work,
-          [&] { detail::teams<Item><<<blocks, dim3(32, detail::warps_a_block), 0, work_.get()>>>(n, item); });
+    launch(
+        name, n, work,
+        [&](unsigned blocks) {
+          detail::teams<Item><<<blocks, dim3(32, detail::warps_a_block), 0, work_.get()>>>(n, item);
+        },
+        detail::warps_a_block);
   }
   template <class T>
   T scan(const char* name, T* count, int64_t n) {
+    check_length(name, n + 1);
     check(cudaMemsetAsync(count + n, 0, sizeof(T), work_.get()), name);
     size_t bytes = 0;
     check(cub::DeviceScan::ExclusiveSum(nullptr, bytes, count, count, n + 1, work_.get()), name);
-    const Array<char> scratch(*this, static_cast<int64_t>(bytes));
-    timed(name, {2.0 * double(n) * sizeof(T)}, [&] {
+    const Array<char> scratch(*memory_, static_cast<int64_t>(bytes));
+    timed(name, n, {2.0 * double(n) * sizeof(T)}, [&] {
       check(cub::DeviceScan::ExclusiveSum(scratch.data(), bytes, count, count, n + 1, work_.get()), name);
     });
     T total{};
@@ -203,23 +169,25 @@ public:
   void sort_pairs(const char* name, K* keys, V* values, int64_t n) {
     if (n <= 1)
       return;
-    const Array<K> other_keys(*this, n);
-    const Array<V> other_values(*this, n);
+    check_length(name, n);
+    const Array<K> other_keys(*memory_, n);
+    const Array<V> other_values(*memory_, n);
     cub::DoubleBuffer<K> k(keys, other_keys.data());
     cub::DoubleBuffer<V> v(values, other_values.data());
     size_t bytes = 0;
     const int bits = 8 * static_cast<int>(sizeof(K));
     check(cub::DeviceRadixSort::SortPairs(nullptr, bytes, k, v, n, 0, bits, work_.get()), name);
-    const Array<char> scratch(*this, static_cast<int64_t>(bytes));
-    timed(name, {2.0 * double(n) * (sizeof(K) + sizeof(V))}, [&] {
+    const Array<char> scratch(*memory_, static_cast<int64_t>(bytes));
+    timed(name, n, {2.0 * double(n) * (sizeof(K) + sizeof(V))}, [&] {
       check(cub::DeviceRadixSort::SortPairs(scratch.data(), bytes, k, v, n, 0, bits, work_.get()), name);
     });
     copy_if_other(keys, k.Current(), n, name);
     copy_if_other(values, v.Current(), n, name);
   }
 
-  int64_t room() const { return budget_ - used_; }
-  int64_t most_used() const { return most_; }
+  void plan(int64_t bytes) { memory_->plan(bytes); }
+  int64_t room() const { return memory_->room(); }
+  Bytes most_used() const { return memory_->most_used(); }
 
   /// Waits for everything that was started.
   std::vector<KernelTime> times() {
@@ -228,44 +196,34 @@ public:
     for (const Launch& l : launches_) {
       float ms = 0;
       check(cudaEventElapsedTime(&ms, l.begin.get(), l.end.get()), "an event");
-      add_time(times_, l.name, 1e-3 * ms, l.work);
+      add_time(times_, l.name, l.items, 1e-3 * ms, l.work);
     }
     launches_.clear();
     return times_;
   }
 
 private:
-  template <class, class>
-  friend class cuda::OwnedArray;
   struct Launch {
     const char* name;
+    int64_t items;
     detail::Event begin, end;
     Work work;
   };
 
-  void* take(int64_t bytes) {
-    if (bytes > room())
-      throw OutOfRoom(bytes, room());
-    void* p = nullptr;
-    const cudaError_t e = cudaMallocAsync(&p, std::max<size_t>(1, static_cast<size_t>(bytes)), work_.get());
-    if (e == cudaErrorMemoryAllocation) {
-      cudaGetLastError();
-      throw OutOfRoom(bytes, room());
-    }
-    check(e, "taking memory");
-    used_ += bytes;
-    most_ = std::max(most_, used_);
-    return p;
+  /// CUB counted in 32 bits once; 13 is what is known to count in 64.
+  static void check_length([[maybe_unused]] const char* name, [[maybe_unused]] int64_t n) {
+#if CUDART_VERSION < 13000
+    if (n > std::numeric_limits<int32_t>::max())
+      fail(Status::failed, std::string("GPU: ") + name + ": too many items for a build with CUDA before 13");
+#endif
   }
-  void give_back(void* p, int64_t bytes) noexcept {
-    used_ -= bytes;
-    cudaFreeAsync(p, work_.get()); // an error here is an earlier one, told by the next checked call
+  void wait() {
+    check(cudaStreamSynchronize(work_.get()), "running a kernel");
   }
-  void wait() { check(cudaStreamSynchronize(work_.get()), "running a kernel"); }
 
   template <class F>
-  void timed(const char* name, const Work& work, F&& f) {
-    Launch l{name, detail::make_event(cudaEventDefault), detail::make_event(cudaEventDefault), work};
+  void timed(const char* name, int64_t items, const Work& work, F&& f) {
+    Launch l{name, items, detail::make_event(cudaEventDefault), detail::make_event(cudaEventDefault), work};
     check(cudaEventRecord(l.begin.get(), work_.get()), "an event");
     f();
     check(cudaGetLastError(), name);
@@ -273,19 +231,19 @@ private:
     launches_.push_back(std::move(l));
   }
   template <class F>
-  void launch(const char* name, int64_t n, const Work& work, F&& f) {
+  void launch(const char* name, int64_t n, const Work& work, F&& f, int items_a_block = detail::threads_a_block) {
     if (n <= 0)
       return;
-    const int64_t blocks = (n + detail::threads_a_block - 1) / detail::threads_a_block;
+    const int64_t blocks = (n + items_a_block - 1) / items_a_block;
     if (blocks > std::numeric_limits<int32_t>::max())
       fail(Status::failed, std::string("GPU: ") + name + ": too many items for one launch");
-    timed(name, work, [&] { f(static_cast<unsigned>(blocks)); });
+    timed(name, n, work, [&] { f(static_cast<unsigned>(blocks)); });
   }
   void copy_timed(void* to, const void* from, size_t bytes, cudaMemcpyKind kind, cudaStream_t stream,
                   const char* name) {
     if (bytes == 0)
       return;
-    Launch l{name, detail::make_event(cudaEventDefault), detail::make_event(cudaEventDefault), {double(bytes)}};
+    Launch l{name, 1, detail::make_event(cudaEventDefault), detail::make_event(cudaEventDefault), {double(bytes)}};
     check(cudaEventRecord(l.begin.get(), stream), "an event");
     check(cudaMemcpyAsync(to, from, bytes, kind, stream), name);
     check(cudaEventRecord(l.end.get(), stream), "an event");
@@ -299,7 +257,8 @@ private:
   }
 
   detail::Stream work_, copy_;
-  int64_t budget_ = 0, used_ = 0, most_ = 0;
+  detail::LockedPool locked_;
+  std::optional<DeviceMemory> memory_;
   std::vector<Launch> launches_;
   std::vector<KernelTime> times_;
 };

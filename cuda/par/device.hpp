@@ -1,5 +1,6 @@
 // device.hpp — is there a GPU. The only part of this room that the tools' start sees.
 #pragma once
+#include <cstdint>
 #include <string>
 
 namespace molmesh::cuda {
@@ -8,5 +9,7 @@ namespace molmesh::cuda {
 void require_device();
 /// "NVIDIA H200, 132 multiprocessors, 139 GiB"; what require_device() throws where there is none.
 std::string device_name();
+/// Bytes of the host's memory that nobody uses.
+int64_t free_host_memory();
 
 } // namespace molmesh::cuda

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <limits>
 #include <new>
 #include <numeric>
 
@@ -13,9 +12,8 @@ namespace molmesh::cuda {
 
 class HostBackend {
 public:
-  /// budget: bytes that all arrays together may take, to try what a small device does.
-  explicit HostBackend(int threads = 1, int64_t budget = std::numeric_limits<int64_t>::max())
-      : threads_(threads), budget_(budget) {}
+  /// most: what all arrays together may take, to try what a small device does.
+  explicit HostBackend(int threads = 1, Bytes most = {}) : threads_(threads), ledger_(most) {}
   HostBackend(const HostBackend&) = delete;
   HostBackend& operator=(const HostBackend&) = delete;
 
@@ -46,12 +44,12 @@ public:
   template <class T>
   Array<T> upload(const T* from, int64_t n) {
     Array<T> a(*this, n);
-    std::copy_n(from, n, a.data());
+    timed("copies to the device", 1, {double(n) * sizeof(T)}, [&] { std::copy_n(from, n, a.data()); });
     return a;
   }
   template <class T>
   void download(const Array<T>& from, int64_t n, T* to) {
-    std::copy_n(from.data(), n, to);
+    timed("copies to the host", 1, {double(n) * sizeof(T)}, [&] { std::copy_n(from.data(), n, to); });
   }
   template <class T>
   Pending<T> fetch(Array<T> from) {
@@ -60,11 +58,11 @@ public:
 
   template <class Item>
   void for_n(const char* name, int64_t n, const Item& item, const Work& work = {}) {
-    timed(name, work, [&] { par::for_n(n, threads_, 64, [&](int64_t i) { item(i); }); });
+    timed(name, n, work, [&] { par::for_n(n, threads_, 64, [&](int64_t i) { item(i); }); });
   }
   template <class Item>
   void for_teams(const char* name, int64_t n, const Item& item, const Work& work = {}) {
-    timed(name, work, [&] {
+    timed(name, n, work, [&] {
       par::for_n(n, threads_, 8, [&](int64_t i) {
         typename Item::Shared shared;
         item(i, Solo{}, shared);
@@ -74,7 +72,7 @@ public:
   template <class T>
   T scan(const char* name, T* count, int64_t n) {
     T sum{};
-    timed(name, {2.0 * double(n) * sizeof(T)}, [&] {
+    timed(name, n, {2.0 * double(n) * sizeof(T)}, [&] {
       for (int64_t i = 0; i < n; ++i) {
         const T c = count[i];
         count[i] = sum;
@@ -86,7 +84,7 @@ public:
   }
   template <class K, class V>
   void sort_pairs(const char* name, K* keys, V* values, int64_t n) {
-    timed(name, {2.0 * double(n) * (sizeof(K) + sizeof(V))}, [&] {
+    timed(name, n, {2.0 * double(n) * (sizeof(K) + sizeof(V))}, [&] {
       std::vector<int64_t> order(static_cast<size_t>(n));
       std::iota(order.begin(), order.end(), int64_t{0});
       par::sort(order, threads_,
@@ -100,34 +98,34 @@ public:
     });
   }
 
-  int64_t room() const { return budget_ - used_; }
-  int64_t most_used() const { return most_; }
+  void plan(int64_t bytes) { ledger_.plan(bytes); }
+  int64_t room() const { return ledger_.room(); }
+  Bytes most_used() const { return ledger_.most_used(); }
   std::vector<KernelTime> times() { return times_; }
 
 private:
   template <class, class>
   friend class cuda::OwnedArray;
-  void* take(int64_t bytes) {
-    if (bytes > room())
-      throw OutOfRoom(bytes, room());
-    void* p = ::operator new(static_cast<size_t>(bytes));
-    used_ += bytes;
-    most_ = std::max(most_, used_);
-    return p;
+  Taken take(int64_t bytes) {
+    const bool paged = ledger_.is_paged(bytes);
+    const Taken t{::operator new(static_cast<size_t>(bytes)), paged};
+    ledger_.add(bytes, paged);
+    return t;
   }
-  void give_back(void* p, int64_t bytes) noexcept {
-    used_ -= bytes;
-    ::operator delete(p);
+  void give_back(Taken t, int64_t bytes) noexcept {
+    ledger_.subtract(bytes, t.paged);
+    ::operator delete(t.data);
   }
   template <class F>
-  void timed(const char* name, const Work& work, F&& f) {
+  void timed(const char* name, int64_t items, const Work& work, F&& f) {
     const auto begin = std::chrono::steady_clock::now();
     f();
-    add_time(times_, name, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), work);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    add_time(times_, name, items, seconds.count(), work);
   }
 
   int threads_;
-  int64_t budget_, used_ = 0, most_ = 0;
+  Ledger ledger_;
   std::vector<KernelTime> times_;
 };
 

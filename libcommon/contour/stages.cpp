@@ -8,17 +8,6 @@
 
 namespace molmesh::contour {
 
-HostStages::HostStages(int threads, const Lattice& lattice, Surface surface, LeafList leaves)
-    : threads_(threads), lattice_(&lattice), surface_(std::move(surface)) {
-  tree_.emplace(lattice.cells, std::move(leaves), threads);
-}
-
-HostStages::HostStages(int threads, const Lattice& lattice, Surface surface, LeafList leaves,
-                       const std::function<Dual(const DualInput&)>& make_dual)
-    : HostStages(threads, lattice, std::move(surface), std::move(leaves)) {
-  dual_ = make_dual(dual_input());
-}
-
 void HostStages::find_surface(const Lattice& lattice) {
   lattice_ = &lattice;
   surface_ = contour::find_surface(lattice, threads_);

@@ -9,7 +9,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace molmesh::contour {
@@ -33,10 +32,6 @@ public:
 class HostStages final : public Stages {
 public:
   explicit HostStages(int threads) : threads_(threads) {}
-  /// After the first two stages, or three, were made elsewhere.
-  HostStages(int threads, const Lattice& lattice, Surface surface, LeafList leaves);
-  HostStages(int threads, const Lattice& lattice, Surface surface, LeafList leaves,
-             const std::function<Dual(const DualInput&)>& make_dual);
 
   void find_surface(const Lattice& lattice) override;
   void select_leaves(const RefineOptions& options) override;

@@ -38,7 +38,7 @@ Peaks measure_peaks() {
   Peaks p;
   constexpr int64_t n = int64_t{1} << 24, threads = int64_t{1} << 22;
   for (int repeat = 0; repeat < 4; ++repeat) {
-    cuda::DeviceBackend b;
+    cuda::DeviceBackend b(0);
     const auto from = b.filled(n, float4{1, 2, 3, 4}), to = b.filled(n, float4{});
     const auto single = b.filled(threads, 0.0f);
     const auto in_double = b.filled(threads, 0.0);

@@ -4,6 +4,7 @@
 #include "cuda/par/host.hpp"
 #include "geom/log.hpp"
 #include "unit/contour/sample_grid.hpp"
+#include "unit/refusal.hpp"
 #include <array>
 #include <catch2/catch.hpp>
 #include <random>
@@ -16,9 +17,9 @@ using test::cube_grid;
 namespace {
 
 struct Seen {
-  int64_t differ = 0, runs = 0, most_used = 0;
+  int64_t differ = 0, runs = 0;
   contour::Summary summary;
-  std::string note; ///< what the host did
+  cuda::DeviceReport report;
 };
 
 template <class A, class B>
@@ -30,7 +31,7 @@ bool same(const A& device, const B& host) {
 /// Each stage by both; what differs is counted.
 class Both final : public contour::Stages {
 public:
-  Both(cuda::HostBackend& backend, int threads) : host_(threads), device_(backend, threads) {}
+  Both(cuda::HostBackend& backend, int threads) : host_(threads), device_(backend, threads, 2000) {}
   void find_surface(const contour::Lattice& lattice) override {
     host_.find_surface(lattice);
     device_.find_surface(lattice);
@@ -79,23 +80,17 @@ public:
 private:
   void compare_elements() {
     const contour::Elements& f = host_.dual().elements;
-    const auto compare = [&](const auto& e) {
-      differ_ += !same(e.tet, f.tet) + !same(e.tri, f.tri) + !same(e.tri_sides, f.tri_sides) +
-                 !same(e.boundary, f.boundary) + !same(e.position, f.position);
-    };
-    if (device_.host())
-      compare(device_.host()->dual().elements);
-    else
-      compare(device_.elements());
+    const auto& e = device_.elements();
+    differ_ += !same(e.tet, f.tet) + !same(e.tri, f.tri) + !same(e.tri_sides, f.tri_sides) +
+               !same(e.boundary, f.boundary) + !same(e.position, f.position);
   }
   contour::HostStages host_;
   cuda::DeviceStages<cuda::HostBackend> device_;
   mutable int64_t differ_ = 0;
 };
 
-Seen compare(const BlockGrid& grid, const Options& o, int threads = 1,
-             int64_t budget = std::numeric_limits<int64_t>::max()) {
-  cuda::HostBackend backend(threads, budget);
+Seen compare(const BlockGrid& grid, const Options& o, int threads = 1, cuda::Bytes most = {}) {
+  cuda::HostBackend backend(threads, most);
   Both both(backend, threads);
   Options options = o;
   options.threads = threads;
@@ -104,8 +99,7 @@ Seen compare(const BlockGrid& grid, const Options& o, int threads = 1,
       grid, options, seen.summary, [](const std::string&) {}, both);
   seen.differ = both.differ();
   seen.runs = both.device().runs();
-  seen.note = both.device().note();
-  seen.most_used = backend.most_used();
+  seen.report = cuda::report_of(backend, "the host");
   return seen;
 }
 
@@ -133,7 +127,7 @@ TEST_CASE("device stages: the host's, one by one, on random densities with ambig
       options.drop_below = trial % 4 == 1 ? 1.5 : 0;
       const Seen s = compare(grid, options, trial % 8 == 7 ? 3 : 1);
       CHECK(s.differ == 0);
-      CHECK(s.note.empty());
+      CHECK(s.report.note.empty());
       ++meshes;
       sum.face_points += s.summary.face_points;
       sum.edge_points += s.summary.edge_points;
@@ -157,31 +151,29 @@ TEST_CASE(
   const BlockGrid grid = cube_grid(8, 0.8, [](Vec3d x) { return atom(x) + atom(x - Vec3d{2, 2.5, 1}); });
   Options options;
   options.meshed = Options::both;
-  int64_t in_runs = 0, from_runs = 0, from_leaves = 0;
+  int64_t in_runs = 0;
   for (double adapt : {0.25, 0.0}) {
     options.adapt = adapt;
     const Seen one = compare(grid, options, 2);
     CHECK(one.differ == 0);
-    CHECK(one.note.empty());
-    // Of less and less memory, until the surface alone does not fit.
-    for (int percent = 90; percent > 0; percent -= 10) {
-      const int64_t budget = one.most_used * percent / 100;
+    CHECK(one.report.note.empty());
+    CHECK(one.report.most_used.paged == 0);
+    const int64_t all = one.report.most_used.own;
+    // Of less and less memory, down to none.
+    for (const int percent : {90, 60, 30, 10, 0}) {
+      const int64_t own = all * percent / 100;
       CAPTURE(adapt, percent);
-      try {
-        const Seen less = compare(grid, options, 3, budget);
-        CHECK(less.differ == 0);
-        CHECK(less.most_used <= budget);
-        in_runs += less.runs > one.runs;
-        from_runs += less.note.rfind("relaxation", 0) == 0;
-        from_leaves += less.note.rfind("dual vertices", 0) == 0;
-      } catch (const cuda::OutOfRoom&) {
-        break;
-      }
+      const Seen less = compare(grid, options, 3, {own, 2 * all});
+      CHECK(less.differ == 0);
+      CHECK(less.report.most_used.own <= own);
+      CHECK(less.report.most_used.paged > 0);
+      CHECK(less.report.note.find("paged from the host's memory") != std::string::npos);
+      in_runs += less.runs > one.runs;
     }
+    const std::string line = test::refusal(Status::failed, [&] { compare(grid, options, 1, {all / 2, all / 8}); });
+    CHECK(line.find("not enough memory on the device") != std::string::npos);
   }
   CHECK(in_runs > 0);
-  CHECK(from_runs > 0);
-  CHECK(from_leaves > 0);
   options.box.kind = contour::BoxRequest::corners;
   options.box.lower = {-1.1, -9, -9};
   options.box.upper = {9, 1.77, 9};

@@ -19,7 +19,7 @@ struct Run {
 
 Run on_backend(const Hierarchy& h, const density::Options& o, int threads = 1,
                int64_t budget = std::numeric_limits<int64_t>::max()) {
-  cuda::HostBackend backend(threads, budget);
+  cuda::HostBackend backend(threads, {budget});
   Run run;
   const auto find = [&](const density::Field& f, const GridFrame& frame, const density::SearchOptions& s,
                         density::SearchCounts& c) {
@@ -29,7 +29,7 @@ Run on_backend(const Hierarchy& h, const density::Options& o, int threads = 1,
     return band;
   };
   run.grid = density::to_block_grid(density::compute(h, o, run.counts, find), 1);
-  run.most_used = backend.most_used();
+  run.most_used = backend.most_used().own;
   return run;
 }
 

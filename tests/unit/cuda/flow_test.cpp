@@ -48,7 +48,7 @@ TEST_CASE("flow: the worst element rises, none is inverted, what is bound stays 
   const improve::Pass pass = pass_with(26, worst_first);
   const improve::DynamicMesh before = m;
   cuda::HostBackend backend(1);
-  cuda::Flow<cuda::HostBackend> flow(backend, with_surface ? &surface : nullptr);
+  cuda::Flow<cuda::HostBackend> flow(backend, with_surface ? &surface : nullptr, 1);
   const int64_t moves = flow.run(m, pass, 8);
   CHECK(moves > 100);
   CHECK(flow.visited() >= moves);
@@ -89,14 +89,14 @@ TEST_CASE("flow: the same points at any number of threads; a goal that is met mo
   const improve::Pass pass = pass_with(26, true);
   for (auto [m, threads] : {std::pair{&one, 1}, {&more, 3}}) {
     cuda::HostBackend backend(threads);
-    cuda::Flow<cuda::HostBackend>(backend, &surface).run(*m, pass, 5);
+    cuda::Flow<cuda::HostBackend>(backend, &surface, threads).run(*m, pass, 5);
   }
   CHECK(one.point == more.point);
   const std::vector<Vec3d> before = one.point;
   cuda::HostBackend backend;
   improve::Pass met;
   met.goal = std::min(1e-7f, 0.5f * worst(one));
-  CHECK(cuda::Flow<cuda::HostBackend>(backend, &surface).run(one, met, 5) == 0);
+  CHECK(cuda::Flow<cuda::HostBackend>(backend, &surface, 1).run(one, met, 5) == 0);
   CHECK(one.point == before);
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("flow: points are grouped by valence and stars are complete") {
   for (const improve::Element& e : m.element)
     corners.push_back({{e.v[0], e.v[1], e.v[2], e.v[3]}});
   cuda::HostBackend backend;
-  const cuda::Stars<cuda::HostBackend> stars(backend, backend.upload(corners.data(), int64_t(corners.size())),
+  const cuda::Stars<cuda::HostBackend> stars(backend, corners.data(), int64_t(corners.size()),
                                              static_cast<int64_t>(m.point.size()));
   const auto order = stars.by_valence();
   std::vector<int> seen(m.point.size(), 0);
@@ -141,7 +141,7 @@ TEST_CASE("improvement with the device's flow keeps what improvement keeps, at a
         mesh, with_density ? &grid : nullptr, options, {},
         [&](improve::DynamicMesh& m, const improve::Isosurface* surface, const improve::Pass& pass) {
           if (!flow)
-            flow = std::make_unique<cuda::Flow<cuda::HostBackend>>(backend, surface);
+            flow = std::make_unique<cuda::Flow<cuda::HostBackend>>(backend, surface, threads);
           return flow->run(m, pass, 4);
         });
     CHECK(r.after.min >= 15);
@@ -153,4 +153,41 @@ TEST_CASE("improvement with the device's flow keeps what improvement keeps, at a
   }
   CHECK(result[0].point == result[1].point);
   CHECK(result[0].tet == result[1].tet);
+}
+
+TEST_CASE("flow: what stays on the device between rounds is what a mesh sent anew would be, for fewer bytes") {
+  const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  const auto copied = [](cuda::HostBackend& b) {
+    double bytes = 0;
+    for (const cuda::KernelTime& t : b.times())
+      bytes += t.name.rfind("copies", 0) == 0 ? t.work.bytes : 0;
+    return bytes;
+  };
+  std::vector<TetMesh> result;
+  std::vector<double> bytes;
+  for (const bool stays : {true, false}) {
+    TetMesh mesh = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
+    cuda::HostBackend backend;
+    std::unique_ptr<cuda::Flow<cuda::HostBackend>> flow;
+    double surfaces = 0, moves = 0;
+    improve::improve(mesh, &grid, {}, {},
+                     [&](improve::DynamicMesh& m, const improve::Isosurface* surface, const improve::Pass& pass) {
+                       if (!flow || !stays) {
+                         flow.reset();
+                         const double before = copied(backend);
+                         flow = std::make_unique<cuda::Flow<cuda::HostBackend>>(backend, surface, 1);
+                         surfaces += copied(backend) - before;
+                       }
+                       const int64_t moved = flow->run(m, pass, 4);
+                       moves += double(moved);
+                       return moved;
+                     });
+    CHECK(moves > 100);
+    result.push_back(std::move(mesh));
+    bytes.push_back(copied(backend) - surfaces);
+  }
+  CHECK(result[0].point == result[1].point);
+  CHECK(result[0].tet == result[1].tet);
+  CHECK(result[0].tri == result[1].tri);
+  CHECK(bytes[0] < 0.6 * bytes[1]);
 }

@@ -1,0 +1,40 @@
+// items.hpp — elements copied, compacted, gathered and scattered.
+#pragma once
+#include "geom/hd.hpp"
+#include <cstdint>
+
+namespace molmesh::cuda {
+
+template <class T>
+struct CopyItems {
+  const T* from;
+  T* to;
+  HD void operator()(int64_t i) const { to[i] = from[i]; }
+};
+/// to[at[i]] = from[i] where the scanned count rises.
+template <class T>
+struct Compact {
+  const T* from;
+  const int64_t* at;
+  T* to;
+  HD void operator()(int64_t i) const {
+    if (at[i + 1] != at[i])
+      to[at[i]] = from[i];
+  }
+};
+template <class T>
+struct Gather {
+  const T* from;
+  const uint32_t* index;
+  T* to;
+  HD void operator()(int64_t i) const { to[i] = from[index[i]]; }
+};
+template <class T>
+struct Scatter {
+  const T* from;
+  const uint32_t* index; ///< each once
+  T* to;
+  HD void operator()(int64_t i) const { to[index[i]] = from[i]; }
+};
+
+} // namespace molmesh::cuda
