@@ -1,28 +1,37 @@
 #!/usr/bin/env bash
 # gpu.sh — the cuda mode on a real GPU: parity of all stages, memory errors, times. Needs an NVIDIA GPU and the CUDA
-# toolkit, nothing else; or, with -d, a driver built before (`tests/gpu.sh -c DIR` builds it there and stops).
-#   tests/gpu.sh [-c DIR] [-d DRIVER] [-b BIN] [-s SPACING] [-n REPEATS] [FILE.hier…]
-# BIN: a folder with pdb2hier, hier2density, density2tet and tetsmooth; then FILEs may be structures and the table of
-# the three modes of the whole programs is printed too. Exit status: 0 all held, 1 something did not, 6 no GPU.
+# toolkit, nothing else; or a folder made before, elsewhere.
+#   tests/gpu.sh [-d DIR] [-b BIN] [-s SPACING | -g POINTS] [-m MODEL] [-n REPEATS] [-H] [FILE…]
+#   tests/gpu.sh -c DIR [-b BIN] [-m MODEL] [FILE…]
+# FILE: a .hier, or a structure (MODEL of it: first, all, a number) where there are programs. BIN: a folder with
+# pdb2hier, hier2density, density2tet and tetsmooth: then the table of the three modes of the whole programs too.
+# -c: what can be carried, and no more: the driver, the programs and the shared libraries that they need, the
+# hierarchies of the FILEs. -d: nothing is built; without FILEs those of the folder. -H: no GPU, the device's
+# algorithms on the host's threads. Exit status: 0 all held, 1 something did not, 6 no GPU.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
-compile='' driver='' bin='' spacing=1 repeats=5
-while getopts c:d:b:s:n: o; do
+compile='' dir='' bin='' spacing=1 points='' model=first repeats=5 host=''
+while getopts c:d:b:s:g:m:n:H o; do
   case $o in
   c) compile=$OPTARG ;;
-  d) driver=$OPTARG ;;
+  d) dir=$OPTARG ;;
   b) bin=$OPTARG ;;
   s) spacing=$OPTARG ;;
+  g) points=$OPTARG ;;
+  m) model=$OPTARG ;;
   n) repeats=$OPTARG ;;
+  H) host=host ;;
   *) exit 2 ;;
   esac
 done
 shift $((OPTIND - 1))
 PATH=$PATH:/usr/local/cuda/bin
+status=0
+failed() { status=1; echo "gpu.sh: FAILED: $*"; }
 
-build() { # build DRIVER ARCHITECTURE: cuda/ and libcommon/ with nvcc and the standard library alone
-  local out=$1 objects work jobs=0 f name failed=0
+build() { # build DRIVER FLAGS: cuda/ and libcommon/ with nvcc and the standard library alone
+  local out=$1 objects work jobs=0 f name flags
   work=$(dirname "$out")/objects
   mkdir -p "$work"
   # What needs Highway, nanoflann, METIS or CLI11 is not used here.
@@ -41,89 +50,164 @@ build() { # build DRIVER ARCHITECTURE: cuda/ and libcommon/ with nvcc and the st
     [ $((jobs % $(nproc))) -ne 0 ] || wait
   done
   wait
-  [ ! -e "$work/failed" ] || failed=1
-  rm -f "$work/failed"
+  if [ -e "$work/failed" ]; then
+    rm -f "$work/failed"
+    return 1
+  fi
   # Unused parts of the host's density, which ask for Highway, go with their sections.
-  [ $failed = 0 ] && nvcc -O3 "$work"/*.o -o "$out" -Xcompiler=-fopenmp -Xlinker=--gc-sections
+  nvcc -O3 "$work"/*.o -o "$out" -Xcompiler=-fopenmp,-static-libstdc++,-static-libgcc -Xlinker=--gc-sections
+}
+
+hierarchy() { # hierarchy FILE FOLDER: prints the name of the .hier, made in FOLDER where FILE is a structure
+  local hier
+  hier=$2/$(basename "$1" .hier).hier
+  case $1 in
+  *.hier) [ -r "$1" ] && echo "$1" ;;
+  *)
+    [ -n "$bin" ] || { echo "gpu.sh: $1: structures need -b BIN" >&2; return 1; }
+    "$bin/pdb2hier" -q --model "$model" -r '* P_R=0.5 P_C=1' "$1" -o "$hier" && echo "$hier"
+    ;;
+  esac
+}
+
+carry() { # carry DIR FILE…: programs, libraries and hierarchies beside the driver
+  local to=$1 file hier
+  shift
+  mkdir -p "$to/bin" "$to/lib"
+  [ -z "$bin" ] || cp "$bin"/{pdb2hier,hier2density,density2tet,tetsmooth} "$to/bin/" || return 1
+  # The C library and the driver's are the machine's own.
+  for file in $(ldd "$to/molmesh_gpu" "$to"/bin/* 2>/dev/null | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
+    grep -vE '/(libc|libm|libdl|librt|libpthread|libcuda)\.so'); do
+    cp "$file" "$to/lib/" || return 1
+  done
+  for file in "$@"; do
+    hier=$(hierarchy "$file" "$to") || return 1
+    [ "$hier" -ef "$to/$(basename "$hier")" ] || cp "$hier" "$to/" || return 1
+  done
 }
 
 if [ -n "$compile" ]; then
   command -v nvcc >/dev/null || { echo "gpu.sh: no nvcc here"; exit 1; }
   mkdir -p "$compile"
   build "$compile/molmesh_gpu" "${ARCH:--gencode arch=compute_75,code=sm_75 -gencode arch=compute_90,code=[sm_90,compute_90]}" &&
-    echo "gpu.sh: built $compile/molmesh_gpu"
+    carry "$compile" "$@" && echo "gpu.sh: made $compile: $(cd "$compile" && ls -d molmesh_gpu bin/* *.hier 2>/dev/null | tr '\n' ' ')"
   exit
 fi
-if ! nvidia-smi -L 2>/dev/null | grep -q GPU; then
-  echo "gpu.sh: no NVIDIA GPU here: nothing was run, nothing is known"
-  exit 6
+if [ -z "$host" ]; then
+  if command -v nvidia-smi >/dev/null; then
+    nvidia-smi -L 2>/dev/null | grep -q GPU
+  else
+    [ -e /dev/nvidia0 ]
+  fi || { echo "gpu.sh: no NVIDIA GPU here: nothing was run, nothing is known"; exit 6; }
+  nvidia-smi --query-gpu=name,driver_version,memory.total --format=csv,noheader 2>/dev/null
 fi
-nvidia-smi --query-gpu=name,driver_version,memory.total --format=csv,noheader
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-if [ -z "$driver" ]; then
-  command -v nvcc >/dev/null || { echo "gpu.sh: no nvcc here and no -d DRIVER"; exit 1; }
-  driver=$work/molmesh_gpu
-  build "$driver" -arch=native || { echo "gpu.sh: the driver was not built"; exit 1; }
+driver=$work/molmesh_gpu
+if [ -n "$dir" ]; then
+  dir=$(cd "$dir" && pwd) || exit 1
+  driver=$dir/molmesh_gpu
+  [ -n "$bin" ] || [ ! -x "$dir/bin/pdb2hier" ] || bin=$dir/bin
+  [ ! -d "$dir/lib" ] || export LD_LIBRARY_PATH=$dir/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+  [ $# -gt 0 ] || set -- "$dir"/*.hier
+else
+  command -v nvcc >/dev/null || { echo "gpu.sh: no nvcc here and no -d DIR"; exit 1; }
+  build "$driver" "${ARCH:--arch=native}" || { echo "gpu.sh: the driver was not built"; exit 1; }
 fi
-status=0
-held() { "$@" || { status=1; echo "gpu.sh: FAILED: $*"; }; }
+held() {
+  "$@"
+  case $? in
+  0) ;;
+  6) [ -n "$host" ] || exit 6 ;;&
+  *) failed "$*" ;;
+  esac
+}
 
 echo "== parity, random small cases"
-held "$driver" small
-echo "== compute-sanitizer, random small cases"
-if command -v compute-sanitizer >/dev/null; then
-  for tool in memcheck racecheck initcheck synccheck; do
-    if timeout 1800 compute-sanitizer --tool "$tool" --error-exitcode 1 --print-limit 5 "$driver" small >"$work/$tool" 2>&1; then
-      echo "ok     $tool"
-    else
-      status=1
-      echo "FAILED $tool"
-      tail -n 40 "$work/$tool"
-    fi
-  done
-else
-  echo "not installed: not run"
+held "$driver" $host small
+if [ -z "$host" ]; then
+  echo "== compute-sanitizer, some of them"
+  if command -v compute-sanitizer >/dev/null; then
+    for tool in memcheck racecheck initcheck synccheck; do
+      if timeout 1800 compute-sanitizer --tool "$tool" --error-exitcode 1 --print-limit 5 "$driver" small 6 >"$work/$tool" 2>&1; then
+        echo "ok     $tool"
+      else
+        failed "$tool"
+        tail -n 40 "$work/$tool"
+      fi
+    done
+  else
+    echo "not installed: not run"
+  fi
 fi
 
+chain() { # chain MODE RUN HIER: the three programs, their reports in $work
+  local grid=(--spacing "$spacing")
+  [ -z "$points" ] || grid=(--grid "$points")
+  "$bin/hier2density" -q --mode "$1" "${grid[@]}" "$3" -o "$work/g.vdb" --report "$work/1.$1.$2" &&
+    "$bin/density2tet" -q --mode "$1" --region both "$work/g.vdb" -o "$work/m.vtu" --report "$work/2.$1.$2" &&
+    "$bin/tetsmooth" -q --mode "$1" --density "$work/g.vdb" "$work/m.vtu" -o "$work/s.vtu" --report "$work/3.$1.$2"
+}
+
+table() { # table MODES: medians of what chain left, a row a phase, a column a mode; then kernels and copies
+  awk -v modes="$1" '
+    function median(list,   v, n, i, j, t) {
+      n = split(list, v, " ")
+      for (i = 2; i <= n; ++i)
+        for (j = i; j > 1 && v[j] + 0 < v[j - 1] + 0; --j) { t = v[j]; v[j] = v[j - 1]; v[j - 1] = t }
+      return v[int((n + 1) / 2)]
+    }
+    function add(row, mode, seconds) {
+      if (!(row in known)) { known[row] = 1; rows[++count] = row }
+      run[row, mode, FILENAME] += seconds
+    }
+    FNR == 1 { split(FILENAME, part, "/"); split(part[length(part)], name, "."); mode = name[2]; in_phases = 0 }
+    /"tool":/ { gsub(/[",]/, "", $2); tool = $2 }
+    /"phases":/ { in_phases = 1 }
+    /"kernels":/ { in_phases = 0 }
+    /"name":/ { what = $0; sub(/^[^:]*: "/, "", what); sub(/",?$/, "", what) }
+    /"seconds":/ {
+      seconds = $2 + 0
+      if (in_phases) { add(tool " " what, mode, seconds); sum[mode, name[3]] += seconds }
+      else add(tool (what ~ /^copies/ ? ", copies" : ", kernels"), mode, seconds)
+    }
+    END {
+      n = split(modes, m, " ")
+      printf "%-40s", "seconds"
+      for (k = 1; k <= n; ++k) printf "%12s", m[k]
+      print ""
+      for (key in run) { split(key, k3, SUBSEP); list[k3[1], k3[2]] = list[k3[1], k3[2]] " " run[key] }
+      for (key in sum) { split(key, k2, SUBSEP); total[k2[1]] = total[k2[1]] " " sum[key] }
+      for (i = 1; i <= count; ++i) {
+        printf "%-40s", rows[i]
+        for (k = 1; k <= n; ++k)
+          if ((rows[i], m[k]) in list) printf "%12.4f", median(list[rows[i], m[k]]); else printf "%12s", ""
+        print ""
+      }
+      printf "%-40s", "the whole chain"
+      for (k = 1; k <= n; ++k) printf "%12.4f", median(total[m[k]])
+      print ""
+    }' "$work"/[123].*
+}
+
+grid=$spacing grid_name="$spacing Å" modes='seq omp cuda'
+[ -z "$points" ] || grid=n$points grid_name="$points points"
+[ -z "$host" ] || modes='seq omp'
 for file in "$@"; do
-  hier=$file
-  case $file in
-  *.hier) ;;
-  *)
-    [ -n "$bin" ] || { echo "gpu.sh: $file: structures need -b BIN"; status=1; continue; }
-    hier=$work/$(basename "$file").hier
-    "$bin/pdb2hier" -q -r '* P_R=0.5 P_C=1' "$file" -o "$hier" || { status=1; continue; }
-    ;;
-  esac
-  echo "== $(basename "$file"), $spacing Å: parity"
-  held "$driver" parity "$hier" "$spacing"
-  echo "== $(basename "$file"), $spacing Å: times, medians of $repeats"
-  held "$driver" time "$hier" "$spacing" "$repeats"
+  hier=$(hierarchy "$file" "$work") || { failed "$file"; continue; }
+  at="$(basename "$file"), $grid_name"
+  echo "== $at: parity"
+  held "$driver" $host parity "$hier" "$grid"
+  echo "== $at: times, medians of $repeats"
+  held "$driver" $host time "$hier" "$grid" "$repeats"
   [ -n "$bin" ] || continue
-  echo "== $(basename "$file"), $spacing Å: whole programs, medians of $repeats; seconds by phase"
-  for mode in seq omp cuda; do
+  echo "== $at: whole programs, medians of $repeats"
+  rm -f "$work"/[123].*
+  for mode in $modes; do
     for ((i = 0; i < repeats; ++i)); do
-      "$bin/hier2density" -q --mode $mode --spacing "$spacing" "$hier" -o "$work/g.vdb" --report "$work/1.$mode.$i" &&
-        "$bin/density2tet" -q --mode $mode --region both --adapt 0 "$work/g.vdb" -o "$work/m.vtu" --report "$work/2.$mode.$i" &&
-        "$bin/tetsmooth" -q --mode $mode --density "$work/g.vdb" "$work/m.vtu" -o "$work/s.vtu" --report "$work/3.$mode.$i" ||
-        { [ $? = 5 ] || { status=1; echo "gpu.sh: FAILED: the chain in mode $mode"; break; }; }
+      chain "$mode" "$i" "$hier" || { failed "the chain in mode $mode"; break; }
     done
-    python3 - "$work" "$mode" "$repeats" <<'PY' || echo "(no python3: no table)"
-import json, statistics, sys
-work, mode, repeats = sys.argv[1], sys.argv[2], int(sys.argv[3])
-for stage in "123":
-    runs = []
-    for i in range(repeats):
-        try:
-            runs.append(json.load(open(f"{work}/{stage}.{mode}.{i}")))
-        except OSError:
-            pass
-    if runs:
-        names = [p["name"] for p in runs[0]["phases"]]
-        line = ", ".join(f'{n} {statistics.median(sum(p["seconds"] for p in r["phases"] if p["name"] == n) for r in runs):.3f}' for n in dict.fromkeys(names))
-        print(f'{runs[0]["tool"]:14} {mode:5} {line}')
-PY
   done
+  table "$modes"
 done
 exit $status

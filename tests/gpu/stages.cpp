@@ -1,6 +1,7 @@
-// stages.cpp — the stages by either backend, and the comparisons of I5.
+// stages.cpp — the stages by either backend or the host itself, and the comparisons of I5.
 #include "stages.hpp"
 #include "cuda/contour/contour.hpp"
+#include "cuda/contour/device_stages.hpp"
 #include "cuda/density/density.hpp"
 #include "cuda/density/search.hpp"
 #include "cuda/improve/flow.hpp"
@@ -10,6 +11,7 @@
 #include "unit/density/oracle.hpp"
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <random>
 
@@ -26,55 +28,71 @@ private:
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
+constexpr int64_t all = std::numeric_limits<int64_t>::max();
+
+cuda::HostBackend host_backend(const How& how, int64_t paged) {
+  return cuda::HostBackend(how.threads, {how.most_bytes > 0 ? how.most_bytes : all, paged});
+}
+
 } // namespace
 
-BlockGrid run_density(const Hierarchy& h, const density::Options& o, bool device, int threads, Timed& time) {
+BlockGrid run_density(const Hierarchy& h, const density::Options& o, const How& how, Timed& time) {
   density::Counts counts;
   density::Band band;
   {
     const Watch watch(time);
-    if (device) {
-      band = cuda::compute_density(h, o, counts, time.device);
+    if (how.by == By::device) {
+      band = cuda::compute_density(h, o, counts, time.device, how.most_bytes);
     } else {
-      cuda::HostBackend backend(threads);
+      cuda::HostBackend backend = host_backend(how, 0);
       band = density::compute(
           h, o, counts,
           [&](const density::Field& f, const GridFrame& frame, const density::SearchOptions& s,
               density::SearchCounts& c) { return cuda::Search<cuda::HostBackend>(backend, f, frame, s).run(c); });
-      time.device.kernels = backend.times();
+      time.device = cuda::report_of(backend, "the host");
     }
   }
-  return density::to_block_grid(band, threads);
+  return density::to_block_grid(band, how.threads);
 }
 
-TetMesh run_contour(const BlockGrid& grid, const contour::Options& o, bool device, int threads, Timed& time) {
+TetMesh run_contour(const BlockGrid& grid, const contour::Options& o, const How& how, Timed& time) {
   contour::Summary summary;
   contour::Options options = o;
-  options.threads = threads;
+  options.threads = how.threads;
   const Watch watch(time);
   const auto phase = [](const std::string&) {};
-  return device ? cuda::contour_mesh(grid, options, summary, phase, time.device)
-                : contour::contour(grid, options, summary, phase);
+  if (how.by == By::host)
+    return contour::contour(grid, options, summary, phase);
+  if (how.by == By::device)
+    return cuda::contour_mesh(grid, options, summary, phase, time.device, how.most_bytes);
+  cuda::HostBackend backend = host_backend(how, all);
+  TetMesh mesh;
+  {
+    cuda::DeviceStages<cuda::HostBackend> stages(backend, how.threads);
+    mesh = contour::contour(grid, options, summary, phase, stages);
+  }
+  time.device = cuda::report_of(backend, "the host");
+  return mesh;
 }
 
-TetMesh run_improve(const TetMesh& mesh, const BlockGrid& grid, bool device, int threads, Timed& time) {
+TetMesh run_improve(const TetMesh& mesh, const BlockGrid& grid, const How& how, Timed& time) {
   TetMesh out = mesh;
   improve::Options options;
-  options.threads = threads;
+  options.threads = how.threads;
   const Watch watch(time);
-  if (device) {
-    cuda::improve_mesh(out, &grid, options, {}, time.device);
+  if (how.by == By::device) {
+    cuda::improve_mesh(out, &grid, options, {}, time.device, how.most_bytes);
     return out;
   }
-  cuda::HostBackend backend(threads);
+  cuda::HostBackend backend = host_backend(how, all);
   std::unique_ptr<cuda::Flow<cuda::HostBackend>> flow;
   improve::improve(out, &grid, options, {},
                    [&](improve::DynamicMesh& m, const improve::Isosurface* surface, const improve::Pass& pass) {
                      if (!flow)
-                       flow = std::make_unique<cuda::Flow<cuda::HostBackend>>(backend, surface);
+                       flow = std::make_unique<cuda::Flow<cuda::HostBackend>>(backend, surface, how.threads);
                      return flow->run(m, pass, cuda::flow_sweeps);
                    });
-  time.device.kernels = backend.times();
+  time.device = cuda::report_of(backend, "the host");
   return out;
 }
 

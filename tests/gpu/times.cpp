@@ -1,0 +1,117 @@
+// times.cpp — medians of repeated runs, and each kernel beside what the card reaches.
+#include "times.hpp"
+#include "peaks.hpp"
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+namespace molmesh::gpu {
+namespace {
+
+double median(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return v[v.size() / 2];
+}
+
+/// Seconds that its work takes at the card's peaks.
+double floor_of(const cuda::KernelTime& k, const Peaks& p) {
+  return std::max(k.work.bytes / p.bytes, k.work.multiply_adds / (k.work.in_double ? p.in_double : p.single));
+}
+
+/// Medians of one stage's runs.
+struct Times {
+  double wall = 0, kernels = 0, copies = 0;
+  cuda::DeviceReport device; ///< of the last run
+};
+
+/// Runs fewer times than asked where one takes minutes.
+template <class Run>
+Times time_stage(const char* stage, const char* mode, int repeats, const Peaks& peaks, Run run) {
+  std::vector<double> wall;
+  std::vector<std::vector<double>> kernel;
+  Timed t;
+  for (int i = 0; i < repeats && (wall.empty() || wall.size() * wall.back() < 60); ++i) {
+    t = {};
+    run(t);
+    wall.push_back(t.seconds);
+    kernel.resize(std::max(kernel.size(), t.device.kernels.size()));
+    for (size_t k = 0; k < t.device.kernels.size(); ++k)
+      kernel[k].push_back(t.device.kernels[k].seconds);
+  }
+  Times times{median(wall), 0, 0, t.device};
+  double floor = 0;
+  for (size_t k = 0; k < t.device.kernels.size(); ++k) {
+    const bool is_copy = t.device.kernels[k].name.rfind("copies", 0) == 0;
+    (is_copy ? times.copies : times.kernels) += median(kernel[k]);
+    floor += is_copy ? 0 : floor_of(t.device.kernels[k], peaks);
+  }
+  std::printf("%-8s %-5s %10.4f s", stage, mode, times.wall);
+  if (t.device.kernels.empty()) {
+    std::printf("\n");
+    return times;
+  }
+  std::printf(
+      "   kernels %.4f s, %.1f times their floor, copies %.4f s, at most %.1f MiB on the device, %zu runs\n",
+      times.kernels, times.kernels / floor, times.copies, double(t.device.most_used.own) / 1048576, wall.size());
+  if (!t.device.note.empty())
+    std::printf("         %s\n", t.device.note.c_str());
+  for (size_t k = 0; k < t.device.kernels.size(); ++k) {
+    const cuda::KernelTime& n = t.device.kernels[k];
+    const double s = median(kernel[k]);
+    std::printf(
+        "    %-28s %6lld launches %11lld items %9.3f ms %9.2f MB  %5.1f %% of the bandwidth  %5.1f %% of the "
+        "multiply-adds\n",
+        n.name.c_str(), static_cast<long long>(n.launches), static_cast<long long>(n.items), 1e3 * s,
+        1e-6 * n.work.bytes, 100 * n.work.bytes / s / peaks.bytes,
+        100 * n.work.multiply_adds / s / (n.work.in_double ? peaks.in_double : peaks.single));
+  }
+  std::fflush(stdout);
+  return times;
+}
+
+/// Seconds of a sweep's kernels, and how many points looked for a place.
+void tell_sweeps(const Times& t) {
+  double seconds = 0;
+  int64_t points = 0;
+  for (const cuda::KernelTime& k : t.device.kernels) {
+    for (const char* name : {"element quality", "points with bad elements", "propose moves", "check moves",
+                             "take back", "commit moves", "compact", "scan", "fill"})
+      seconds += k.name == name ? k.seconds : 0;
+    points += k.name == "propose moves" ? k.items : 0;
+  }
+  std::printf("         sweeps: %.1f M point updates/s\n", 1e-6 * double(points) / seconds);
+}
+
+} // namespace
+
+void time_all(const Hierarchy& h, const density::Options& o, int repeats, const How& device, const How& reference) {
+  const bool on_device = device.by == By::device;
+  const char* const name = on_device ? "cuda" : "as it";
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  const Peaks peaks = on_device ? measure_peaks() : Peaks{unknown, unknown, unknown};
+  std::printf("peaks, measured: %.0f GB/s copied, %.1f T multiply-adds/s in single, %.1f in double precision\n",
+              1e-9 * peaks.bytes, 1e-12 * peaks.single, 1e-12 * peaks.in_double);
+  BlockGrid grid;
+  TetMesh mesh;
+  contour::Options c;
+  c.meshed = contour::Options::both;
+  time_stage("density", name, repeats, peaks, [&](Timed& t) { grid = run_density(h, o, device, t); });
+  for (const double adapt : {0.0, contour::Options{}.adapt}) {
+    c.adapt = adapt;
+    std::printf("--adapt %g\n", adapt);
+    const How one{By::host, 1};
+    time_stage("mesh", "seq", repeats, peaks, [&](Timed& t) { mesh = run_contour(grid, c, one, t); });
+    time_stage("mesh", "omp", repeats, peaks, [&](Timed& t) { mesh = run_contour(grid, c, reference, t); });
+    const Times t =
+        time_stage("mesh", name, repeats, peaks, [&](Timed& at) { mesh = run_contour(grid, c, device, at); });
+    const double tets = 1e-6 * double(mesh.tet.size());
+    std::printf(
+        "         %zu tetrahedra, %zu points; %d threads of the host; M tetrahedra/s: %.1f by kernels, %.1f "
+        "with copies, %.1f in all\n",
+        mesh.tet.size(), mesh.point.size(), reference.threads, tets / t.kernels, tets / (t.kernels + t.copies),
+        tets / t.wall);
+  }
+  tell_sweeps(time_stage("improve", name, 1, peaks, [&](Timed& t) { run_improve(mesh, grid, device, t); }));
+}
+
+} // namespace molmesh::gpu
