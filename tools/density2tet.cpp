@@ -54,7 +54,9 @@ void describe(CLI::App& app, Options& o) {
          "extents (> 1), or x0,y0,z0,x1,y1,z1 in Å, which may cut the molecule")
       ->type_name("BOX");
   app.add_option("--adapt", o.adapt,
-                 "how far the surface may lie from a coarser cell's mean plane, in grid spacings; 0: uniform")
+                 "how far the surface may lie from a coarser cell's mean plane, in grid spacings, and less where "
+                 "the chords of "
+                 "a small body would cost it volume; 0: uniform")
       ->check(CLI::Range(0., 100.));
   app.add_option("--cavities", o.cavities, "closed cavities: keep (region 3) or fill (region 1)")
       ->check(CLI::IsMember({"keep", "fill"}));

@@ -19,7 +19,8 @@ Surface find_surface(const Lattice& lattice, int threads);
 
 struct RefineOptions {
   /// Allowed distance of a cell's fine surface from its mean plane, in fine spacings; 0: every surface cell stays
-  /// fine and so does every cell of the grid in the regions below.
+  /// fine and so does every cell of the grid in the regions below. Halved until the chords of all cells cut off
+  /// little of the volume (detail/chord_items.hpp).
   double adapt = 0;
   bool inside = true, outside = true; ///< regions to mesh
 };

@@ -1,68 +1,21 @@
-// leaf_selection.hpp — from the block grid to the octree's leaves as passes over arrays: one text for host and
+// leaf_selection.hpp — from the surface's cells to the octree's leaves as passes over arrays: one text for host and
 // device. Launcher: par/launcher.hpp, or a Backend of cuda/par. Every sum keeps its order, sets are united by
 // sorting: the same leaves from every launcher.
 #pragma once
+#include "contour/detail/chord_items.hpp"
 #include "contour/detail/leaf_items.hpp"
 #include "contour/detail/node_items.hpp"
 #include "contour/detail/refine_items.hpp"
-#include "contour/detail/surface_items.hpp"
+#include "contour/detail/surface_passes.hpp"
 #include "contour/leaves.hpp"
 #include "error.hpp"
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace molmesh::contour::detail {
-
-template <class Launcher>
-struct SurfaceLists {
-  List<Launcher, SurfaceCell> cells;
-  List<Launcher, SurfaceSample> samples;
-};
-
-/// BlockGrid's members of the same names.
-struct GridBlocks {
-  const Vec3i* corner;
-  int64_t corners;
-  const Vec3i* inside;
-  int64_t insides;
-};
-
-template <class Launcher>
-SurfaceLists<Launcher> find_surface(Launcher& m, const LatticeView& l, const GridBlocks& grid) {
-  const auto covered = gather<KeyedWord>(m, "cover blocks", grid.corners, CoveredBlocks{l, grid.corner});
-  const auto covered_inside =
-      gather<KeyedWord>(m, "cover blocks", l.any_cut ? grid.insides : 0, CoveredBlocks{l, grid.inside});
-  const auto block = unite(m, {&covered, &covered_inside});
-  auto crossed = m.template array<uint64_t>(8 * block.n), culprit = m.template array<uint64_t>(block.n);
-  auto failed = m.template array<int64_t>(block.n + 1);
-  m.for_n("find surface cells", block.n,
-          CrossedCells{l, block.data(), crossed.data(), failed.data(), culprit.data()});
-  if (m.scan("scan", failed.data(), block.n) > 0) {
-    std::vector<int64_t> before(static_cast<size_t>(block.n) + 1);
-    std::vector<uint64_t> key(static_cast<size_t>(block.n));
-    m.download(failed, block.n + 1, before.data());
-    m.download(culprit, block.n, key.data());
-    const auto first = std::find(before.begin(), before.end(), 1) - before.begin() - 1;
-    const Vec3i p = l.base + morton_point(key[static_cast<size_t>(first)]);
-    fail_input("the density at index " + std::to_string(p.x) + " " + std::to_string(p.y) + " " +
-               std::to_string(p.z) +
-               ": the surface crosses a cell with an inactive corner, expected every band cell in the grid");
-  }
-  SurfaceLists<Launcher> out;
-  out.cells =
-      gather<SurfaceCell>(m, "make surface cells", 8 * block.n, MakeSurfaceCells{l, block.data(), crossed.data()});
-  out.samples = {m.template array<SurfaceSample>(out.cells.n), out.cells.n};
-  m.for_n("make samples", out.cells.n, MakeSamples{out.cells.data(), double(l.isovalue), out.samples.data()});
-  return out;
-}
-
-struct SurfaceView {
-  const SurfaceCell* cell;
-  const SurfaceSample* sample;
-  int64_t n;
-};
 
 /// Members as in LeafList.
 template <class Launcher>
@@ -87,10 +40,11 @@ public:
 
   LeafLists<Launcher> run() {
     collect_surface_nodes();
-    merge();
-    refined_.resize(static_cast<size_t>(levels_) + 1);
-    for (int level = 1; level <= levels_; ++level)
-      refined(level) = level > top_ ? layer(level, -1) : refine(level);
+    double tolerance = options_.adapt;
+    select(tolerance);
+    if (options_.adapt > 0)
+      for (const double most = allowed_cut(); std::fabs(cut_off()) > most && tolerance > 0; select(tolerance))
+        tolerance = tolerance > least_tolerance ? tolerance / 2 : 0;
     return leaves();
   }
 
@@ -103,6 +57,9 @@ private:
     SurfaceNodes view;
   };
   static constexpr int most_merges = 5; // surface cells of 32 fine spacings at most
+  // Chords may cut off this share of the volume beyond what tetsmooth gives back by putting points so far outside
+  // the isosurface, in spacings; below this tolerance all surface cells that are not plane stay fine.
+  static constexpr double most_cut = 0.007, offset_of_smoothing = 0.0175, least_tolerance = 0.02;
 
   Nodes& refined(int level) { return refined_[static_cast<size_t>(level)]; }
   NodeSet set(int level) { return {refined(level).data(), refined(level).n}; }
@@ -132,11 +89,45 @@ private:
     }
   }
 
-  /// How coarse the octree may be at the surface, from the finest level up.
-  void merge() {
+  /// How coarse the octree is.
+  void select(double tolerance) {
     for (int l = 1; options_.adapt > 0 && l <= std::min(most_merges, top_); ++l)
       m_.for_n("merge nodes", surface_nodes(l).n,
-               MergeNodes{l_, surface_.sample, surface_nodes(l), surface_nodes(l - 1).flags, l, options_.adapt});
+               MergeNodes{l_, surface_.sample, surface_nodes(l), surface_nodes(l - 1).flags, l, tolerance});
+    refined_.clear();
+    refined_.resize(static_cast<size_t>(levels_) + 1);
+    for (int level = 1; level <= levels_; ++level)
+      refined(level) = level > top_ ? layer(level, -1) : refine(level);
+  }
+
+  /// Volume that chords may cut off on the whole, in cubed fine spacings.
+  double allowed_cut() {
+    const int64_t stretches = (surface_.n + SumSamples::stretch - 1) / SumSamples::stretch;
+    auto part = m_.template array<SurfaceSums>(stretches);
+    m_.for_n("sum samples", stretches, SumSamples{surface_.sample, surface_.n, part.data()});
+    const SurfaceSums all = sum(part, stretches, SurfaceSums{});
+    return offset_of_smoothing * all.area + most_cut * all.volume();
+  }
+  double cut_off() {
+    Array<double> cut;
+    int64_t n = 0;
+    for (int l = 1; l <= std::min(most_merges, top_); ++l) {
+      n = surface_nodes(l).n;
+      auto here = m_.template array<double>(n);
+      m_.for_n("cut off", n,
+               CutOff{surface_.sample, surface_nodes(l), set(l), l > 1 ? cut.data() : nullptr, here.data()});
+      cut = std::move(here);
+    }
+    return sum(cut, n, 0.);
+  }
+  /// On the host, in their order.
+  template <class T>
+  T sum(const Array<T>& array, int64_t n, T total) {
+    std::vector<T> value(static_cast<size_t>(n));
+    m_.download(array, n, value.data());
+    for (const T& v : value)
+      total += v;
+    return total;
   }
 
   /// All nodes of the level that have children.

@@ -89,11 +89,28 @@ struct MakeParents {
   }
 };
 
+/// The mean of samples.
+struct Sheet {
+  Vec3d normal, middle; ///< unit vector, zero where normals cancel
+
+  HD Sheet(const SurfaceSample* begin, const SurfaceSample* end) {
+    for (const SurfaceSample* s = begin; s < end; ++s) {
+      normal += s->normal;
+      middle += s->point;
+    }
+    middle = middle / double(end - begin);
+    const double length = norm(normal);
+    if (length > 0)
+      normal = normal / length;
+  }
+  /// Normals within 53° of their mean: one sheet, no crease.
+  HD bool has(const SurfaceSample& s) const { return dot(s.normal, normal) >= 0.6; }
+};
+
 /// Sets the flags of node i: whole when its children are, its surface is nearly plane, and merging keeps the
 /// topology: the signs at the middles of its edges, faces and volume each agree with a corner of that edge, face or
 /// volume (Ju et al. 2002, the paper's reference 22).
 struct MergeNodes {
-  static constexpr double least_cosine = 0.6; // normals within 53° of their mean: one sheet, no crease
   /// Of the surface's middle from a face with smaller cells behind, in the node's edge length: seen from nearer,
   /// those cells' faces are aslant, and their elements flat.
   static constexpr double least_margin = 0.15;
@@ -117,24 +134,15 @@ struct MergeNodes {
       if (!(child_flags[c] & whole))
         return;
     const SurfaceSample *const begin = sample + nodes.cell_begin(i), *const end = sample + nodes.cell_begin(i + 1);
-    Vec3d normal, middle;
-    for (const SurfaceSample* s = begin; s < end; ++s) {
-      normal += s->normal;
-      middle += s->point;
-    }
-    middle = middle / double(end - begin);
-    if (nearly_plane(begin, end, normal, middle) && keeps_topology(corner, extent / 2))
-      flags = static_cast<uint8_t>(whole | near_faces(middle, corner, extent));
+    const Sheet sheet(begin, end);
+    if (nearly_plane(begin, end, sheet) && keeps_topology(corner, extent / 2))
+      flags = static_cast<uint8_t>(whole | near_faces(sheet.middle, corner, extent));
   }
 
 private:
-  HD bool nearly_plane(const SurfaceSample* begin, const SurfaceSample* end, Vec3d normal, Vec3d middle) const {
-    const double length = norm(normal);
-    if (length == 0)
-      return false;
-    normal = normal / length;
+  HD bool nearly_plane(const SurfaceSample* begin, const SurfaceSample* end, const Sheet& sheet) const {
     for (const SurfaceSample* s = begin; s < end; ++s)
-      if (!(dot(s->normal, normal) >= least_cosine && std::fabs(dot(s->point - middle, normal)) <= tolerance))
+      if (!(sheet.has(*s) && std::fabs(dot(s->point - sheet.middle, sheet.normal)) <= tolerance))
         return false;
     return true;
   }

@@ -173,6 +173,22 @@ TEST_CASE("a sphere: volume and area converge, every region is valid") {
   }
 }
 
+TEST_CASE("chords of merged cells cut off little, whatever the tolerance; large bodies merge") {
+  for (int radius : {6, 12, 40}) { // spacings
+    CAPTURE(radius);
+    const double h = 3. / radius;
+    const BlockGrid grid = cube_grid(4, h, atom);
+    Options uniform, coarse;
+    uniform.adapt = 0;
+    coarse.adapt = 0.5;
+    const TetMesh fine = mesh_of(grid, uniform), merged = mesh_of(grid, coarse);
+    const double lost = 1 - checked(merged).volume / checked(fine).volume;
+    CHECK(std::fabs(lost) < 0.007 + 0.0175 * 3 / radius);
+    if (radius == 40)
+      CHECK(3 * merged.tri.size() < fine.tri.size());
+  }
+}
+
 TEST_CASE("known shapes have their Euler numbers, components and volumes") {
   const auto torus = [](Vec3d x) {
     const double ring = std::hypot(x.x, x.y) - 4;
