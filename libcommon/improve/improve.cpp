@@ -77,7 +77,7 @@ constexpr size_t straighten_first = 1, straighten_last = 4;
 constexpr double straighten_share = 0.1;
 const Guard straight{40, 0.24, 0.5, 0};
 
-// Points that were let go come back where that can be mended; every repetition has other parts.
+// Points off the isosurface come back where that can be mended; every repetition has other parts.
 constexpr int recoveries = 4;
 
 } // namespace
@@ -115,7 +115,6 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
 
   begin("improve");
   const float at_first = schedule.worst();
-  bool let_go = false; // whether points may have left the isosurface
   for (int round = 0; round < options.iterations && schedule.worst() < goal; ++round) {
     const Stage& stage = stages[std::min<size_t>(size_t(round), std::size(stages) - 1)];
     Pass pass;
@@ -126,10 +125,8 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     pass.worst_first = stage.worst_first;
     pass.guard = stage.guard;
     pass.yield = round == 0 ? 0.25f : 1.f; // clusters far smaller than the grid have to go as a whole
-    if (stage.guard.lift > 0) {
-      let_go = true;
+    if (stage.guard.lift > 0)
       schedule.find_crowded(true);
-    }
     int64_t done = 0;
     if (flow) {
       done = flow(m, isosurface.get(), pass);
@@ -156,7 +153,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     if (done == 0 && size_t(round) + 1 >= std::size(stages))
       break;
   }
-  for (int repeat = 0; density && let_go && repeat < recoveries; ++repeat) {
+  for (int repeat = 0; density && repeat < recoveries; ++repeat) {
     Pass pass;
     pass.goal = goal;
     pass.effort = 1;

@@ -15,7 +15,7 @@ public:
   bool project(Vec3d& p, double reach) const override { return view().project(p, reach); }
   bool probe(Vec3d p, double& distance, Vec3d& normal) const override { return view().probe(p, distance, normal); }
   double spacing() const override { return frame_.spacing; }
-  /// f = log(G / isovalue) and its gradient (1/Å). False where a corner is not active.
+  /// As IsosurfaceView::evaluate.
   bool evaluate(Vec3d p, double& f, Vec3d& gradient) const { return view().evaluate(p, f, gradient); }
   IsosurfaceView view() const { return {frame_, index_.view(), log_.data(), offset_}; }
   /// Points are projected this far outside the isosurface (Å), so that chords enclose the isosurface's own volume.

@@ -5,7 +5,7 @@
 
 namespace molmesh::improve {
 
-/// log G / isovalue, trilinear in each cell whose eight corners are active.
+/// log G / isovalue, trilinear in each known cell: its eight corners are active.
 struct IsosurfaceView {
   GridFrame frame;
   BlockIndexView index;
@@ -14,30 +14,17 @@ struct IsosurfaceView {
 
   HD double spacing() const { return frame.spacing; }
 
-  /// f = log(G / isovalue) and its gradient (1/Å). False where a corner is not active.
+  /// f = log(G / isovalue) and its gradient (1/Å); outside the known cells by the next one, a quarter of a cell far. False
+  /// beyond.
   HD bool evaluate(Vec3d p, double& f, Vec3d& gradient) const {
     const Vec3d u = (p - frame.origin) / frame.spacing;
     if (!(std::abs(u.x) < 1e9 && std::abs(u.y) < 1e9 && std::abs(u.z) < 1e9))
       return false;
-    const Vec3i c{static_cast<int32_t>(std::floor(u.x)), static_cast<int32_t>(std::floor(u.y)),
-                  static_cast<int32_t>(std::floor(u.z))};
+    Vec3i c{static_cast<int32_t>(std::floor(u.x)), static_cast<int32_t>(std::floor(u.y)),
+            static_cast<int32_t>(std::floor(u.z))};
     double v[8];
-    if ((c.x & 7) < 7 && (c.y & 7) < 7 && (c.z & 7) < 7) {
-      const int64_t b = index.find(c);
-      if (b < 0)
-        return false;
-      const float* q = log + (512 * b + slot(c));
-      for (int k = 0; k < 8; ++k)
-        v[k] = q[64 * (k >> 2) + 8 * (k >> 1 & 1) + (k & 1)];
-    } else {
-      for (int k = 0; k < 8; ++k) {
-        const Vec3i corner = c + Vec3i{k >> 2, k >> 1 & 1, k & 1};
-        const int64_t b = index.find(corner);
-        if (b < 0)
-          return false;
-        v[k] = log[512 * b + slot(corner)];
-      }
-    }
+    if (!values(c, v) && !values_beside(u, c, v))
+      return false;
     const Vec3d t = u - to_double(c);
     const double z0 = v[0] + t.z * (v[1] - v[0]), z1 = v[2] + t.z * (v[3] - v[2]);
     const double z2 = v[4] + t.z * (v[5] - v[4]), z3 = v[6] + t.z * (v[7] - v[6]);
@@ -46,7 +33,7 @@ struct IsosurfaceView {
     const double d0 = (v[1] - v[0]) + t.y * ((v[3] - v[2]) - (v[1] - v[0]));
     const double d1 = (v[5] - v[4]) + t.y * ((v[7] - v[6]) - (v[5] - v[4]));
     gradient = Vec3d{y1 - y0, (z1 - z0) + t.x * ((z3 - z2) - (z1 - z0)), d0 + t.x * (d1 - d0)} / frame.spacing;
-    return std::isfinite(f); // NaN when a corner is not active
+    return true;
   }
 
   HD bool probe(Vec3d p, double& distance, Vec3d& normal) const {
@@ -76,6 +63,48 @@ struct IsosurfaceView {
       p += -distance * normal;
     }
     return false;
+  }
+
+private:
+  /// False where a corner is not active.
+  HD bool values(Vec3i c, double (&v)[8]) const {
+    double sum = 0; // NaN when one is
+    if ((c.x & 7) < 7 && (c.y & 7) < 7 && (c.z & 7) < 7) {
+      const int64_t b = index.find(c);
+      if (b < 0)
+        return false;
+      const float* q = log + (512 * b + slot(c));
+      for (int k = 0; k < 8; ++k)
+        sum += v[k] = q[64 * (k >> 2) + 8 * (k >> 1 & 1) + (k & 1)];
+    } else {
+      for (int k = 0; k < 8; ++k) {
+        const Vec3i corner = c + Vec3i{k >> 2, k >> 1 & 1, k & 1};
+        const int64_t b = index.find(corner);
+        if (b < 0)
+          return false;
+        sum += v[k] = log[512 * b + slot(corner)];
+      }
+    }
+    return std::isfinite(sum);
+  }
+  /// Of the known cell behind the nearest face, whose corner c becomes: where the isosurface touches a grid point,
+  /// a point may come to lie in a cell that it does not cross.
+  HD bool values_beside(Vec3d u, Vec3i& c, double (&v)[8]) const {
+    const Vec3i home = c;
+    double best = 0.25;
+    for (int a = 0; a < 3; ++a) {
+      const double t = u[a] - home[a], far = t < 0.5 ? t : 1 - t;
+      Vec3i beside = home;
+      beside[a] += t < 0.5 ? -1 : 1;
+      double w[8];
+      if (far < best && values(beside, w)) {
+        best = far;
+        c = beside;
+        for (int k = 0; k < 8; ++k)
+          v[k] = w[k];
+      }
+    }
+    return best < 0.25;
   }
 };
 

@@ -105,6 +105,25 @@ TEST_CASE("points are projected onto the isosurface of a sphere") {
   CHECK_FALSE(surface.project(away, 0.5)); // not in the band
 }
 
+TEST_CASE("log G reaches a quarter of a cell beyond the known ones") {
+  const double h = 0.25, radius = 1.75;
+  const auto log_g = [&](Vec3d p) { return -0.3 * (norm2(p - Vec3d{4, 4, 4}) - radius * radius); };
+  BlockGrid grid = lattice_grid([&](Vec3d p) { return std::exp(log_g(p)); }, {0, 0, 0}, h, 32);
+  const Vec3i pole{9, 16, 16}, gone{8, 16, 16}; // on the isosurface, and outside
+  const int64_t b = BlockIndex(grid).find(gone);
+  REQUIRE(b >= 0);
+  grid.active[size_t(8 * b + (slot(gone) >> 6))] &= ~(uint64_t{1} << (slot(gone) & 63));
+  const improve::Isosurface surface(grid, 1);
+  const auto at = [&](double cells) { return h * (to_double(pole) + Vec3d{-cells, 0.1, 0.1}); };
+  double f = 0;
+  Vec3d gradient;
+  REQUIRE(surface.evaluate(at(-0.1), f, gradient)); // known
+  REQUIRE(surface.evaluate(at(0.2), f, gradient));
+  CHECK(std::abs(f - log_g(at(0.2))) < 0.02);
+  CHECK(gradient.x == Approx(0.6 * radius).epsilon(0.1));
+  CHECK_FALSE(surface.evaluate(at(0.5), f, gradient));
+}
+
 TEST_CASE("the reference surface gives the closest point of all its triangles") {
   const Field ball = [](Vec3d p) { return std::exp(-0.3 * (norm2(p - Vec3d{2.6, 2.5, 2.4}) - 1.44)); };
   const TetMesh mesh = lattice_mesh(ball, {0, 0, 0}, 0.5, 10, 1);
