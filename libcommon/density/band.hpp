@@ -17,6 +17,11 @@ struct BandBlock {
   const float* value; ///< G of the active points, in order; belongs to the band
 };
 
+} // namespace molmesh::density
+template <>
+inline constexpr bool molmesh::leave_untouched<molmesh::density::BandBlock> = true;
+namespace molmesh::density {
+
 /// What BlockGrid holds, in a third of its memory.
 struct Band {
   GridFrame frame;

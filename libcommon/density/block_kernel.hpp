@@ -9,8 +9,14 @@ namespace molmesh::density {
 /// sum[512] += S^P of units first … last - 1 at each point.
 void add_units(const BlockUnits& units, const BlockRows& rows, int32_t first, int32_t last, float* sum);
 
+/// sum[512] = start + S^P of all units.
+void sum_units(const BlockUnits& units, const BlockRows& rows, float start, float* sum);
+
 /// to[512] += from^p, from = 0. Zero stays zero.
 void raise_group(float p, float* from, float* to);
+
+/// Relative error of a root with BlockUnits::root = 0.
+float rough_root_error();
 
 /// Name of the instruction set in use.
 const char* instruction_set();

@@ -12,8 +12,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Splits atoms [begin, end) of `order` at the median of their longest axis until every piece is a cluster.
-void split(const Hierarchy& h, std::vector<int64_t>& order, int64_t begin, int64_t end,
-           std::vector<int64_t>& cuts) {
+void split(const Hierarchy& h, LargeArray<int64_t>& order, int64_t begin, int64_t end, std::vector<int64_t>& cuts) {
   if (end - begin <= Field::cluster_size) {
     cuts.push_back(begin);
     return;
@@ -74,32 +73,38 @@ void measure_cluster(Field& f, size_t c) {
 }
 
 void add_clusters(Field& f, const Hierarchy& h, int threads) {
-  std::vector<int64_t> order(h.atom.size()), cuts;
-  std::iota(order.begin(), order.end(), int64_t{0});
-  const auto add_group = [&](int64_t g, int64_t begin, int64_t end) {
-    split(h, order, begin, end, cuts);
-    f.group.resize(cuts.size(), g);
-  };
-  if (h.level.empty()) {
-    add_group(0, 0, static_cast<int64_t>(h.atom.size()));
-  } else {
-    const std::vector<Group>& innermost = h.level.back().group;
-    for (size_t g = 0; g < innermost.size(); ++g)
-      add_group(static_cast<int64_t>(g), innermost[g].begin, innermost[g].end);
-  }
-  f.begin = std::move(cuts);
-  f.begin.push_back(static_cast<int64_t>(h.atom.size()));
-  const auto n = static_cast<int64_t>(order.size());
-  for (std::vector<double>* v : {&f.x, &f.y, &f.z, &f.peak})
+  const auto n = static_cast<int64_t>(h.atom.size());
+  LargeArray<int64_t> order(h.atom.size());
+  for (LargeArray<double>* v : {&f.x, &f.y, &f.z, &f.peak})
     v->resize(order.size());
-  par::for_n(n, threads, 16384, [&](int64_t i) {
-    const auto a = static_cast<size_t>(i);
-    const Atom& atom = h.atom[static_cast<size_t>(order[a])];
-    f.x[a] = atom.center.x;
-    f.y[a] = atom.center.y;
-    f.z[a] = atom.center.z;
-    f.peak[a] = f.decay * atom.radius * atom.radius;
+  const std::vector<Group> all{{"", 1, 0, n}}, &innermost = h.level.empty() ? all : h.level.back().group;
+  const auto groups = static_cast<int64_t>(innermost.size());
+  struct Piece {
+    std::vector<int64_t> cuts, group;
+  };
+  constexpr int64_t grain = 256; // groups
+  std::vector<Piece> piece(static_cast<size_t>((groups + grain - 1) / grain));
+  par::for_n(static_cast<int64_t>(piece.size()), threads, 1, [&](int64_t p) {
+    auto& [cuts, group] = piece[static_cast<size_t>(p)];
+    for (int64_t g = p * grain; g < std::min(groups, (p + 1) * grain); ++g) {
+      const auto begin = innermost[static_cast<size_t>(g)].begin, end = innermost[static_cast<size_t>(g)].end;
+      std::iota(order.begin() + begin, order.begin() + end, begin);
+      split(h, order, begin, end, cuts);
+      group.resize(cuts.size(), g);
+      for (auto a = static_cast<size_t>(begin); a < static_cast<size_t>(end); ++a) {
+        const Atom& atom = h.atom[static_cast<size_t>(order[a])];
+        f.x[a] = atom.center.x;
+        f.y[a] = atom.center.y;
+        f.z[a] = atom.center.z;
+        f.peak[a] = f.decay * atom.radius * atom.radius;
+      }
+    }
   });
+  for (const Piece& p : piece) {
+    f.begin.insert(f.begin.end(), p.cuts.begin(), p.cuts.end());
+    f.group.insert(f.group.end(), p.group.begin(), p.group.end());
+  }
+  f.begin.push_back(n);
   f.source = std::move(order);
   f.box.resize(f.group.size());
   f.ln_peak.resize(f.group.size());

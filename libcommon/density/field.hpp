@@ -1,6 +1,7 @@
 // field.hpp — the multi-level field G, flattened for evaluation: atoms in clusters, clusters in groups, groups in
 // groups. Equations 1, 4 and 6 of Liao et al. 2013 for any depth; κ > 0 here. Why atoms may be dropped: field.md.
 #pragma once
+#include "density/large_array.hpp"
 #include "geom/vec.hpp"
 #include "molecule/hierarchy.hpp"
 #include <cstdint>
@@ -34,8 +35,8 @@ struct Field {
   double decay = 1;     ///< κ, Å⁻²
   double far_error = 0; ///< what all clusters beyond their cutoff2 together add to G anywhere, at most
   /// Atom a: position, and the logarithm of its term at its centre, κ·r². In clusters.
-  std::vector<double> x, y, z, peak;
-  std::vector<int64_t> source; ///< [atoms] index in Hierarchy::atom
+  LargeArray<double> x, y, z, peak;
+  LargeArray<int64_t> source; ///< [atoms] index in Hierarchy::atom
   /// Clusters: at most `cluster_size` atoms of one innermost group, near each other.
   static constexpr int64_t cluster_size = 16;
   std::vector<int64_t> begin;  ///< [clusters + 1] first atom

@@ -12,6 +12,10 @@
 
 namespace molmesh {
 
+/// For types whose constructor would only write zeros into what is written before it is read.
+template <class T>
+inline constexpr bool leave_untouched = false;
+
 template <class T>
 struct LargeAllocator : std::allocator<T> {
   template <class U>
@@ -24,7 +28,8 @@ struct LargeAllocator : std::allocator<T> {
   /// resize(n) leaves new elements uninitialized.
   template <class U>
   void construct(U* p) {
-    ::new (static_cast<void*>(p)) U;
+    if constexpr (!leave_untouched<U>)
+      ::new (static_cast<void*>(p)) U;
   }
   template <class U, class... Arguments>
   void construct(U* p, Arguments&&... arguments) {

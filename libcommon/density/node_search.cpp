@@ -53,11 +53,9 @@ NodeSearch::NodeSearch(const Field& f, const GridFrame& frame, const SearchOptio
     dropped_bits_ = std::clamp(24 + static_cast<int>(std::floor(std::log2(digits))), 0, 20);
 }
 
-/// Values of a block from the selection made for it.
+/// Values of a block from the selection made for it, not rounded.
 void NodeSearch::evaluate(Vec3i corner, Workspace& w, float* value) const {
   w.evaluator.evaluate(f_, w.selection, middle_of(corner, 1), frame_.spacing, value);
-  if (dropped_bits_ > 0)
-    round_values(value, dropped_bits_);
   ++w.counts.blocks_evaluated;
   w.counts.group_visits += w.selection.units;
   w.counts.atom_visits += w.selection.atoms;
@@ -75,13 +73,15 @@ void NodeSearch::work_through_block(int b, int octant, Vec3i corner, NodeState& 
   float* const value = w.value[b];
   evaluate(corner, w, value);
   uint64_t *const below = w.below.word[b], *const above = w.above.word[b];
-  classify_points(value, lower_, upper_, below, above);
+  classify_points(value, dropped_bits_, {lower_, upper_}, {far_below_, far_above_}, {below, above},
+                  {w.far_below.word[b], w.far_above.word[b]});
   const auto all = [](const uint64_t* word) { return std::all_of(word, word + 8, [](uint64_t v) { return !~v; }); };
   if (full_ && (all(below) || all(above))) { // as bounds would have it
+    std::fill_n(w.far_below.word[b], 8, every_block);
+    std::fill_n(w.far_above.word[b], 8, 0);
     s.inside |= all(above) ? bit : 0;
     return;
   }
-  classify_points(value, far_below_, far_above_, w.far_below.word[b], w.far_above.word[b]);
   s.known |= bit;
 }
 
@@ -116,7 +116,7 @@ void NodeSearch::settle(NodeState& s, Workspace& w) const {
         std::fill_n(below->word[b], 8, 0);
         std::fill_n(above->word[b], 8, every_block);
       }
-  s.sides = std::make_unique_for_overwrite<NodePoints>();
+  s.sides = w.spares.sides();
   rows_from_words(w.below, s.sides->below);
   rows_from_words(w.above, s.sides->above);
   if (s.known)
@@ -141,6 +141,7 @@ void NodeSearch::evaluate_left_out(uint64_t blocks, Vec3i node, Workspace& w) co
       ++w.counts.blocks_visited;
       w.selection.select_alone(i);
       evaluate(node + block_at(b), w, w.value[b]);
+      round_values(w.value[b], dropped_bits_);
     }
   }
 }
@@ -218,6 +219,8 @@ void NodeSearch::finish(NodeState& s, const NodeBits* const* below, const NodeBi
     w.selection.enter(middle_of(s.corner, node_blocks), nodes_.clusters_at(s.corner));
     evaluate_left_out(wanting, s.corner, w);
   }
+  s.band = w.spares.band();
+  s.band.clear();
   s.band.reserve(static_cast<size_t>(std::popcount(s.kept)));
   for (uint64_t left = s.kept; left; left &= left - 1) {
     const int b = std::countr_zero(left);

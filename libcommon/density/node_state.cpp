@@ -11,27 +11,6 @@ bool before_corner(const NodeState& s, Vec3i c) {
   return s.corner < c;
 }
 
-/// Nodes of one y, as positions in a slab.
-struct Row {
-  size_t begin, end;
-};
-std::vector<Row> rows_of(const SlabState& slab) {
-  std::vector<Row> rows;
-  for (size_t i = 0; i < slab.node.size(); ++i)
-    if (rows.empty() || slab.node[i].corner.y != slab.node[rows.back().begin].corner.y)
-      rows.push_back({i, i + 1});
-    else
-      rows.back().end = i + 1;
-  return rows;
-}
-
-/// Calls use(node, first) for every run of four blocks along z, ascending, in layer x of a row of nodes.
-template <class Use>
-void for_runs(const SlabState& slab, Row row, int x, Use&& use) {
-  for (int y = 0; y < node_blocks; ++y)
-    for (size_t i = row.begin; i < row.end; ++i)
-      use(slab.node[i], 16 * x + 4 * y);
-}
 uint64_t run(uint64_t blocks, int first) {
   return blocks >> first & 15;
 }
@@ -102,35 +81,60 @@ void add_needed(const SlabState& before, SlabState& slab, const SlabState& after
             [](const NodeState& a, const NodeState& b) { return a.corner < b.corner; });
 }
 
-void append(const SlabState& slab, Band& band, int threads) {
-  const std::vector<Row> rows = rows_of(slab);
-  const auto n = static_cast<int64_t>(rows.size()), parts = node_blocks * n; // by layer, then by row
-  std::vector<int64_t> kept(static_cast<size_t>(parts)), closed(static_cast<size_t>(parts));
-  for (int64_t p = 0; p < parts; ++p)
-    for_runs(slab, rows[static_cast<size_t>(p % n)], static_cast<int>(p / n), [&](const NodeState& s, int first) {
-      kept[static_cast<size_t>(p)] += std::popcount(run(s.kept, first));
-      closed[static_cast<size_t>(p)] += std::popcount(run(s.closed, first));
-    });
+SlabAppend::SlabAppend(const SlabState& slab, Band& band) : slab_(slab) {
+  for (size_t i = 0; i < slab.node.size(); ++i)
+    if (rows_.empty() || slab.node[i].corner.y != slab.node[rows_.back().begin].corner.y)
+      rows_.push_back({i, i + 1});
+    else
+      rows_.back().end = i + 1;
+  std::vector<int64_t> kept, closed;
+  for (int x = 0; x < node_blocks; ++x)
+    for (const Row& row : rows_) {
+      int64_t k = 0, c = 0;
+      for (size_t i = row.begin; i < row.end; ++i) {
+        k += std::popcount(slab.node[i].kept >> 16 * x & 0xffff);
+        c += std::popcount(slab.node[i].closed >> 16 * x & 0xffff);
+      }
+      kept.push_back(k);
+      closed.push_back(c);
+    }
   const size_t blocks = band.block.size(), inside = band.inside.size();
-  band.block.resize(blocks + static_cast<size_t>(par::exclusive_scan(kept)));
-  band.inside.resize(inside + static_cast<size_t>(par::exclusive_scan(closed)));
-  constexpr size_t at_once = 1024; // whose pages come together
-  const size_t added = band.block.size() - blocks;
-  par::for_n(static_cast<int64_t>((added + at_once - 1) / at_once), threads, 1, [&](int64_t p) {
-    const size_t first = static_cast<size_t>(p) * at_once;
-    prepare_pages(band.block.data() + blocks + first, std::min(at_once, added - first) * sizeof(BandBlock));
-  });
-  par::for_n(parts, threads, 1, [&](int64_t p) {
-    BandBlock* block = band.block.data() + blocks + kept[static_cast<size_t>(p)];
-    Vec3i* enclosed = band.inside.data() + inside + closed[static_cast<size_t>(p)];
-    for_runs(slab, rows[static_cast<size_t>(p % n)], static_cast<int>(p / n), [&](const NodeState& s, int first) {
+  kept.push_back(par::exclusive_scan(kept));
+  closed.push_back(par::exclusive_scan(closed));
+  band.block.resize(blocks + static_cast<size_t>(kept.back()));
+  band.inside.resize(inside + static_cast<size_t>(closed.back()));
+  for (const int64_t k : kept)
+    block_.push_back(band.block.data() + blocks + k);
+  for (const int64_t c : closed)
+    inside_.push_back(band.inside.data() + inside + c);
+  parts_ = static_cast<int64_t>((kept.size() - 1 + rows_at_once - 1) / rows_at_once);
+}
+
+/// Calls use(node, first) for every run of four blocks along z, ascending.
+template <class Use>
+void SlabAppend::for_runs(size_t layer_of_row, Use&& use) const {
+  const int x = static_cast<int>(layer_of_row / rows_.size());
+  const Row row = rows_[layer_of_row % rows_.size()];
+  for (int y = 0; y < node_blocks; ++y)
+    for (size_t i = row.begin; i < row.end; ++i)
+      use(slab_.node[i], 16 * x + 4 * y);
+}
+
+void SlabAppend::copy(int64_t part) const {
+  const size_t begin = static_cast<size_t>(part) * rows_at_once,
+               end = std::min(begin + rows_at_once, block_.size() - 1);
+  prepare_pages(block_[begin], static_cast<size_t>(block_[end] - block_[begin]) * sizeof(BandBlock));
+  for (size_t r = begin; r < end; ++r) {
+    BandBlock* block = block_[r];
+    Vec3i* inside = inside_[r];
+    for_runs(r, [&](const NodeState& s, int first) {
       const auto skipped = std::popcount(s.kept & ((uint64_t{1} << first) - 1));
       block = std::copy_n(s.band.begin() + skipped, std::popcount(run(s.kept, first)), block);
       for (int z = 0; z < node_blocks; ++z)
         if (s.closed >> (first + z) & 1)
-          *enclosed++ = 8 * (s.corner + block_at(first + z));
+          *inside++ = 8 * (s.corner + block_at(first + z));
     });
-  });
+  }
 }
 
 } // namespace molmesh::density

@@ -2,6 +2,7 @@
 #pragma once
 #include "density/band.hpp"
 #include "density/band_kernel.hpp"
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -35,8 +36,10 @@ struct NodeState {
 
 /// The nodes that begin at block x.
 struct SlabState {
-  int32_t x = 0;
+  int32_t x = std::numeric_limits<int32_t>::min();
+  int64_t first = 0;           ///< of them in the NodeList
   std::vector<NodeState> node; ///< ascending
+  int64_t nodes() const { return static_cast<int64_t>(node.size()); }
 };
 
 /// Bit 2·axis + (upper side): not every point of that face is below the band.
@@ -50,7 +53,29 @@ bool sides_around(const SlabState& before, const SlabState& slab, const SlabStat
 /// Puts the nodes that any of the slabs needs into the one in the middle.
 void add_needed(const SlabState& before, SlabState& slab, const SlabState& after);
 
-/// Appends what a slab keeps and encloses to the band, ascending.
-void append(const SlabState& slab, Band& band, int threads);
+/// Puts what a slab keeps and encloses at the end of the band, ascending.
+class SlabAppend {
+public:
+  /// Makes room. The slab stays where and as it is until all parts are copied.
+  SlabAppend(const SlabState& slab, Band& band);
+  int64_t parts() const { return parts_; }
+  /// Calls for different parts are independent.
+  void copy(int64_t part) const;
+
+private:
+  /// Nodes of one y, as positions in the slab.
+  struct Row {
+    size_t begin, end;
+  };
+  static constexpr size_t rows_at_once = 8;
+  template <class Use>
+  void for_runs(size_t layer_of_row, Use&& use) const;
+
+  const SlabState& slab_;
+  std::vector<Row> rows_;
+  std::vector<BandBlock*> block_; ///< where each layer of each row begins, layer by layer; then the end
+  std::vector<Vec3i*> inside_;
+  int64_t parts_;
+};
 
 } // namespace molmesh::density

@@ -32,16 +32,16 @@ bool in_grid(const GridFrame& frame, Vec3i block) {
 
 namespace {
 
+constexpr size_t at_once = 1024; // clusters
+
 /// Of `clusters`, those nearer than their cutoff to each of the eight cubes that begin at `corner`. Distances along
 /// an axis serve four cubes; summed in the order of distance2().
 void halve(const Field& f, const GridFrame& frame, std::span<const int32_t> clusters, Vec3i corner, int32_t blocks,
            std::vector<int32_t>* lists) {
   const Box low = points_box(frame, corner, blocks),
             high = points_box(frame, corner + blocks * Vec3i{1, 1, 1}, blocks);
-  std::vector<int32_t> near[8];
+  int32_t near[8][at_once];
   size_t found[8] = {};
-  for (std::vector<int32_t>& list : near)
-    list.resize(clusters.size());
   for (const int32_t c : clusters) {
     const Box& box = f.box[static_cast<size_t>(c)];
     double d2[3][2];
@@ -59,7 +59,54 @@ void halve(const Field& f, const GridFrame& frame, std::span<const int32_t> clus
   for (size_t i = 0; i < 8; ++i)
     if (const auto at = static_cast<int32_t>(i);
         in_grid(frame, corner + blocks * Vec3i{at >> 2, at >> 1 & 1, at & 1}))
-      lists[i].assign(near[i].begin(), near[i].begin() + static_cast<std::ptrdiff_t>(found[i]));
+      lists[i].assign(near[i], near[i] + found[i]);
+}
+
+/// The eight halves of every parent, `blocks` wide; without `every` those that have clusters.
+NodeList halves(const Field& f, const GridFrame& frame, const NodeList& parents, int32_t blocks, bool every,
+                int threads) {
+  struct Piece {
+    size_t parent, first, count; // clusters of the parent
+    std::vector<int32_t> lists[8];
+    size_t to[8];
+  };
+  std::vector<Piece> pieces;
+  for (size_t p = 0; p < parents.node.size(); ++p) {
+    const size_t n = parents.clusters(parents.node[p]).size();
+    for (size_t first = 0; first == 0 || first < n; first += at_once)
+      pieces.push_back({p, first, std::min(at_once, n - first), {}, {}});
+  }
+  const auto n = static_cast<int64_t>(pieces.size());
+  par::for_n(n, threads, 1, [&](int64_t i) {
+    Piece& p = pieces[static_cast<size_t>(i)];
+    const Node& parent = parents.node[p.parent];
+    halve(f, frame, parents.clusters(parent).subspan(p.first, p.count), parent.corner, blocks, p.lists);
+  });
+  NodeList children;
+  int64_t total = 0;
+  for (size_t begin = 0, end; begin < pieces.size(); begin = end) {
+    for (end = begin + 1; end < pieces.size() && pieces[end].first > 0; ++end)
+      ;
+    for (int32_t c = 0; c < 8; ++c) {
+      const Vec3i corner = parents.node[pieces[begin].parent].corner + blocks * Vec3i{c >> 2, c >> 1 & 1, c & 1};
+      const int64_t first = total;
+      for (size_t p = begin; p < end; ++p) {
+        pieces[p].to[c] = static_cast<size_t>(total);
+        total += static_cast<int64_t>(pieces[p].lists[c].size());
+      }
+      if (total > first || (every && in_grid(frame, corner)))
+        children.node.push_back({corner, first, total});
+    }
+  }
+  children.cluster.resize(static_cast<size_t>(total));
+  par::for_n(n, threads, 16, [&](int64_t i) {
+    Piece& p = pieces[static_cast<size_t>(i)];
+    for (size_t c = 0; c < 8; ++c) {
+      std::copy(p.lists[c].begin(), p.lists[c].end(), children.cluster.data() + p.to[c]);
+      p.lists[c] = {};
+    }
+  });
+  return children;
 }
 
 } // namespace
@@ -70,40 +117,16 @@ NodeList nodes_by_halving(const Field& f, const GridFrame& frame, bool every, in
   for (int a = 0; a < 3; ++a)
     while (8 * (int64_t{first[a]} + blocks) < int64_t{frame.lower[a]} + frame.points[a])
       blocks *= 2;
-  NodeList parents;
-  parents.cluster.resize(static_cast<size_t>(f.clusters()));
-  std::iota(parents.cluster.begin(), parents.cluster.end(), 0);
-  parents.node.push_back({first, 0, f.clusters()});
+  NodeList nodes;
+  nodes.cluster.resize(static_cast<size_t>(f.clusters()));
+  std::iota(nodes.cluster.begin(), nodes.cluster.end(), 0);
+  nodes.node.push_back({first, 0, f.clusters()});
   while (blocks > node_blocks) {
     blocks /= 2;
-    const auto n = static_cast<int64_t>(parents.node.size());
-    std::vector<std::vector<int32_t>> lists(static_cast<size_t>(8 * n));
-    const auto corner = [&](int64_t i) {
-      const auto c = static_cast<int32_t>(i & 7);
-      return parents.node[static_cast<size_t>(i >> 3)].corner + blocks * Vec3i{c >> 2, c >> 1 & 1, c & 1};
-    };
-    par::for_n(n, threads, 1, [&](int64_t p) {
-      halve(f, frame, parents.clusters(parents.node[static_cast<size_t>(p)]), corner(8 * p), blocks,
-            &lists[static_cast<size_t>(8 * p)]);
-    });
-    NodeList children;
-    size_t total = 0;
-    for (const std::vector<int32_t>& list : lists)
-      total += list.size();
-    children.cluster.reserve(total);
-    for (int64_t i = 0; i < 8 * n; ++i) {
-      const std::vector<int32_t>& list = lists[static_cast<size_t>(i)];
-      if (list.empty() && !(every && in_grid(frame, corner(i))))
-        continue;
-      const auto begin = static_cast<int64_t>(children.cluster.size());
-      children.cluster.insert(children.cluster.end(), list.begin(), list.end());
-      children.node.push_back({corner(i), begin, static_cast<int64_t>(children.cluster.size())});
-    }
-    parents = std::move(children);
+    nodes = halves(f, frame, nodes, blocks, every, threads);
   }
-  std::sort(parents.node.begin(), parents.node.end(),
-            [](const Node& a, const Node& b) { return a.corner < b.corner; });
-  return parents;
+  std::sort(nodes.node.begin(), nodes.node.end(), [](const Node& a, const Node& b) { return a.corner < b.corner; });
+  return nodes;
 }
 
 NodeList nodes_by_tree(const Field& f, const GridFrame& frame, bool every, int threads) {

@@ -15,8 +15,8 @@ struct Node {
 };
 
 struct NodeList {
-  std::vector<Node> node;       ///< ascending, corners at multiples of node_blocks from the grid's first block
-  std::vector<int32_t> cluster; ///< of a node: ascending
+  std::vector<Node> node;      ///< ascending, corners at multiples of node_blocks from the grid's first block
+  LargeArray<int32_t> cluster; ///< of a node: ascending
   std::span<const int32_t> clusters(const Node& n) const {
     return std::span(cluster).subspan(static_cast<size_t>(n.begin), static_cast<size_t>(n.end - n.begin));
   }

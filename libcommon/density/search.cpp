@@ -3,6 +3,7 @@
 #include "density/node_search.hpp"
 #include "par/par.hpp"
 #include <algorithm>
+#include <array>
 #include <atomic>
 
 namespace molmesh::density {
@@ -15,10 +16,11 @@ public:
   Band run(SearchCounts& counts);
 
 private:
-  SlabState find_slab(int32_t x);
-  void finish_slab(const SlabState& before, SlabState& slab, const SlabState& after, Band& band);
-  template <class F>
-  void for_nodes(SlabState& slab, F&& work);
+  SlabState slab_at(int32_t x) const;
+  void find(SlabState& slab, size_t node, Workspace& w);
+  void finish(const SlabState& before, SlabState& slab, const SlabState& after, size_t node, Workspace& w) const;
+  template <class Work>
+  void with_workspace(Work&& work);
 
   const Field& f_;
   const GridFrame& frame_;
@@ -30,60 +32,72 @@ private:
   std::atomic<int64_t> done_{0};
 };
 
-template <class F>
-void Search::for_nodes(SlabState& slab, F&& work) {
-  par::for_n(static_cast<int64_t>(slab.node.size()), o_.threads, 1, [&](int64_t i) {
-    std::unique_ptr<Workspace> w = workspaces_.borrow([this] {
-      return std::make_unique<Workspace>(
-          Workspace{Selection(f_, budget_for(o_), o_.band_lower, o_.band_upper, arithmetic_)});
-    });
-    work(slab.node[static_cast<size_t>(i)], *w);
-    workspaces_.give_back(std::move(w));
+template <class Work>
+void Search::with_workspace(Work&& work) {
+  std::unique_ptr<Workspace> w = workspaces_.borrow([this] {
+    return std::make_unique<Workspace>(
+        Workspace{Selection(f_, budget_for(o_), o_.band_lower, o_.band_upper, arithmetic_)});
   });
+  work(*w);
+  workspaces_.give_back(std::move(w));
 }
 
-SlabState Search::find_slab(int32_t x) {
+SlabState Search::slab_at(int32_t x) const {
   const auto at = [&](int32_t corner_x) {
     return std::partition_point(nodes_.node.begin(), nodes_.node.end(),
                                 [=](const Node& n) { return n.corner.x < corner_x; });
   };
-  const std::span<const Node> nodes(at(x), at(x + node_blocks));
-  SlabState slab{x, std::vector<NodeState>(nodes.size())};
-  for_nodes(slab, [&](NodeState& s, Workspace& w) {
-    const Node& node = nodes[static_cast<size_t>(&s - slab.node.data())];
-    s.corner = node.corner;
-    node_.work_through(node, s, w);
-    if (o_.progress)
-      o_.progress(++done_, static_cast<int64_t>(nodes_.node.size()));
-  });
-  return slab;
+  const auto begin = at(x);
+  return {x, begin - nodes_.node.begin(), std::vector<NodeState>(static_cast<size_t>(at(x + node_blocks) - begin))};
 }
 
-void Search::finish_slab(const SlabState& before, SlabState& slab, const SlabState& after, Band& band) {
-  add_needed(before, slab, after);
-  for_nodes(slab, [&](NodeState& s, Workspace& w) {
-    const NodeBits *below[27], *above[27];
-    s.closed = s.inside;
-    if (sides_around(before, slab, after, s, below, above))
-      node_.finish(s, below, above, w);
-  });
-  append(slab, band, o_.threads);
+void Search::find(SlabState& slab, size_t node, Workspace& w) {
+  const Node& from = nodes_.node[static_cast<size_t>(slab.first) + node];
+  NodeState& s = slab.node[node];
+  s.corner = from.corner;
+  node_.work_through(from, s, w);
+  if (o_.progress)
+    o_.progress(++done_, static_cast<int64_t>(nodes_.node.size()));
 }
 
-/// Slab by slab of nodes along x, so that only two slabs hold the sides of all their points.
+void Search::finish(const SlabState& before, SlabState& slab, const SlabState& after, size_t node,
+                    Workspace& w) const {
+  NodeState& s = slab.node[node];
+  const NodeBits *below[27], *above[27];
+  s.closed = s.inside;
+  if (sides_around(before, slab, after, s, below, above))
+    node_.finish(s, below, above, w);
+}
+
+/// Slab by slab of nodes along x, so that only a few hold the sides of all their points. While one is found, the
+/// one before the last is finished and the one before that is put into the band: threads wait for each other once a
+/// slab.
 Band Search::run(SearchCounts& counts) {
   Band band = empty_band(f_, frame_, o_);
   nodes_ = o_.atoms == AtomSearch::kdtree ? nodes_by_tree(f_, frame_, o_.full, o_.threads)
                                           : nodes_by_halving(f_, frame_, o_.full, o_.threads);
   band.block.reserve(blocks_a_node * nodes_.node.size()); // address space; pages come when they are used
   const int32_t first = first_block(frame_).x, end = (frame_.lower.x + frame_.points.x + 7) >> 3;
-  SlabState before, slab;
-  for (int32_t x = first; x < end + node_blocks; x += node_blocks) {
-    SlabState next = find_slab(x);
-    if (x > first)
-      finish_slab(before, slab, next, band);
-    before = std::move(slab);
-    slab = std::move(next);
+  std::array<SlabState, 5> slab; // new, found, to be finished, finished, forgotten
+  for (int32_t x = first; x < end + 3 * node_blocks; x += node_blocks) {
+    std::rotate(slab.begin(), slab.end() - 1, slab.end());
+    slab[0] = slab_at(x);
+    add_needed(slab[3], slab[2], slab[1]);
+    const SlabAppend append(slab[3], band);
+    const int64_t finds = slab[0].nodes(), finishes = finds + slab[2].nodes(), copies = finishes + append.parts(),
+                  all = copies + slab[4].nodes();
+    par::for_n(all, o_.threads, 1, [&](int64_t i) {
+      if (i >= finishes && i < copies)
+        return append.copy(i - finishes);
+      with_workspace([&](Workspace& w) {
+        if (i < finds)
+          find(slab[0], static_cast<size_t>(i), w);
+        else if (i < finishes)
+          finish(slab[3], slab[2], slab[1], static_cast<size_t>(i - finds), w);
+        else
+          w.spares.forget(slab[4].node[static_cast<size_t>(i - copies)]);
+      });
+    });
   }
   int64_t points = 0;
   counts = {};
@@ -120,7 +134,7 @@ Band empty_band(const Field& f, const GridFrame& frame, const SearchOptions& o) 
 Budget budget_for(const SearchOptions& o) {
   Budget b(o.tolerance);
   if (o.atoms == AtomSearch::all)
-    b.far = b.part = b.block = b.within = b.digits = 0;
+    b.far = b.part = b.block = b.within = b.roots = b.digits = 0;
   return b;
 }
 

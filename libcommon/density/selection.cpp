@@ -54,6 +54,7 @@ bool Selection::narrow(Vec3d middle, double h) {
   part_middle_ = middle;
   h_ = h;
   octants_bounded_ = false;
+  dropped_in_part_ = 0;
   const LocalBox part = local(middle, 7.5 * h * Vec3d{1, 1, 1});
   gather(part);
   const auto room = static_cast<size_t>(near_.n) + 16;
@@ -65,7 +66,7 @@ bool Selection::narrow(Vec3d middle, double h) {
   find_effects();
   if (surely_outside())
     return false;
-  drop(budget_.part);
+  dropped_in_part_ = drop(2 * budget_.part);
   keep_only();
   return true;
 }
@@ -93,13 +94,13 @@ void Selection::find_effects() {
     find_effects_of_levels();
 }
 
-/// Drops units of small effect while their total is within the budget. What it leaves of the budget.
+/// Drops units of small effect while their total is within the budget. A bound on the total.
 double Selection::drop(double budget) {
   float left;
   if (kept_.size() < static_cast<size_t>(near_.n) + 16)
     kept_.resize(2 * static_cast<size_t>(near_.n) + 16);
   units = keep_large(effect_.data(), near_.n, static_cast<float>(budget), kept_.data(), &left);
-  return left;
+  return budget - left;
 }
 
 /// Units for arithmetic in single precision. False when it does not hold here.
@@ -109,21 +110,37 @@ bool Selection::take_single() {
   // Where a block is small beside an atom's reach, its terms need no reference of their own.
   const double half = std::sqrt(double{box.half[0]} * box.half[0] + double{box.half[1]} * box.half[1] +
                                 double{box.half[2]} * box.half[2]);
-  u.direct = log2e * f_.decay * half * (2 * (reach_ + half) + half) < 0.8 * log2_range;
+  u.direct = log2e * f_.decay * half * (2 * (reach_ + half) + half) < 1.4 * log2_range;
+  // Where no factor of y and z comes near to what single precision holds, nor does one of x with the unit's in it.
+  u.folded = u.direct && 2 * std::numbers::sqrt2 * log2e * f_.decay * box.half[0] * (reach_ + half) < 70;
   const size_t room = static_cast<size_t>(n) + 17, atom_room = 16 * near_.cluster.size() + 32;
   if (u.x.size() < room) {
     u.begin.resize(2 * room);
-    for (Floats* v : {&u.exponent, &u.log2_term, &u.x, &u.y, &u.z})
+    for (Floats* v : {&u.exponent, &u.log2_term, &u.root, &u.log2_factor, &u.x, &u.y, &u.z})
       v->resize(2 * room);
   }
   if (u.atom_x.size() < atom_room)
     for (Floats* v : {&u.atom_x, &u.atom_y, &u.atom_z, &u.atom_constant})
       v->resize(2 * atom_room);
+  if (u.folded && f_.plain_above) // where units add so little together that their roots need few digits
+    choose_roots(effect_.data(), kept_.data(), n,
+                 static_cast<float>(budget_.roots) / (rough_root_error_ * static_cast<float>(n)), u.root.data());
+  else
+    std::fill_n(u.root.begin(), n, 2.0f);
   const bool absolute = f_.plain_above && budget_.within > 0;
-  if (!take_units(local_, near_, kept_.data(), n, box, static_cast<float>(log2e * f_.decay),
-                  absolute ? log2_upper_ : nullptr, static_cast<float>(absolute ? budget_.within + left_ : within_),
-                  u))
-    return false;
+  const auto take = [&] {
+    return take_units(local_, near_, kept_.data(), n, box, static_cast<float>(log2e * f_.decay),
+                      absolute ? log2_upper_ : nullptr,
+                      static_cast<float>(absolute ? 2 * (budget_.within + budget_.block) - dropped_ : within_), u);
+  };
+  if (!take()) {
+    if (!u.direct)
+      return false;
+    u.direct = u.folded = false;
+    if (!take())
+      return false;
+  }
+  added += 0.5 * static_cast<double>(u.dropped);
   atoms = u.begin[static_cast<size_t>(n)];
   return true;
 }
@@ -149,7 +166,8 @@ void Selection::take_octant(int octant, bool classify) {
     side = Side::outside;
     return;
   }
-  left_ = drop(budget_.block);
+  dropped_ = drop(2 * budget_.block);
+  added = 0.5 * (dropped_in_part_ + dropped_);
   const Vec3d middle = octant_middle(octant), half = 3.5 * h_ * Vec3d{1, 1, 1};
   if (arithmetic == Arithmetic::in_single && !take_single())
     arithmetic = Arithmetic::in_double;

@@ -1,22 +1,22 @@
 // selection.hpp — what matters in one block of 8³ grid points: the kept atoms, and bounds on G over the block.
 // Derivations in field.md.
 #pragma once
+#include "density/block_kernel.hpp"
 #include "density/field.hpp"
-#include "density/units_kernel.hpp"
 #include <span>
 #include <vector>
 
 namespace molmesh::density {
 
 /// Shares of the tolerance ε (field.md §2): far clusters, groups dropped in a part of a node and in a block, atoms
-/// dropped within groups, digits of values not kept; the rest is for rounding.
+/// dropped within groups, square roots of few digits, digits of values not kept; the rest is for rounding.
 struct Budget {
-  double far, part, block, within, digits;
+  double far, part, block, within, roots, digits;
   explicit Budget(double tolerance)
       : far(0.05 * tolerance), part(0.05 * tolerance), block(0.3 * tolerance), within(0.2 * tolerance),
-        digits(0.2 * tolerance) {}
+        roots(0.1 * tolerance), digits(0.2 * tolerance) {}
   /// What a bound on G has to allow for.
-  double total() const { return far + part + block + within + digits; }
+  double total() const { return far + part + block + within + roots + digits; }
 };
 
 enum class Side : uint8_t { outside, inside, mixed };
@@ -60,6 +60,7 @@ public:
   Side side = Side::mixed;
   Arithmetic arithmetic;        ///< that this block needs: the one asked for, or a safer one
   int64_t units = 0, atoms = 0; ///< kept
+  double added = 0;             ///< half of the most that what is dropped may add to G anywhere in the block
   /// Kept units and atoms when the arithmetic is in_single.
   BlockUnits block_units;
   LocalBox box; ///< of the block
@@ -93,16 +94,17 @@ private:
   const Field& f_;
   const Budget budget_;
   const double lower_, upper_, within_;
-  const double slack_;     ///< what single precision can do to an upper bound of G, relative
+  const double slack_; ///< what single precision can do to an upper bound of G, relative
+  const float rough_root_error_ = rough_root_error();
   const Arithmetic least_; ///< what was asked for
   double reach_ = 0;       ///< Å, the largest cutoff
   bool scaled_;            ///< upper bounds need more range than single precision has
   Vec3d node_middle_, part_middle_;
   double h_ = 0;
-  double left_ = 0;                   ///< of what groups dropped in the block at work may change
-  LocalClusters local_;               ///< of the node
-  NearUnits near_;                    ///< of the part of it at work
-  std::vector<int32_t> found_, kept_; ///< clusters of local_; kept(), with room
+  double dropped_in_part_ = 0, dropped_ = 0; ///< bounds on what goes with groups dropped in the part, in the block
+  LocalClusters local_;                      ///< of the node
+  NearUnits near_;                           ///< of the part of it at work
+  std::vector<int32_t> found_, kept_;        ///< clusters of local_; kept(), with room
   LocalBox octant_[8];
   bool octants_bounded_ = false;
   Floats octant_upper_; ///< of near_, per octant: bound on log2 S over it

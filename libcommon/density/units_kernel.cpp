@@ -57,12 +57,11 @@ void find_centers(const LocalClusters& node, const NearUnits& from, const int32_
   }
 }
 
-/// What take_units does with one threshold, log2 of the largest change by an atom that is dropped. dropped: an
-/// upper bound on what all that are dropped change.
+/// What take_units does with one threshold, log2 of the largest change by an atom that is dropped.
 template <bool absolute, bool direct>
 HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
                      const LocalBox& b, float decay, const TermsAt& middle, const float* log2_upper,
-                     float log2_least, BlockUnits& to, float& dropped) {
+                     float log2_least, BlockUnits& to) {
   const V sx = hn::Set(f, 2 * decay * b.half[0] / 3.5f), sy = hn::Set(f, 2 * decay * b.half[1] / 3.5f),
           sz = hn::Set(f, 2 * decay * b.half[2] / 3.5f), least = hn::Set(f, log2_least);
   V widest = hn::Zero(f), lost = widest;
@@ -72,6 +71,8 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
     // field.md §4: what dropping an atom changes G by, or (not absolute) its unit's sum, relative;
     // log2 P ≤ (P - 1)/ln 2.
     const float p = to.exponent[s], term = to.log2_term[s], steep = 1.442696f * (p - 1);
+    to.log2_factor[s] = direct && to.folded && p == 0.5f ? to.root[s] : term;
+    const V constant = hn::Set(f, to.log2_factor[s]);
     const V change = hn::Set(f, !absolute ? 0
                                 : p <= 1  ? p * term + steep
                                           : term + steep + (p - 1) * log2_upper[at]),
@@ -94,7 +95,7 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
       return hn::Mul(t, absolute ? hn::NegMulAdd(hn::Set(f, bend), t, up) : up);
     };
     for_atoms(from.cluster.data() + from.begin[at], from.begin[at + 1] - from.begin[at], [&](size_t a) {
-      const V weight = hn::Sub(middle(node, a), log2_largest);
+      const V log2_term = middle(node, a), weight = hn::Sub(log2_term, log2_largest);
       V x = hn::Mul(hn::Sub(hn::LoadU(f, &node.atom_x[a]), middle.x), sx),
         y = hn::Mul(hn::Sub(hn::LoadU(f, &node.atom_y[a]), middle.y), sy),
         z = hn::Mul(hn::Sub(hn::LoadU(f, &node.atom_z[a]), middle.z), sz);
@@ -116,13 +117,13 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
       hn::StoreU(hn::Compress(x, keep), f, &to.atom_x[kept]);
       hn::StoreU(hn::Compress(y, keep), f, &to.atom_y[kept]);
       hn::StoreU(hn::Compress(z, keep), f, &to.atom_z[kept]);
-      hn::StoreU(hn::Compress(weight, keep), f, &to.atom_constant[kept]);
+      hn::StoreU(hn::Compress(hn::Sub(log2_term, constant), keep), f, &to.atom_constant[kept]);
       kept += hn::CountTrue(f, keep);
     });
     to.begin[s + 1] = static_cast<int32_t>(kept);
   }
   to.n = n;
-  dropped = absolute ? hn::GetLane(hn::SumOfLanes(f, lost)) : 0;
+  to.dropped = absolute ? 1.001f * hn::GetLane(hn::SumOfLanes(f, lost)) : 0;
   for (Floats* v : {&to.exponent, &to.log2_term, &to.x, &to.y, &to.z})
     std::fill_n(v->begin() + n, 16, 0.0f);
   const V twice = hn::Set(f, 2 * decay);
@@ -143,6 +144,14 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
   return hn::GetLane(hn::MaxOfLanes(f, widest)) <= log2_range;
 }
 
+void choose_roots_simd(const float* effect, const int32_t* list, int32_t n, float most, float* root) {
+  for (int32_t u = 0; u < n; u += lanes) {
+    const auto used = hn::FirstN(I(), static_cast<size_t>(n - u));
+    const V e = hn::GatherIndex(f, effect, hn::IfThenElseZero(used, hn::LoadU(I(), list + u)));
+    hn::StoreU(hn::IfThenZeroElse(hn::Le(e, hn::Set(f, most)), hn::Set(f, 2.0f)), f, root + u);
+  }
+}
+
 bool take_units_simd(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
                      const LocalBox& block, float decay, const float* log2_upper, float within, BlockUnits& to) {
   int32_t slots = 1;
@@ -156,17 +165,16 @@ bool take_units_simd(const LocalClusters& node, const NearUnits& from, const int
   const auto safe = [&](int32_t atoms) {
     return log2_within - hn::GetLane(log2(hn::Set(f, static_cast<float>(atoms)))) - 1e-5f;
   };
-  float dropped;
   if (!log2_upper) { // relative to each unit
     const auto relative = to.direct ? take<false, true> : take<false, false>;
-    return relative(node, from, list, n, block, decay, middle, nullptr, safe(16 * slots), to, dropped);
+    return relative(node, from, list, n, block, decay, middle, nullptr, safe(16 * slots), to);
   }
   // A threshold that mostly does; what it drops is summed. The last one cannot fail.
   const auto absolute = to.direct ? take<true, true> : take<true, false>;
   const float last = safe(16 * std::max(1, slots * n));
   for (float least = std::max(last, log2_within - 2.5f);; least = std::max(last, least - 1.5f)) {
-    const bool holds = absolute(node, from, list, n, block, decay, middle, log2_upper, least, to, dropped);
-    if (1.001f * dropped <= within || least <= last)
+    const bool holds = absolute(node, from, list, n, block, decay, middle, log2_upper, least, to);
+    if (to.dropped <= within || least <= last)
       return holds;
   }
 }
@@ -192,7 +200,7 @@ void unit_middles_simd(const BlockUnits& u, const LocalBox& b, float decay, Unit
   }
   std::fill_n(to.log2_sum.begin() + u.n, 16, 1.0f);
   for (int32_t n = 0; n < u.n; n += lanes)
-    hn::StoreU(hn::Add(log2(hn::LoadU(f, to.log2_sum.data() + n)), hn::LoadU(f, u.log2_term.data() + n)), f,
+    hn::StoreU(hn::Add(log2(hn::LoadU(f, to.log2_sum.data() + n)), hn::LoadU(f, u.log2_factor.data() + n)), f,
                to.log2_sum.data() + n);
 }
 
@@ -223,10 +231,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace molmesh::density {
 
+HWY_EXPORT(choose_roots_simd);
 HWY_EXPORT(take_units_simd);
 HWY_EXPORT(unit_middles_simd);
 HWY_EXPORT(sum_of_powers_simd);
 
+void choose_roots(const float* effect, const int32_t* list, int32_t n, float most, float* root) {
+  HWY_DYNAMIC_DISPATCH(choose_roots_simd)(effect, list, n, most, root);
+}
 bool take_units(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
                 const LocalBox& block, float decay, const float* log2_upper, float within, BlockUnits& to) {
   return HWY_DYNAMIC_DISPATCH(take_units_simd)(node, from, list, n, block, decay, log2_upper, within, to);

@@ -13,13 +13,20 @@ namespace molmesh::density {
 struct BlockUnits {
   int32_t n = 0;
   bool direct = false;
+  bool folded = false; ///< direct, and T of units with P = 1/2 holds log2_term but for the unit's `root`
+  float dropped = 0;   ///< bound on what ΣS^P loses with the atoms that are dropped, when that was asked for
   std::vector<int32_t> begin{0}; ///< [n + 1]
   Floats exponent, log2_term, x, y, z;
+  Floats root;        ///< 2 where a root must be exact: T is S/4 then; 0 where few digits will do
+  Floats log2_factor; ///< of T in S
   Floats atom_x, atom_y, atom_z, atom_constant;
 };
 
 /// Largest change of a logarithm over a block that leaves single precision far from overflow.
 constexpr float log2_range = 115;
+
+/// root[u] = 0 where effect[list[u]] is at most `most`, else 2. list and root hold n + 16.
+void choose_roots(const float* effect, const int32_t* list, int32_t n, float most, float* root);
 
 /// The n units `list` of `from`, into arrays that hold enough, without atoms that do not matter: all that are
 /// dropped change ΣS^P by at most `within`, or, without log2_upper (bounds on the sums of all units of `from` over

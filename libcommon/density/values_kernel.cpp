@@ -15,36 +15,58 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::CappedTag<float, 16>;
+using V = hn::Vec<F>;
 constexpr F f{};
 constexpr int32_t lanes = static_cast<int32_t>(HWY_MIN(16, HWY_LANES(float)));
 
+struct Round {
+  explicit Round(int bits)
+      : half(hn::Set(i, bits > 0 ? uint32_t{1} << (bits - 1) : 0)), mask(hn::Set(i, ~uint32_t{0} << bits)) {}
+  HWY_INLINE V operator()(V v) const { return hn::BitCast(f, hn::And(hn::Add(hn::BitCast(i, v), half), mask)); }
+  static constexpr hn::Rebind<uint32_t, F> i{};
+  const hn::Vec<hn::Rebind<uint32_t, F>> half, mask;
+};
+
 void round_values_simd(float* v, int bits) {
-  const hn::Rebind<uint32_t, F> i;
-  const auto half = hn::Set(i, uint32_t{1} << (bits - 1)), mask = hn::Set(i, ~uint32_t{0} << bits);
+  const Round round(bits);
   for (int32_t s = 0; s < 512; s += lanes)
-    hn::StoreU(hn::BitCast(f, hn::And(hn::Add(hn::BitCast(i, hn::LoadU(f, v + s)), half), mask)), f, v + s);
+    hn::StoreU(round(hn::LoadU(f, v + s)), f, v + s);
 }
 
-void classify_points_simd(const float* v, float lower, float upper, uint64_t* below, uint64_t* above) {
-#if HWY_TARGET <= HWY_AVX2
-  using V = hn::Vec<F>;
-  uint8_t b[64 + 8], a[64 + 8];
-  for (int32_t s = 0; s < 512; s += lanes) {
-    const V x = hn::LoadU(f, v + s);
-    hn::StoreMaskBits(f, hn::Lt(x, hn::Set(f, lower)), b + s / 8);
-    hn::StoreMaskBits(f, hn::Gt(x, hn::Set(f, upper)), a + s / 8);
-  }
-  std::memcpy(below, b, 64);
-  std::memcpy(above, a, 64);
+/// Bit l of the result: lane l.
+HWY_INLINE uint64_t bits_of(hn::Mask<F> m) {
+#if HWY_TARGET <= HWY_AVX3
+  return m.raw;
+#elif HWY_TARGET <= HWY_AVX2
+  return static_cast<uint32_t>(_mm256_movemask_ps(m.raw));
 #else
-  for (int32_t w = 0; w < 8; ++w) {
-    below[w] = above[w] = 0;
-    for (int32_t s = 0; s < 64; ++s) {
-      below[w] |= uint64_t{v[64 * w + s] < lower} << s;
-      above[w] |= uint64_t{v[64 * w + s] > upper} << s;
-    }
-  }
+  uint8_t bits[8] = {};
+  hn::StoreMaskBits(f, m, bits);
+  uint64_t word;
+  std::memcpy(&word, bits, 8);
+  return word;
 #endif
+}
+
+void classify_points_simd(float* v, int bits, Limits near, Limits far, SideWords near_words, SideWords far_words) {
+  const Round round(bits);
+  const V lower = hn::Set(f, near.lower), upper = hn::Set(f, near.upper), far_lower = hn::Set(f, far.lower),
+          far_upper = hn::Set(f, far.upper);
+  for (int32_t w = 0; w < 8; ++w) {
+    uint64_t below = 0, above = 0, far_below = 0, far_above = 0;
+    for (int32_t s = 0; s < 64; s += lanes) {
+      const V x = round(hn::LoadU(f, v + 64 * w + s));
+      hn::StoreU(x, f, v + 64 * w + s);
+      below |= bits_of(hn::Lt(x, lower)) << s;
+      above |= bits_of(hn::Gt(x, upper)) << s;
+      far_below |= bits_of(hn::Lt(x, far_lower)) << s;
+      far_above |= bits_of(hn::Gt(x, far_upper)) << s;
+    }
+    near_words.below[w] = below;
+    near_words.above[w] = above;
+    far_words.below[w] = far_below;
+    far_words.above[w] = far_above;
+  }
 }
 
 int32_t pack_active_simd(const float* v, const uint64_t* active, float* out) {
@@ -113,8 +135,8 @@ HWY_EXPORT(keep_active_simd);
 void round_values(float* v, int bits) {
   HWY_DYNAMIC_DISPATCH(round_values_simd)(v, bits);
 }
-void classify_points(const float* v, float lower, float upper, uint64_t* below, uint64_t* above) {
-  HWY_DYNAMIC_DISPATCH(classify_points_simd)(v, lower, upper, below, above);
+void classify_points(float* v, int bits, Limits near, Limits far, SideWords near_words, SideWords far_words) {
+  HWY_DYNAMIC_DISPATCH(classify_points_simd)(v, bits, near, far, near_words, far_words);
 }
 int32_t pack_active(const float* v, const uint64_t* active, float* out) {
   return HWY_DYNAMIC_DISPATCH(pack_active_simd)(v, active, out);

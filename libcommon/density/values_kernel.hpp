@@ -5,12 +5,20 @@
 
 namespace molmesh::density {
 
-/// Rounds v[512] to nearest with the last `bits` (1 to 20) bits zero, for files that compress: a relative error of
-/// at most 2^(bits - 24).
+/// Rounds v[512] to nearest with the last `bits` bits zero, for files that compress: a relative error of at most
+/// 2^(bits - 24). 0 bits: nothing.
 void round_values(float* v, int bits);
 
-/// Bit 8·j + k of word i of below and above, of the 512 values of a block: v < lower, v > upper.
-void classify_points(const float* v, float lower, float upper, uint64_t* below, uint64_t* above);
+struct Limits {
+  float lower, upper;
+};
+/// Bit 8·j + k of word i.
+struct SideWords {
+  uint64_t *below, *above;
+};
+/// After round_values(): where each of the 512 values of a block is below `near.lower`, above `near.upper`, and so
+/// for `far`.
+void classify_points(float* v, int bits, Limits near, Limits far, SideWords near_words, SideWords far_words);
 
 /// Copies the v whose bit of active[8] is set to out, in order; may write up to 16 values more. Returns how many.
 int32_t pack_active(const float* v, const uint64_t* active, float* out);

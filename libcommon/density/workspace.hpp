@@ -3,6 +3,7 @@
 #include "density/band_kernel.hpp"
 #include "density/evaluate.hpp"
 #include "density/large_array.hpp"
+#include "density/node_state.hpp"
 #include "density/search_counts.hpp"
 #include "density/selection.hpp"
 #include <memory>
@@ -35,6 +36,33 @@ private:
   size_t used_ = 0, ready_ = 0; ///< of the last chunk
 };
 
+/// What nodes that nobody needs any more leave to the next ones.
+class Spares {
+public:
+  std::unique_ptr<NodePoints> sides() {
+    return sides_.empty() ? std::make_unique_for_overwrite<NodePoints>() : last_of(sides_);
+  }
+  std::vector<BandBlock> band() { return band_.empty() ? std::vector<BandBlock>() : last_of(band_); }
+  void forget(NodeState& s) {
+    if (s.sides && sides_.size() < most)
+      sides_.push_back(std::move(s.sides));
+    if (s.band.capacity() > 0 && band_.size() < most)
+      band_.push_back(std::move(s.band));
+    s = NodeState{};
+  }
+
+private:
+  static constexpr size_t most = 1024;
+  template <class T>
+  static T last_of(std::vector<T>& v) {
+    T t = std::move(v.back());
+    v.pop_back();
+    return t;
+  }
+  std::vector<std::unique_ptr<NodePoints>> sides_;
+  std::vector<std::vector<BandBlock>> band_;
+};
+
 struct Workspace {
   Selection selection;
   Evaluator evaluator = {};
@@ -43,6 +71,7 @@ struct Workspace {
   NodeBits rows = {};
   Sides beyond = {};
   Arena packed = {}; ///< of the band
+  Spares spares = {};
   SearchCounts counts = {};
   int64_t points = 0; ///< of the grid, evaluated
 };
