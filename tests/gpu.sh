@@ -124,7 +124,7 @@ held() {
 }
 
 echo "== parity, random small cases"
-held "$driver" $host small
+held "$driver" $host small ${host:+6}
 if [ -z "$host" ]; then
   echo "== compute-sanitizer, some of them"
   if command -v compute-sanitizer >/dev/null; then
