@@ -49,7 +49,7 @@ int run(int argc, char** argv) {
   if (what == "small")
     parity.small(argc == 3 ? std::max(1, std::stoi(argv[2])) : 1);
   else if (const Hierarchy h = read(argv[2]); what == "parity")
-    parity.slabs(argv[2], h, o), parity.structure(argv[2], h, o, true);
+    parity.slabs(argv[2], h, o, false), parity.structure(argv[2], h, o, true);
   else
     gpu::time_all(h, o, std::stoi(argv[4]), device, reference);
   return parity.failures() > 0;

@@ -12,8 +12,8 @@ public:
   void small(int step);
   /// Every stage from the host's result of the stage before.
   void structure(const std::string& name, const Hierarchy& h, const density::Options& o, bool all_stages);
-  /// Of the density, with a third of the memory.
-  void slabs(const std::string& name, const Hierarchy& h, const density::Options& o);
+  /// Of the density, with a third of the memory; not must_fit: unless not one block's slab fits.
+  void slabs(const std::string& name, const Hierarchy& h, const density::Options& o, bool must_fit);
   int failures() const { return failures_; }
 
 private:
