@@ -7,31 +7,12 @@
 using namespace molmesh;
 using namespace molmesh::testing;
 
-TEST_CASE("parts are even and compact") {
-  const TetMesh m = cubes(16, all_molecule);
+TEST_CASE("parts are even and compact, the same at any number of threads") {
+  const int n = GENERATE(16, 30); // by elements, by clusters of elements
+  const TetMesh m = cubes(n, all_molecule);
+  REQUIRE((m.tet.size() > 131072) == (n == 30));
   const std::vector<int32_t> part = partition(m, 8, 2);
   REQUIRE(part.size() == m.tet.size());
-  std::vector<size_t> size(8);
-  for (int32_t p : part) {
-    REQUIRE((p >= 0 && p < 8));
-    ++size[static_cast<size_t>(p)];
-  }
-  for (size_t s : size)
-    CHECK(s == Approx(double(m.tet.size()) / 8).epsilon(0.05));
-  const std::vector<int32_t> across = face_neighbors(m, 1);
-  size_t cut = 0;
-  for (size_t f = 0; f < across.size(); ++f)
-    cut += across[f] >= 0 && part[f / 4] != part[static_cast<size_t>(across[f]) / 4];
-  // Eight octants would cut three planes of 16 x 16 squares, two triangles each, seen from both sides.
-  CHECK(cut / 2 < 2 * 3 * 16 * 16 * 2);
-  for (int threads : {1, 5})
-    CHECK(partition(m, 8, threads) == part);
-}
-
-TEST_CASE("a mesh that is partitioned by clusters: even, compact, the same at any number of threads") {
-  const TetMesh m = cubes(30, all_molecule);
-  REQUIRE(m.tet.size() > 150000);
-  const std::vector<int32_t> part = partition(m, 8, 2);
   std::vector<size_t> size(8);
   for (int32_t p : part)
     ++size.at(static_cast<size_t>(p));
@@ -41,7 +22,8 @@ TEST_CASE("a mesh that is partitioned by clusters: even, compact, the same at an
   size_t cut = 0;
   for (size_t f = 0; f < across.size(); ++f)
     cut += across[f] >= 0 && part[f / 4] != part[static_cast<size_t>(across[f]) / 4];
-  CHECK(cut / 2 < 2 * 3 * 30 * 30 * 2);
+  // Eight octants would cut three planes of n x n squares, two triangles each, seen from both sides.
+  CHECK(cut / 2 < static_cast<size_t>(2 * 3 * n * n * 2));
   for (int threads : {1, 5})
     CHECK(partition(m, 8, threads) == part);
 }
