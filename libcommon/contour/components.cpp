@@ -23,11 +23,7 @@ void assign_regions(std::vector<Component>& part, const std::vector<detail::Part
     if (!c.inside && c.at_wall)
       c.volume = 0;
     c.region = c.inside ? molecule : c.at_wall ? outside : cavity;
-    if (options.fill_cavities && c.region == cavity)
-      c.region = molecule;
   }
-  if (!(options.drop_below > 0))
-    return;
   // A dropped part takes the region round it; where parts nest, the outermost decides first.
   std::vector<uint8_t> dropped(part.size(), 0);
   for (size_t i = 0; i < part.size(); ++i)
@@ -48,6 +44,9 @@ void assign_regions(std::vector<Component>& part, const std::vector<detail::Part
         a.region = outside, changed = true;
     }
   }
+  for (Component& c : part) // what was dropped in one is filled with it
+    if (options.fill_cavities && c.region == cavity)
+      c.region = molecule;
 }
 
 Components find_components(const ComplexView& c, const Elements& elements, const RegionOptions& options,

@@ -136,8 +136,8 @@ bool Editor::rim_crosses(bool stamped_go) {
       }
       if (now.of_one_sheet(other, beside))
         return false;
-      if (!ours)
-        return !beside;
+      if (!ours && !beside)
+        return true; // one that shares a vertex is of no part: it stays
       if (stamped_go && stamp_[size_t(other.face / 4)] == clock_)
         return false;
       return triangles_cross(m_.point, t, other.v);

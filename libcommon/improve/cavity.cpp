@@ -101,10 +101,11 @@ void Editor::list_rim(const std::vector<Candidate>& now) {
   }
 }
 
-bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface) {
+bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface,
+                     bool rim_moved) {
   if (!match(old, now, surface))
     return false;
-  if (surface && sheets_) {
+  if ((surface || rim_moved) && sheets_) {
     list_rim(now);
     if (rim_crosses(true))
       return false;

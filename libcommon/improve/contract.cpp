@@ -128,7 +128,7 @@ bool Editor::contract(int32_t e, int i, int j) {
       return false;
   }
   rim_.clear();
-  return finish_contraction(a, b);
+  return finish_contraction(a, b, false);
 }
 
 // As contract(), but b moves too: both stars are judged at the best place for it.
@@ -224,7 +224,7 @@ bool Editor::merge(int32_t e, int i, int j) {
   if (sheets_)
     list_rim(star2_, b, a);
   // star2_ but the ring, which goes, has the same elements before and after.
-  if (!finish_contraction(a, b)) {
+  if (!finish_contraction(a, b, kb.kind == Kind::surface)) {
     m_.point[size_t(b)] = pb;
     return false;
   }
@@ -239,12 +239,12 @@ bool Editor::merge(int32_t e, int i, int j) {
   return true;
 }
 
-// star_ gives way to now_.
-bool Editor::finish_contraction(int32_t a, int32_t b) {
+// star_ gives way to now_. moved: b has, and is on the surface.
+bool Editor::finish_contraction(int32_t a, int32_t b, bool moved) {
   old_ = star_;
   const bool was_crowded = m_.vertex[size_t(b)].crowded;
   m_.vertex[size_t(b)].crowded |= m_.vertex[size_t(a)].crowded;
-  if (!replace(old_, now_, m_.vertex[size_t(a)].kind != Kind::interior)) {
+  if (!replace(old_, now_, m_.vertex[size_t(a)].kind != Kind::interior, moved)) {
     m_.vertex[size_t(b)].crowded = was_crowded;
     return false;
   }

@@ -100,7 +100,8 @@ public:
   bool bent(int32_t e, size_t face) const;
   /// Of a surface vertex: how far off the target, in units of a fiftieth of a spacing (what I8 allows).
   double off(int32_t v) const;
-  /// Moves a surface vertex onto the target, all the way or part of it; no element falls under `floor`.
+  /// Moves a surface vertex onto the target, all the way or part of it; no element falls under `floor`;
+  /// floor ≥ 1: to less than half its quality.
   bool settle(int32_t v, float floor);
 
   /// Slots that new elements may come to lie in.
@@ -131,7 +132,8 @@ private:
   bool match(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface);
   /// False, and nothing changed, when faces do not match or the surface would cross itself. rim_: triangles that
   /// have moved with the operation already; surface: the operation may change them.
-  bool replace(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface);
+  bool replace(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface,
+               bool rim_moved = false);
   void list_rim(const std::vector<Candidate>& now);
   void list_rim(const std::vector<int32_t>& elements, int32_t v, int32_t without);
   bool crowded(const std::array<int32_t, 3>& t) const;
@@ -179,7 +181,7 @@ private:
   bool search(const Vertex& k, Vec3d& x, float& best, float aim, double length, const Fit& before, float above);
   bool take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above, float allowed);
   bool may_contract(const Vertex& a, const Vertex& b) const;
-  bool finish_contraction(int32_t a, int32_t b);
+  bool finish_contraction(int32_t a, int32_t b, bool moved);
   bool borders_allow(int32_t e, int32_t a, int32_t b);
 
   DynamicMesh& m_;

@@ -119,7 +119,7 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
     const Label& label = m_.labels[ring_.label[0]];
     const int32_t vs = vertex(s), vt = vertex(t);
     const Element &after = element(s), &before = element(t - 1);
-    const size_t face_s = size_t(after.find(vertex(s + 1))), face_t = size_t(before.find(vertex(t - 1 + (t == s))));
+    const size_t face_s = size_t(after.find(vertex(s + 1))), face_t = size_t(before.find(vertex(t - 1)));
     if (label.curved()) {
       if (!target_)
         return false;
@@ -181,6 +181,7 @@ bool Editor::swap_face(int32_t e, int i) {
   old_ = {e, n};
   if (!has_room(2, 3) || lack(now_) > lack(old_))
     return false;
+  rim_.clear();
   if (!replace(old_, now_, false))
     return false;
   ++counts.face_swaps;

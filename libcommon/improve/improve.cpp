@@ -107,10 +107,10 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   const float goal =
       static_cast<float>(std::max(angle_quality(options.min_dihedral), angle_quality(options.max_dihedral)));
 
-  const auto settle = [&] {
-    result.counts += schedule.settle(1, kept);
+  const auto settle = [&](float floor) {
+    result.counts += schedule.settle(floor, kept);
     isosurface->set_offset(isosurface->offset() + chord_offset(m, *isosurface, options.threads));
-    result.counts += schedule.settle(1, kept);
+    result.counts += schedule.settle(floor, kept);
   };
 
   begin("improve");
@@ -144,7 +144,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     }
     ++result.rounds;
     if (density && round == 0) // not before: what is squeezed between surface and grid is gone now
-      settle();
+      settle(1);
     if (density) {
       if (size_t(round) + 1 == refresh_offset)
         isosurface->set_offset(isosurface->offset() + chord_offset(m, *isosurface, options.threads));
@@ -153,6 +153,8 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     if (done == 0 && size_t(round) + 1 >= std::size(stages))
       break;
   }
+  if (density && result.rounds == 0) // good enough as it came, and to stay so
+    settle(std::min(goal, at_first));
   for (int repeat = 0; density && repeat < recoveries; ++repeat) {
     Pass pass;
     pass.goal = goal;
@@ -161,8 +163,6 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     pass.guard = released;
     result.counts += schedule.recover(pass);
   }
-  if (density && result.rounds == 0)
-    settle();
   if (density)
     result.fidelity = measure_fidelity(m, *isosurface, options.threads);
   if (result.counts.total() == 0 || schedule.worst() < at_first) { // the file that came in, in its own order

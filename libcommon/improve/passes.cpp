@@ -167,10 +167,15 @@ Counts Schedule::settle(float floor, const Guard& guard) {
       items.push_back(static_cast<int32_t>(v));
       part.push_back(owner_[v]);
     }
-  return for_parts(items, part, guard, [&](Editor& editor, std::vector<int32_t>& list) {
-    for (const int32_t v : list)
-      editor.settle(v, floor);
-  });
+  const int32_t time = ++time_;
+  return for_parts(
+      items, part, guard,
+      [&](Editor& editor, std::vector<int32_t>& list) {
+        editor.time = time;
+        for (const int32_t v : list)
+          editor.settle(v, floor);
+      },
+      0); // nothing new comes
 }
 
 } // namespace molmesh::improve

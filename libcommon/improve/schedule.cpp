@@ -62,7 +62,7 @@ int64_t Schedule::below(float goal) const {
 void Schedule::set_owners(int shift, double cell) {
   Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   for (size_t v = 0; v < m_.point.size(); ++v)
-    for (int a = 0; a < 3; ++a) {
+    for (int a = 0; a < 3 && m_.incident[v] >= 0; ++a) {
       low[a] = std::min(low[a], m_.point[v][a]);
       high[a] = std::max(high[a], m_.point[v][a]);
     }
@@ -86,7 +86,7 @@ void Schedule::set_owners(int shift, double cell) {
     int64_t part = 0;
     for (int a = 0; a < 3; ++a)
       part = part * n[a] + static_cast<int64_t>((m_.point[size_t(v)][a] - low[a]) / cell + offset[a]);
-    owner_[size_t(v)] = static_cast<int32_t>(part);
+    owner_[size_t(v)] = m_.incident[size_t(v)] >= 0 ? static_cast<int32_t>(part) : -1;
   });
   parts_ = static_cast<int32_t>(n[0] * n[1] * n[2]);
 }

@@ -31,7 +31,8 @@ public:
   /// Surface vertices off the target: put on it, or off the surface, where the elements around can be brought over
   /// the goal afterwards. Nothing else changes.
   Counts recover(const Pass& pass);
-  /// Puts surface vertices on the target where no element falls under `floor`.
+  /// Puts surface vertices on the target where no element falls under `floor`; floor ≥ 1: to less than half its
+  /// quality.
   Counts settle(float floor, const Guard& guard);
   /// Where the mesh ends in a surface, it is kept from crossing itself; at first only near opposed sheets. This
   /// looks anew, or everywhere from now on.

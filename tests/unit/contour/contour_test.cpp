@@ -252,6 +252,31 @@ TEST_CASE("dust is dropped on request only") {
   }
 }
 
+TEST_CASE("dust in a cavity goes with the cavity, a hollow part goes with its own") {
+  const auto shell = [](double r) { return std::exp(0.5 - (r - 4) * (r - 4) * 2); };
+  const BlockGrid dust =
+      cube_grid(8, 0.4, [&](Vec3d x) { return shell(norm(x)) + std::exp(3 * (0.8 * 0.8 - norm2(x))); });
+  const BlockGrid hollow = cube_grid(8, 0.4, [&](Vec3d x) {
+    return atom(x - Vec3d{-4.2, -4.2, -4.2}) + shell(norm(x) * 1.6);
+  });
+  Options options;
+  options.meshed = Options::both;
+  options.drop_below = 10;
+  for (bool fill : {false, true}) {
+    options.fill_cavities = fill;
+    const Validity v = checked(mesh_of(dust, options));
+    CHECK(v.surface.components == (fill ? 1 : 2));
+    CHECK((region_volume(v, cavity) > 0) == !fill);
+  }
+  options.drop_below = 80; // the hollow part (49), not the atom (113)
+  for (bool fill : {false, true}) {
+    options.fill_cavities = fill;
+    const Validity v = checked(mesh_of(hollow, options));
+    CHECK(v.surface.components == 1);
+    CHECK(region_volume(v, cavity) == 0);
+  }
+}
+
 TEST_CASE("random densities: always valid, ties with the isovalue among them") {
   std::mt19937_64 random(5);
   for (int trial = 0; trial < 36; ++trial) {
