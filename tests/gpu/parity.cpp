@@ -41,19 +41,19 @@ void Parity::structure(const std::string& name, const Hierarchy& h, const densit
     const std::string what = name + ", mesh, --adapt " + std::to_string(adapt);
     tell(what + ", " + std::to_string(mesh.tet.size()) + " tetrahedra",
          compare_meshes(run_contour(host, c, device_, t), mesh, 0));
-    tell(what + ", with little memory",
-         compare_meshes(run_contour(host, c, with_little_memory(device_, t), t), mesh, 0) + unless_paged(t));
+    const TetMesh paged = run_contour(host, c, with_little_memory(device_, t), t);
+    tell(what + ", with little memory", compare_meshes(paged, mesh, 0) + unless_paged(t));
     if (adapt == 0)
       continue;
     const TetMesh better = run_improve(mesh, host, reference_, t), same = run_improve(mesh, host, device_, t);
     tell(name + ", improved", compare_meshes(same, better, 1e-6));
     tell(name + ", improved, valid", check_valid(same));
-    tell(name + ", improved, with little memory",
-         compare_meshes(run_improve(mesh, host, with_little_memory(device_, t), t), same, 0) + unless_paged(t));
+    const How little = with_little_memory(device_, t);
+    const TetMesh by_pages = run_improve(mesh, host, little, t);
+    tell(name + ", improved, with little memory", compare_meshes(by_pages, same, 0) + unless_paged(t));
   }
 }
 
-/// Ambiguous cells, ties, both regions, cut boxes: connectivity and positions to the last bit.
 void Parity::slabs(const std::string& name, const Hierarchy& h, const density::Options& o, bool must_fit) {
   Timed t;
   const BlockGrid grid = run_density(h, o, device_, t);
