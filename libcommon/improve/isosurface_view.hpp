@@ -14,8 +14,8 @@ struct IsosurfaceView {
 
   HD double spacing() const { return frame.spacing; }
 
-  /// f = log(G / isovalue) and its gradient (1/Å); outside the known cells by the next one, a quarter of a cell far. False
-  /// beyond.
+  /// f = log(G / isovalue) and its gradient (1/Å); outside the known cells by the next one, a quarter of a cell
+  /// far. False beyond.
   HD bool evaluate(Vec3d p, double& f, Vec3d& gradient) const {
     const Vec3d u = (p - frame.origin) / frame.spacing;
     if (!(std::abs(u.x) < 1e9 && std::abs(u.y) < 1e9 && std::abs(u.z) < 1e9))
