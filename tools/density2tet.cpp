@@ -55,8 +55,7 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("BOX");
   app.add_option("--adapt", o.adapt,
                  "how far the surface may lie from a coarser cell's mean plane, in grid spacings, and less where "
-                 "the chords of "
-                 "a small body would cost it volume; 0: uniform")
+                 "the chords of a small body would cost it volume; 0: uniform")
       ->check(CLI::Range(0., 100.));
   app.add_option("--cavities", o.cavities, "closed cavities: keep (region 3) or fill (region 1)")
       ->check(CLI::IsMember({"keep", "fill"}));

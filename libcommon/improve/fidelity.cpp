@@ -108,7 +108,7 @@ Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int t
 
 double chord_offset(const DynamicMesh& m, const Isosurface& surface, int threads) {
   const Fidelity f = measure_triangles(m, surface, threads);
-  const double most = 0.0175 * surface.spacing(), now = surface.offset();
+  const double most = most_offset * surface.spacing(), now = surface.offset();
   return f.area > 0 ? std::clamp(now + f.missing / f.area, -most, most) - now : 0;
 }
 

@@ -5,6 +5,9 @@
 
 namespace molmesh::improve {
 
+/// How far outside the isosurface points may be kept, in spacings, so that chords enclose its own volume.
+inline constexpr double most_offset = 0.0175;
+
 /// log G / isovalue, trilinear in each known cell: its eight corners are active.
 struct IsosurfaceView {
   GridFrame frame;

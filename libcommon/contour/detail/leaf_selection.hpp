@@ -9,6 +9,7 @@
 #include "contour/detail/surface_passes.hpp"
 #include "contour/leaves.hpp"
 #include "error.hpp"
+#include "improve/isosurface_view.hpp"
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -57,9 +58,9 @@ private:
     SurfaceNodes view;
   };
   static constexpr int most_merges = 5; // surface cells of 32 fine spacings at most
-  // Chords may cut off this share of the volume beyond what tetsmooth gives back by putting points so far outside
-  // the isosurface, in spacings; below this tolerance all surface cells that are not plane stay fine.
-  static constexpr double most_cut = 0.007, offset_of_smoothing = 0.0175, least_tolerance = 0.02;
+  // Chords may cut off this share of the volume beyond what tetsmooth gives back by putting points outside the
+  // isosurface; below this tolerance all surface cells that are not plane stay fine.
+  static constexpr double most_cut = 0.007, least_tolerance = 0.02;
 
   Nodes& refined(int level) { return refined_[static_cast<size_t>(level)]; }
   NodeSet set(int level) { return {refined(level).data(), refined(level).n}; }
@@ -106,7 +107,7 @@ private:
     auto part = m_.template array<SurfaceSums>(stretches);
     m_.for_n("sum samples", stretches, SumSamples{surface_.sample, surface_.n, part.data()});
     const SurfaceSums all = sum(part, stretches, SurfaceSums{});
-    return offset_of_smoothing * all.area + most_cut * all.volume();
+    return improve::most_offset * all.area + most_cut * all.volume();
   }
   double cut_off() {
     Array<double> cut;
