@@ -117,27 +117,30 @@ bool Editor::crowded(const std::array<int32_t, 3>& t) const {
   return m_.vertex[size_t(t[0])].crowded || m_.vertex[size_t(t[1])].crowded || m_.vertex[size_t(t[2])].crowded;
 }
 
-// True when a triangle of rim_ crosses another one or another of rim_. Triangles of other parts may change
-// meanwhile: their boxes must stay clear.
+// True when a triangle of rim_ crosses another one or another of rim_, or leaves this part's cell. Triangles of
+// other parts change meanwhile, each in its own cell, so none of those is met; triangles of no part stay as they
+// are.
 bool Editor::rim_crosses(bool stamped_go) {
   for (size_t i = 0; i < rim_.size(); ++i) {
     const auto& t = rim_[i];
+    for (const int32_t v : t)
+      if (parts_.at(m_.point[size_t(v)]) != room_.part)
+        return true;
     const SheetTriangle now = sheet_triangle(m_.point, t, -1);
     for (size_t j = 0; j < i; ++j)
       if (!now.of_one_sheet(sheet_triangle(m_.point, rim_[j], -1), true) && triangles_cross(m_.point, t, rim_[j]))
         return true;
     const auto crosses = [&](const SheetTriangle& other) {
-      if (!now.box_meets(other, 0.05f * static_cast<float>(target_->spacing())))
+      if (!now.box_meets(other, 0))
         return false;
-      bool ours = true, beside = false;
-      for (const int32_t v : other.v) {
-        ours &= owner_[size_t(v)] == room_.part;
+      const auto owner = [&](size_t k) { return parts_.owner[size_t(other.v[k])]; };
+      if (owner(0) != room_.part && owner(0) == owner(1) && owner(0) == owner(2))
+        return false;
+      bool beside = false;
+      for (const int32_t v : other.v)
         beside |= v == t[0] || v == t[1] || v == t[2];
-      }
       if (now.of_one_sheet(other, beside))
         return false;
-      if (!ours && !beside)
-        return true; // one that shares a vertex is of no part: it stays
       if (stamped_go && stamp_[size_t(other.face / 4)] == clock_)
         return false;
       return triangles_cross(m_.point, t, other.v);

@@ -17,15 +17,13 @@ Counts& Counts::operator+=(const Counts& o) {
   return *this;
 }
 
-Editor::Editor(DynamicMesh& mesh, const Target* target, const Sheets* sheets, const std::vector<int32_t>& owner,
+Editor::Editor(DynamicMesh& mesh, const Target* target, const Sheets* sheets, const Parts& parts,
                std::vector<uint32_t>& stamp, PartRoom& room, Guard guard)
-    : m_(mesh), target_(target), sheets_(sheets), changed_sheets_(target ? target->spacing() : 1), owner_(owner),
+    : m_(mesh), target_(target), sheets_(sheets), changed_sheets_(target ? target->spacing() : 1), parts_(parts),
       stamp_(stamp), room_(room), guard_(guard), table_(512) {}
 
 bool Editor::owned(int32_t e) const {
-  const auto& v = m_.element[size_t(e)].v;
-  return owner_[size_t(v[0])] == room_.part && owner_[size_t(v[1])] == room_.part &&
-         owner_[size_t(v[2])] == room_.part && owner_[size_t(v[3])] == room_.part;
+  return parts_.owns(room_.part, m_.element[size_t(e)].v);
 }
 
 // False when an element of the star is not ours. Only our elements are stamped, so no other editor sees the stamps.

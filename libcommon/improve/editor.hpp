@@ -4,6 +4,7 @@
 #pragma once
 #include "improve/dynamic_mesh.hpp"
 #include "improve/guard.hpp"
+#include "improve/parts.hpp"
 #include "improve/search.hpp"
 #include "improve/sheets.hpp"
 #include "improve/spokes.hpp"
@@ -78,10 +79,9 @@ struct Ring {
 
 class Editor {
 public:
-  /// target may be null: then surface points stay. sheets: where the mesh ends in curved surfaces, or null. owner
-  /// [vertices] is the part of each vertex; stamp [elements] is scratch, zero where no editor has been since it was
-  /// cleared.
-  Editor(DynamicMesh& mesh, const Target* target, const Sheets* sheets, const std::vector<int32_t>& owner,
+  /// target may be null: then surface points stay. sheets: where the mesh ends in curved surfaces, or null.
+  /// stamp [elements] is scratch, zero where no editor has been since it was cleared.
+  Editor(DynamicMesh& mesh, const Target* target, const Sheets* sheets, const Parts& parts,
          std::vector<uint32_t>& stamp, PartRoom& room, Guard guard);
 
   // Each tries its operation and tells whether it was done: the worst quality among the elements concerned has
@@ -188,7 +188,7 @@ private:
   const Target* target_;
   const Sheets* sheets_;
   Sheets changed_sheets_;
-  const std::vector<int32_t>& owner_;
+  const Parts& parts_;
   std::vector<uint32_t>& stamp_;
   PartRoom& room_;
   Guard guard_;

@@ -84,7 +84,7 @@ Counts Schedule::run(const Pass& pass) {
   if (pass != last_)
     since_ = time_; // what failed before may work now
   last_ = pass;
-  set_owners(passes_++, pass.cell * cell_);
+  set_parts(passes_++, pass.cell * cell_);
   constexpr int32_t sweeps = 4;
   const int32_t start = time_, since = since_;
   time_ += sweeps;
@@ -122,12 +122,12 @@ Counts Schedule::run(const Pass& pass) {
 }
 
 Counts Schedule::straighten(const Pass& pass) {
-  set_owners(passes_++, pass.cell * cell_);
+  set_parts(passes_++, pass.cell * cell_);
   constexpr int32_t sweeps = 4;
   const int32_t start = time_;
   time_ += sweeps;
   PartRoom none;
-  const Editor look(m_, target_, nullptr, owner_, stamp_, none, pass.guard);
+  const Editor look(m_, target_, nullptr, parts_, stamp_, none, pass.guard);
   std::vector<uint8_t> off(m_.point.size()), misfits(m_.element.size());
   par::for_n(static_cast<int64_t>(off.size()), threads_, [&](int64_t v) {
     off[size_t(v)] = m_.incident[size_t(v)] >= 0 && look.off(static_cast<int32_t>(v)) > 1;
@@ -160,12 +160,12 @@ Counts Schedule::straighten(const Pass& pass) {
 }
 
 Counts Schedule::settle(float floor, const Guard& guard) {
-  set_owners(settles_++, cell_);
+  set_parts(settles_++, cell_);
   std::vector<int32_t> items, part;
   for (size_t v = 0; v < m_.point.size(); ++v)
     if (m_.incident[v] >= 0 && m_.vertex[v].kind == Kind::surface) {
       items.push_back(static_cast<int32_t>(v));
-      part.push_back(owner_[v]);
+      part.push_back(parts_.owner[v]);
     }
   const int32_t time = ++time_;
   return for_parts(

@@ -200,10 +200,10 @@ private:
 } // namespace
 
 Counts Schedule::recover(const Pass& pass) {
-  set_owners(passes_++, pass.cell * cell_);
+  set_parts(passes_++, pass.cell * cell_);
   const int32_t time = ++time_;
   PartRoom none;
-  const Editor look(m_, target_, nullptr, owner_, stamp_, none, pass.guard);
+  const Editor look(m_, target_, nullptr, parts_, stamp_, none, pass.guard);
   std::vector<uint8_t> off(m_.point.size());
   par::for_n(static_cast<int64_t>(off.size()), threads_, [&](int64_t v) {
     off[size_t(v)] = m_.incident[size_t(v)] >= 0 && look.off(static_cast<int32_t>(v)) > 1;
@@ -211,7 +211,7 @@ Counts Schedule::recover(const Pass& pass) {
   std::vector<int32_t> wanted;
   for (size_t v = 0; v < off.size(); ++v)
     if (off[v])
-      wanted.push_back(owner_[v]);
+      wanted.push_back(parts_.owner[v]);
   if (wanted.empty())
     return {};
   par::sort_unique(wanted, threads_);

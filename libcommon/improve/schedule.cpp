@@ -59,41 +59,37 @@ int64_t Schedule::below(float goal) const {
       [](int64_t a, int64_t b) { return a + b; });
 }
 
-void Schedule::set_owners(int shift, double cell) {
+void Schedule::set_parts(int shift, double cell) {
   Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   for (size_t v = 0; v < m_.point.size(); ++v)
     for (int a = 0; a < 3 && m_.incident[v] >= 0; ++a) {
       low[a] = std::min(low[a], m_.point[v][a]);
       high[a] = std::max(high[a], m_.point[v][a]);
     }
+  parts_.low = low;
   // Fractions of a cell that never line up again on all axes: every neighborhood lies inside some part soon.
-  double offset[3];
   static constexpr double stride[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
   for (int a = 0; a < 3; ++a)
-    offset[a] = shift * stride[a] - std::floor(shift * stride[a]);
-  int64_t n[3];
+    parts_.offset[size_t(a)] = shift * stride[a] - std::floor(shift * stride[a]);
   for (;; cell *= 2) {
     double cells = 1;
     for (int a = 0; a < 3; ++a) {
-      n[a] = static_cast<int64_t>((high[a] - low[a]) / cell) + 2;
-      cells *= double(n[a]);
+      parts_.n[size_t(a)] = static_cast<int64_t>((high[a] - low[a]) / cell) + 2;
+      cells *= double(parts_.n[size_t(a)]);
     }
     if (cells < 1e8)
       break;
   }
-  owner_.resize(m_.point.size());
+  parts_.cell = cell;
+  parts_.owner.resize(m_.point.size());
   par::for_n(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
-    int64_t part = 0;
-    for (int a = 0; a < 3; ++a)
-      part = part * n[a] + static_cast<int64_t>((m_.point[size_t(v)][a] - low[a]) / cell + offset[a]);
-    owner_[size_t(v)] = m_.incident[size_t(v)] >= 0 ? static_cast<int32_t>(part) : -1;
+    parts_.owner[size_t(v)] = m_.incident[size_t(v)] >= 0 ? parts_.at(m_.point[size_t(v)]) : -1;
   });
-  parts_ = static_cast<int32_t>(n[0] * n[1] * n[2]);
 }
 
 int32_t Schedule::part_of(const Element& e) const {
-  const int32_t p = owner_[size_t(e.v[0])];
-  return owner_[size_t(e.v[1])] == p && owner_[size_t(e.v[2])] == p && owner_[size_t(e.v[3])] == p ? p : -1;
+  const int32_t p = parts_.owner[size_t(e.v[0])];
+  return parts_.owns(p, e.v) ? p : -1;
 }
 
 // Items of one part, in order, go to one editor with slots of its own.
@@ -105,7 +101,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     Counts counts;
     Sheets sheets{1};
   };
-  std::vector<int32_t> job_of(static_cast<size_t>(parts_), -1);
+  std::vector<int32_t> job_of(static_cast<size_t>(parts_.count()), -1);
   std::vector<Job> jobs;
   for (size_t i = 0; i < items.size(); ++i) {
     if (part_of_item[i] < 0)
@@ -135,14 +131,14 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     m_.vertex.resize(vertex_size);
     m_.incident.resize(vertex_size, -1);
     m_.touched.resize(vertex_size, 0);
-    owner_.resize(vertex_size);
+    parts_.owner.resize(vertex_size);
     for (const int32_t v : job.room.vertex)
-      owner_[size_t(v)] = job.room.part;
+      parts_.owner[size_t(v)] = job.room.part;
   }
   stamp_.assign(m_.element.size(), 0);
   par::for_n(static_cast<int64_t>(jobs.size()), threads_, 1, [&](int64_t j) {
     Job& job = jobs[size_t(j)];
-    Editor editor(m_, target_, sheets_.alive() > 0 ? &sheets_ : nullptr, owner_, stamp_, job.room, guard);
+    Editor editor(m_, target_, sheets_.alive() > 0 ? &sheets_ : nullptr, parts_, stamp_, job.room, guard);
     work(editor, job.items);
     job.counts = editor.counts;
     job.sheets = editor.changed_sheets();

@@ -45,8 +45,8 @@ private:
   /// slots_per_item: kept for new elements.
   Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
                    const Work& work, double slots_per_item = 2);
-  void set_owners(int shift, double cell);
-  int32_t part_of(const Element& e) const;
+  void set_parts(int shift, double cell);
+  int32_t part_of(const Element& e) const; ///< -1: none
 
   DynamicMesh& m_;
   const Target* target_;
@@ -56,8 +56,7 @@ private:
   int passes_ = 0, settles_ = 0;
   int32_t time_ = 0, since_ = 0; ///< sweeps so far; when this kind of pass began
   Pass last_;
-  int32_t parts_ = 0;
-  std::vector<int32_t> owner_;
+  Parts parts_;
   std::vector<uint32_t> stamp_;
   Sheets sheets_; ///< where the mesh ends in curved surfaces
   std::vector<int32_t> free_element_, free_vertex_;

@@ -100,11 +100,13 @@ TEST_CASE("what is restored is as it was saved") {
   c.m.incident.resize(size_t(points) + 1000, -1);
   c.m.touched.resize(size_t(points) + 1000);
   // One part owns what lies below half the box, so that some elements are of neither.
-  std::vector<int32_t> owner(c.m.point.size());
+  improve::Parts parts;
+  std::vector<int32_t>& owner = parts.owner;
+  owner.resize(c.m.point.size());
   for (size_t v = 0; v < owner.size(); ++v)
     owner[v] = v < size_t(points) && c.m.point[v].x > h * n / 2;
   std::vector<uint32_t> stamp(c.m.element.size());
-  improve::Editor editor(c.m, &c.surface, nullptr, owner, stamp, room, {44, 0.24, 1, 0});
+  improve::Editor editor(c.m, &c.surface, nullptr, parts, stamp, room, {44, 0.24, 1, 0});
   std::vector<int32_t> inner;
   for (int32_t e = 0; e < size; ++e)
     if (editor.owned(e))
@@ -146,15 +148,16 @@ TEST_CASE("what is restored is as it was saved") {
 
 TEST_CASE("a surface point that leaves the surface leaves a surface behind") {
   Case c;
-  std::vector<int32_t> owner(c.m.point.size());
+  improve::Parts parts;
+  parts.owner.resize(c.m.point.size());
   std::vector<uint32_t> stamp(c.m.element.size());
   improve::PartRoom room;
-  improve::Editor editor(c.m, &c.surface, nullptr, owner, stamp, room, {44, 0.24, 1, 0});
+  improve::Editor editor(c.m, &c.surface, nullptr, parts, stamp, room, {44, 0.24, 1, 0});
   editor.straighten = editor.bold = true;
   editor.goal = 1e-4f;
   int gone = 0;
   double volume = improve::measure_fidelity(c.m, c.surface, 1).volume;
-  for (size_t v = 0; v < owner.size() && gone < 40; ++v) {
+  for (size_t v = 0; v < parts.owner.size() && gone < 40; ++v) {
     if (!editor.hand_over(static_cast<int32_t>(v)))
       continue;
     ++gone;

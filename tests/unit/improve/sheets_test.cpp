@@ -109,3 +109,32 @@ TEST_CASE("two sheets that are drawn through each other stop before they cross")
                                         x->point[size_t(t[3])]);
   CHECK(volume[1] > 1.2 * volume[0]);
 }
+
+TEST_CASE("two sheets in different parts that move towards each other in one pass do not cross") {
+  const Field balls = [](Vec3d p) {
+    return std::exp(-0.8 * (std::min(norm2(p - centre[0]), norm2(p - centre[1])) - 1.6 * 1.6));
+  };
+  const TetMesh mesh = lattice_mesh(balls, {0, 0, 0}, 0.5, 20, 1);
+  const Overlapping target;
+  Vec3d low{9, 9, 9}; // of the parts
+  for (const Vec3d& p : mesh.point)
+    for (int a = 0; a < 3; ++a)
+      low[a] = std::min(low[a], p[a]);
+  const double middle = (centre[0].x + centre[1].x) / 2;
+  TetMesh first;
+  for (const int threads : {1, 3}) {
+    improve::DynamicMesh m = improve::build(mesh, 180, threads);
+    improve::Schedule schedule(m, &target, middle - low.x, threads);
+    CHECK(schedule.settle(1, {180, 1e3, 2, 0}).moves > 50);
+    const TetMesh moved = improve::extract(m);
+    CHECK(find_crossings(moved.point, moved.tri, 1).pairs == 0);
+    double near[2] = {9, 9}; // of either ball to the plane between the parts
+    for (const Vec3d& p : moved.point)
+      near[p.x > middle] = std::min(near[p.x > middle], std::abs(p.x - middle));
+    CHECK(near[0] < 0.1);
+    CHECK(near[1] < 0.1);
+    if (threads == 1)
+      first = moved;
+    CHECK(moved.point == first.point);
+  }
+}
