@@ -1,5 +1,6 @@
-// reference_surface.cpp — hash grid of triangles and the closest point of one.
+// reference_surface.cpp — hash grids of triangles and the closest point of one.
 #include "improve/reference_surface.hpp"
+#include "improve/cell_levels.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
@@ -30,33 +31,33 @@ Vec3d closest_on(Vec3d a, Vec3d b, Vec3d c, Vec3d p) {
   return a + vb / (va + vb + vc) * ab + vc / (va + vb + vc) * ac;
 }
 
-struct CellRange {
-  int64_t low[3], high[3];
-};
-CellRange range(Vec3d low, Vec3d high, double cell) {
-  CellRange r;
-  for (int a = 0; a < 3; ++a) {
-    r.low[a] = static_cast<int64_t>(std::floor(low[a] / cell));
-    r.high[a] = static_cast<int64_t>(std::floor(high[a] / cell));
-  }
-  return r;
+// The mean of those up to four times the median: an outer surface may be thousands of times coarser.
+double typical(const std::vector<double>& edges) {
+  std::vector<double> sorted = edges;
+  const auto median = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), median, sorted.end());
+  double sum = 0, count = 0;
+  for (const double e : edges)
+    if (e <= 4 * *median)
+      sum += e, ++count;
+  return sum / count;
 }
 
 } // namespace
 
 ReferenceSurface::ReferenceSurface(const TetMesh& mesh, const std::vector<uint8_t>& take) {
-  double edges = 0;
+  std::vector<double> edges;
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
     if (!take[t])
       continue;
     const auto p = [&](size_t i) { return mesh.point[size_t(mesh.tri[t][i])]; };
     const Vec3d n = cross(p(1) - p(0), p(2) - p(0));
     triangle_.push_back({p(0), p(1), p(2), n / std::max(norm(n), 1e-300)});
-    edges += norm(p(1) - p(0)) + norm(p(2) - p(1)) + norm(p(0) - p(2));
+    edges.insert(edges.end(), {norm(p(1) - p(0)), norm(p(2) - p(1)), norm(p(0) - p(2))});
   }
   if (triangle_.empty())
     return;
-  const double edge = edges / (3. * double(triangle_.size()));
+  const double edge = typical(edges);
   spacing_ = 0.8 * edge; // a dual-contouring surface has edges of 1.2 h
   cell_ = std::max(edge, 1e-300);
   uint64_t buckets = 16;
@@ -72,11 +73,11 @@ ReferenceSurface::ReferenceSurface(const TetMesh& mesh, const std::vector<uint8_
         low[a] = std::min({x.a[a], x.b[a], x.c[a]});
         high[a] = std::max({x.a[a], x.b[a], x.c[a]});
       }
-      const CellRange r = range(low, high, cell_);
-      for (int64_t i = r.low[0]; i <= r.high[0]; ++i)
-        for (int64_t j = r.low[1]; j <= r.high[1]; ++j)
-          for (int64_t k = r.low[2]; k <= r.high[2]; ++k)
-            f(bucket(i, j, k), static_cast<int32_t>(t));
+      const int level = cell_level(low, high, cell_);
+      levels_ |= uint64_t{1} << level;
+      cell_range(low, high, cell_size(cell_, level)).for_each([&](int64_t i, int64_t j, int64_t k) {
+        f(bucket(cell_key(i, j, k, level)), static_cast<int32_t>(t));
+      });
     }
   };
   each([&](uint64_t b, int32_t) { ++begin_[b]; });
@@ -85,30 +86,24 @@ ReferenceSurface::ReferenceSurface(const TetMesh& mesh, const std::vector<uint8_
   each([&](uint64_t b, int32_t t) { entry_[size_t(next[b]++)] = t; });
 }
 
-uint64_t ReferenceSurface::bucket(int64_t x, int64_t y, int64_t z) const {
-  const uint64_t h =
-      uint64_t(x) * 0x9E3779B97F4A7C15u ^ uint64_t(y) * 0xC2B2AE3D27D4EB4Fu ^ uint64_t(z) * 0x165667B19E3779F9u;
-  return (h ^ h >> 29) & mask_;
-}
-
 bool ReferenceSurface::closest(Vec3d p, double reach, Vec3d& point, int32_t& triangle) const {
   double best = reach * reach;
   triangle = -1;
   if (triangle_.empty())
     return false;
-  const CellRange r = range(p - Vec3d{reach, reach, reach}, p + Vec3d{reach, reach, reach}, cell_);
-  for (int64_t i = r.low[0]; i <= r.high[0]; ++i)
-    for (int64_t j = r.low[1]; j <= r.high[1]; ++j)
-      for (int64_t k = r.low[2]; k <= r.high[2]; ++k) {
-        const uint64_t b = bucket(i, j, k);
-        for (int64_t x = begin_[b]; x < begin_[b + 1]; ++x) {
-          const int32_t t = entry_[size_t(x)];
-          const Vec3d q = closest_on(triangle_[size_t(t)].a, triangle_[size_t(t)].b, triangle_[size_t(t)].c, p);
-          const double d = norm2(q - p);
-          if (d < best || (d == best && triangle >= 0 && t < triangle))
-            best = d, point = q, triangle = t;
-        }
+  const Vec3d wide{reach, reach, reach};
+  for_levels(levels_, [&](int level) {
+    cell_range(p - wide, p + wide, cell_size(cell_, level)).for_each([&](int64_t i, int64_t j, int64_t k) {
+      const uint64_t b = bucket(cell_key(i, j, k, level));
+      for (int64_t x = begin_[b]; x < begin_[b + 1]; ++x) {
+        const int32_t t = entry_[size_t(x)];
+        const Vec3d q = closest_on(triangle_[size_t(t)].a, triangle_[size_t(t)].b, triangle_[size_t(t)].c, p);
+        const double d = norm2(q - p);
+        if (d < best || (d == best && triangle >= 0 && t < triangle))
+          best = d, point = q, triangle = t;
       }
+    });
+  });
   return triangle >= 0;
 }
 

@@ -71,13 +71,14 @@ void Schedule::set_parts(int shift, double cell) {
   static constexpr double stride[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
   for (int a = 0; a < 3; ++a)
     parts_.offset[size_t(a)] = shift * stride[a] - std::floor(shift * stride[a]);
+  const double most = std::clamp(16. * double(m_.point.size()), 1e6, 1e8); // memory as the points
   for (;; cell *= 2) {
     double cells = 1;
     for (int a = 0; a < 3; ++a) {
       parts_.n[size_t(a)] = static_cast<int64_t>((high[a] - low[a]) / cell) + 2;
       cells *= double(parts_.n[size_t(a)]);
     }
-    if (cells < 1e8)
+    if (cells <= most)
       break;
   }
   parts_.cell = cell;

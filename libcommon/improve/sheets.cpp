@@ -32,8 +32,10 @@ void Sheets::insert(const SheetTriangle& t) {
   triangle_.push_back(t);
   face_[uint64_t(t.face)] = id;
   ++alive_;
-  for_cells(t, [&](uint64_t key) {
-    int32_t& chain = chain_[key];
+  const int level = cell_level(t.low, t.high, cell_);
+  levels_ |= uint64_t{1} << level;
+  cells(t, level).for_each([&](int64_t i, int64_t j, int64_t k) {
+    int32_t& chain = chain_[cell_key(i, j, k, level)];
     link_.push_back({id, chain});
     chain = static_cast<int32_t>(link_.size() - 1);
   });

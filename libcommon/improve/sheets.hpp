@@ -1,7 +1,8 @@
-// sheets.hpp — the triangles where a mesh ends in a curved surface, by place: a hash grid of their boxes.
+// sheets.hpp — the triangles where a mesh ends in a curved surface, by place: hash grids of their boxes.
 // Nothing on the other side keeps such a triangle from crossing another sheet of the surface.
 #pragma once
 #include "geom/vec.hpp"
+#include "improve/cell_levels.hpp"
 #include "improve/open_table.hpp"
 #include <array>
 #include <cstdint>
@@ -25,7 +26,7 @@ SheetTriangle sheet_triangle(const std::vector<Vec3d>& point, std::array<int32_t
 
 class Sheets {
 public:
-  /// Cells of this size (Å).
+  /// Cells of this size (Å), larger ones for larger triangles.
   explicit Sheets(double cell) : cell_(cell) {}
   /// In place of what was known of that face.
   void insert(const SheetTriangle& t);
@@ -40,7 +41,8 @@ public:
   size_t records() const { return triangle_.size(); }
   const std::vector<SheetTriangle>& triangles() const { return triangle_; }
   size_t alive() const { return alive_; }
-  /// True as soon as f(triangle) is, over those whose cells t's box touches; some more than once.
+  size_t links() const { return link_.size(); } ///< of records to cells: 27 a record at most
+  /// True as soon as f(triangle) is, over all whose boxes t's meets, and others; some more than once.
   template <class F>
   bool any(const SheetTriangle& t, F&& f) const;
 
@@ -48,42 +50,37 @@ private:
   struct Link {
     int32_t triangle, next;
   };
-  template <class F>
-  void for_cells(const SheetTriangle& t, F&& f) const;
+  CellRange cells(const SheetTriangle& t, int level) const {
+    return cell_range(t.low, t.high, cell_size(cell_, level));
+  }
 
   double cell_;
   std::vector<SheetTriangle> triangle_;
   size_t alive_ = 0;
-  OpenTable chain_; ///< of a cell: its first link, -1: none; cells of one key share a chain
-  OpenTable face_;  ///< of a face: its triangle, -1: gone
+  uint64_t levels_ = 0; ///< a bit each where there are triangles
+  OpenTable chain_;     ///< of a cell: its first link, -1: none; cells of one key share a chain
+  OpenTable face_;      ///< of a face: its triangle, -1: gone
   std::vector<Link> link_;
 };
 
 template <class F>
-void Sheets::for_cells(const SheetTriangle& t, F&& f) const {
-  int64_t low[3], high[3];
-  for (int a = 0; a < 3; ++a) {
-    low[a] = static_cast<int64_t>(std::floor(double(t.low[a]) / cell_));
-    high[a] = static_cast<int64_t>(std::floor(double(t.high[a]) / cell_));
-  }
-  for (int64_t i = low[0]; i <= high[0]; ++i)
-    for (int64_t j = low[1]; j <= high[1]; ++j)
-      for (int64_t k = low[2]; k <= high[2]; ++k)
-        f(uint64_t(i) * 0x9E3779B97F4A7C15u + uint64_t(j) * 0xC2B2AE3D27D4EB4Fu +
-          uint64_t(k) * 0x165667B19E3779F9u);
-}
-
-template <class F>
 bool Sheets::any(const SheetTriangle& t, F&& f) const {
-  bool found = false;
+  bool found = false, all = false;
+  const auto visit = [&](const SheetTriangle& other) { found = found || (other.v[0] >= 0 && f(other)); };
   if (alive_ > 0)
-    for_cells(t, [&](uint64_t key) {
-      const int32_t* first = chain_.find(key);
-      for (int32_t c = first ? *first : -1; c >= 0 && !found; c = link_[size_t(c)].next) {
-        const SheetTriangle& other = triangle_[size_t(link_[size_t(c)].triangle)];
-        found = other.v[0] >= 0 && f(other);
-      }
+    for_levels(levels_, [&](int level) {
+      const CellRange range = cells(t, level);
+      all = all || range.count() > 27 + double(triangle_.size()); // one far larger than those
+      if (!all)
+        range.for_each([&](int64_t i, int64_t j, int64_t k) {
+          const int32_t* first = chain_.find(cell_key(i, j, k, level));
+          for (int32_t c = first ? *first : -1; c >= 0 && !found; c = link_[size_t(c)].next)
+            visit(triangle_[size_t(link_[size_t(c)].triangle)]);
+        });
     });
+  if (all)
+    for (const SheetTriangle& other : triangle_)
+      visit(other);
   return found;
 }
 

@@ -147,6 +147,40 @@ TEST_CASE("the reference surface gives the closest point of all its triangles") 
   }
 }
 
+TEST_CASE("far larger triangles around a fine surface take little memory and are found") {
+  const Field ball = [](Vec3d p) { return std::exp(-0.3 * (norm2(p - Vec3d{2.6, 2.5, 2.4}) - 1.44)); };
+  TetMesh mesh = lattice_mesh(ball, {0, 0, 0}, 0.5, 10, 1);
+  const size_t fine = mesh.tri.size();
+  const double far = 400; // an octahedron
+  const auto first = static_cast<int32_t>(mesh.point.size());
+  for (int a = 0; a < 3; ++a)
+    for (const double side : {-far, far}) {
+      Vec3d p{};
+      p[a] = side;
+      mesh.point.push_back(p);
+    }
+  for (int octant = 0; octant < 8; ++octant)
+    mesh.tri.push_back({first + (octant & 1), first + 2 + (octant >> 1 & 1), first + 4 + (octant >> 2)});
+  mesh.boundary.resize(mesh.tri.size(), surface);
+  const improve::ReferenceSurface surface(mesh, std::vector<uint8_t>(mesh.tri.size(), 1));
+  CHECK(surface.entries() <= 27 * mesh.tri.size());
+  CHECK(surface.spacing() < 0.6); // the ball's
+  // The octahedron is |x| + |y| + |z| = far.
+  for (int n = 0; n < 50; ++n) {
+    const Vec3d direction = random_point(),
+                on = far / (std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z)) * direction;
+    const Vec3d out =
+        Vec3d{direction.x < 0 ? -1. : 1., direction.y < 0 ? -1. : 1., direction.z < 0 ? -1. : 1.} / std::sqrt(3.);
+    Vec3d p = on + 0.1 * out;
+    REQUIRE(surface.project(p, 0.5));
+    CHECK(std::abs(dot(p - on, out)) < 1e-9);
+    const Tri& t = mesh.tri[size_t(n) * fine / 50];
+    Vec3d q = mesh.point[size_t(t[0])];
+    REQUIRE(surface.project(q, 0.5));
+    CHECK(norm(q - mesh.point[size_t(t[0])]) < 1e-9);
+  }
+}
+
 TEST_CASE("a mesh that is built and extracted is the same mesh") {
   const Field ball = [](Vec3d p) { return std::exp(-0.3 * (norm2(p - Vec3d{2.6, 2.5, 2.4}) - 1.44)); };
   const int keep = GENERATE(0, 1, 2);

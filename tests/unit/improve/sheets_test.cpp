@@ -66,6 +66,34 @@ TEST_CASE("sheets know the triangles that are there, and only those") {
   check(sheets);
 }
 
+TEST_CASE("sheets of any size take few cells and are found") {
+  improve::Sheets sheets(0.5);
+  std::vector<Vec3d> point;
+  std::vector<improve::SheetTriangle> all;
+  for (int64_t face = 0; face < 60; ++face) { // 0.5 to 250 Å
+    const double size = 0.5 * std::pow(500, double(face) / 59);
+    const auto v = static_cast<int32_t>(point.size());
+    const Vec3d p{7. * double(face % 4), 3. * double(face % 7), 0};
+    for (const Vec3d& corner : {p, p + size * Vec3d{1, 0.2, 0.1}, p + size * Vec3d{0.1, 0.9, 0.8}})
+      point.push_back(corner);
+    all.push_back(improve::sheet_triangle(point, {v, v + 1, v + 2}, face));
+    sheets.insert(all.back());
+  }
+  CHECK(sheets.links() <= 27 * all.size());
+  for (const improve::SheetTriangle& t : all) {
+    std::set<int64_t> expected, found;
+    for (const improve::SheetTriangle& o : all)
+      if (t.box_meets(o, 0))
+        expected.insert(o.face);
+    sheets.any(t, [&](const improve::SheetTriangle& o) {
+      if (t.box_meets(o, 0))
+        found.insert(o.face);
+      return false;
+    });
+    CHECK(found == expected);
+  }
+}
+
 namespace {
 
 const Vec3d centre[] = {{3.1, 4.6, 4.4}, {6.6, 4.55, 4.45}};
