@@ -1,5 +1,5 @@
 // cell_levels.hpp — boxes of any size in grids of cells: each in the grid whose cells fit it, so that a few cells
-// hold it. Level l has cells of 2^l times the size.
+// hold it. Level l has cells of 4^l times the size.
 #pragma once
 #include "geom/vec.hpp"
 #include <algorithm>
@@ -28,15 +28,20 @@ struct CellRange {
 };
 
 inline double cell_size(double cell, int level) {
-  return std::ldexp(cell, level);
+  return std::ldexp(cell, 2 * level);
+}
+
+inline int64_t cell_of(double place) {
+  constexpr double far = 4e18; // where differences still fit
+  return static_cast<int64_t>(std::clamp(std::floor(place), -far, far));
 }
 
 template <class T>
 CellRange cell_range(Vec3<T> low, Vec3<T> high, double size) {
   CellRange r;
   for (int a = 0; a < 3; ++a) {
-    r.low[size_t(a)] = static_cast<int64_t>(std::floor(double(low[a]) / size));
-    r.high[size_t(a)] = static_cast<int64_t>(std::floor(double(high[a]) / size));
+    r.low[size_t(a)] = cell_of(double(low[a]) / size);
+    r.high[size_t(a)] = cell_of(double(high[a]) / size);
   }
   return r;
 }

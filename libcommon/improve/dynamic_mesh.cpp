@@ -153,7 +153,23 @@ void set_directions(DynamicMesh& m, const TetMesh& mesh, const std::vector<int64
 
 } // namespace
 
+void require_size(int64_t elements, int64_t triangles, int64_t points) {
+  if (points > INT32_MAX)
+    fail_input("over 2^31 - 1 points, expected fewer");
+  if (4 * elements + triangles > UINT32_MAX || triangles > INT32_MAX)
+    fail_input(std::to_string(elements) + " tetrahedra and " + std::to_string(triangles) +
+               " triangles, expected their faces to be fewer than 2^32");
+}
+
+void require_slots(int64_t elements, int64_t vertices) {
+  if (elements > INT32_MAX || vertices > INT32_MAX)
+    fail(Status::failed, "the mesh and what it may grow by take " + std::to_string(elements) + " elements and " +
+                             std::to_string(vertices) + " points, expected fewer than 2^31");
+}
+
 DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
+  require_size(static_cast<int64_t>(mesh.tet.size()), static_cast<int64_t>(mesh.tri.size()),
+               static_cast<int64_t>(mesh.point.size()));
   DynamicMesh m;
   m.point = mesh.point;
   m.vertex.resize(m.point.size());

@@ -66,10 +66,16 @@ struct DynamicMesh {
   }
 };
 
+// Indices are 32-bit, and faces and triangles are grouped together, 2^32 - 1 of them at most. Each throws one clear
+// line where that does not hold.
+void require_size(int64_t elements, int64_t triangles,
+                  int64_t points);                      ///< of a mesh that came in: Error(bad_input)
+void require_slots(int64_t elements, int64_t vertices); ///< of one that grows: Error(failed)
+
 /// Edges of a curved label that bend by more than `sharp` degrees are kept: their ends are fixed.
 /// Throws Error(bad_input) naming the first element, face or triangle that makes the mesh no valid one:
-/// non-positive volume by exact sign, a face with three elements, two elements on one side of a face, triangles
-/// that are not exactly the faces between regions and on the outside.
+/// more than require_size allows, non-positive volume by exact sign, a face with three elements, two elements on
+/// one side of a face, triangles that are not exactly the faces between regions and on the outside.
 DynamicMesh build(const TetMesh& mesh, double sharp, int threads);
 
 /// Elements, vertices and triangles in slot order, unused slots squeezed out; triangles point as they did.

@@ -72,16 +72,12 @@ void Schedule::set_parts(int shift, double cell) {
   for (int a = 0; a < 3; ++a)
     parts_.offset[size_t(a)] = shift * stride[a] - std::floor(shift * stride[a]);
   const double most = std::clamp(16. * double(m_.point.size()), 1e6, 1e8); // memory as the points
-  for (;; cell *= 2) {
-    double cells = 1;
-    for (int a = 0; a < 3; ++a) {
-      parts_.n[size_t(a)] = static_cast<int64_t>((high[a] - low[a]) / cell) + 2;
-      cells *= double(parts_.n[size_t(a)]);
-    }
-    if (cells <= most)
-      break;
-  }
+  const auto cells = [&](int a) { return std::floor((high[a] - low[a]) / cell) + 2; };
+  while (cells(0) * cells(1) * cells(2) > most)
+    cell *= 2;
   parts_.cell = cell;
+  for (int a = 0; a < 3; ++a)
+    parts_.n[size_t(a)] = static_cast<int64_t>(cells(a));
   parts_.owner.resize(m_.point.size());
   par::for_n(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
     parts_.owner[size_t(v)] = m_.incident[size_t(v)] >= 0 ? parts_.at(m_.point[size_t(v)]) : -1;
@@ -127,6 +123,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     size_t element_size = m_.element.size(), vertex_size = m_.point.size();
     reserve(free_element_, job.room.element, elements, element_size);
     reserve(free_vertex_, job.room.vertex, vertices, vertex_size);
+    require_slots(static_cast<int64_t>(element_size), static_cast<int64_t>(vertex_size));
     m_.element.resize(element_size);
     m_.point.resize(vertex_size);
     m_.vertex.resize(vertex_size);

@@ -1,5 +1,6 @@
 // sheets.cpp — chains of triangles by cell, and where each face's triangle is.
 #include "improve/sheets.hpp"
+#include "error.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -27,6 +28,8 @@ SheetTriangle sheet_triangle(const std::vector<Vec3d>& point, std::array<int32_t
 }
 
 void Sheets::insert(const SheetTriangle& t) {
+  if (link_.size() + 27 > INT32_MAX)
+    fail(Status::failed, "too many surface triangles to keep from crossing each other");
   erase(t.face);
   const auto id = static_cast<int32_t>(triangle_.size());
   triangle_.push_back(t);
