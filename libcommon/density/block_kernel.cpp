@@ -1,5 +1,6 @@
 // block_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "density/block_kernel.hpp"
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "density/block_kernel.cpp"
@@ -13,56 +14,72 @@ namespace HWY_NAMESPACE {
 namespace {
 
 struct One {
-  HWY_INLINE V operator()(V t) const { return t; }
+  template <class D, class V>
+  HWY_INLINE V operator()(D, V t) const {
+    return t;
+  }
 };
 struct Half {
-  HWY_INLINE V operator()(V t) const { return twice_square_root(t); } // half of it is in the last row
+  template <class D, class V>
+  HWY_INLINE V operator()(D d, V t) const {
+    return twice_square_root(d, t); // half of it is in the scale
+  }
 };
 struct Two {
-  HWY_INLINE V operator()(V t) const { return hn::Mul(t, t); }
+  template <class D, class V>
+  HWY_INLINE V operator()(D, V t) const {
+    return hn::Mul(t, t);
+  }
 };
+template <class T>
 struct Any {
-  V p;
-  HWY_INLINE V operator()(V t) const { return exp2(hn::Mul(p, log2(t))); }
+  T p;
+  template <class D, class V>
+  HWY_INLINE V operator()(D d, V t) const {
+    return exp2(d, hn::Mul(hn::Set(d, p), log2(d, t)));
+  }
 };
-
-/// Tiles of the 8 × 64 points that keep their sums in registers.
-constexpr int32_t tile_i = lanes == 16 ? 4 : 2, tile_v = lanes == 1 ? 8 : 4;
 
 /// put(i, v, t): t = `least` + Σ x·yz over n rows, at point i of x and the points of yz from v on. x: [8·n] factors
 /// of the x axis, yz: [64·n] products of the other two.
-template <class Put>
-HWY_INLINE void for_sums(const float* x, const float* yz, int32_t n, float least, Put&& put) {
-  for (int32_t v0 = 0; v0 < 64; v0 += tile_v * lanes)
+template <class T, class Put>
+HWY_INLINE void for_sums(const T* x, const T* yz, int32_t n, T least, Put&& put) {
+  constexpr Tag<T> d{};
+  // Tiles of the 8 × 64 points that keep their sums in registers.
+  constexpr int32_t wide = lanes_of<T>, tile_i = HWY_TARGET <= HWY_AVX3 ? 4 : 2, tile_v = wide == 1 ? 8 : 4;
+  for (int32_t v0 = 0; v0 < 64; v0 += tile_v * wide)
     for (int32_t i0 = 0; i0 < 8; i0 += tile_i) {
-      V t[tile_i][tile_v];
+      hn::Vec<Tag<T>> t[tile_i][tile_v];
       for (int32_t i = 0; i < tile_i; ++i)
         for (int32_t v = 0; v < tile_v; ++v)
-          t[i][v] = hn::Set(f, least);
+          t[i][v] = hn::Set(d, least);
       for (int32_t a = 0; a < n; ++a) {
-        V row[tile_v];
+        hn::Vec<Tag<T>> row[tile_v];
         for (int32_t v = 0; v < tile_v; ++v)
-          row[v] = hn::LoadU(f, yz + 64 * a + v0 + lanes * v);
+          row[v] = hn::LoadU(d, yz + 64 * a + v0 + wide * v);
         for (int32_t i = 0; i < tile_i; ++i) {
-          const V xi = hn::Set(f, x[8 * a + i0 + i]);
+          const auto xi = hn::Set(d, x[8 * a + i0 + i]);
           for (int32_t v = 0; v < tile_v; ++v)
             t[i][v] = hn::MulAdd(xi, row[v], t[i][v]);
         }
       }
       for (int32_t i = 0; i < tile_i; ++i)
         for (int32_t v = 0; v < tile_v; ++v)
-          put(i0 + i, v0 + lanes * v, t[i][v]);
+          put(i0 + i, v0 + wide * v, t[i][v]);
     }
 }
 
-/// What multiplies the power is `scale`, or a row more when not direct.
-template <bool direct, class Power>
-HWY_INLINE void accumulate(const float* x, const float* yz, int32_t n, Power power, float scale, float* sum) {
-  for_sums(x, yz, n, 0, [&](int32_t i, int32_t v, V t) {
-    const V xi = hn::Set(f, direct ? scale : x[8 * n + i]),
-            outer = direct ? xi : hn::Mul(xi, hn::LoadU(f, yz + 64 * n + v));
-    float* const to = sum + 64 * i + v;
-    hn::StoreU(hn::MulAdd(power(t), outer, hn::LoadU(f, to)), f, to);
+/// What multiplies the power is `scale`, and a row more when not direct.
+template <bool direct, class T, class Power>
+HWY_INLINE void accumulate(const T* x, const T* yz, int32_t n, Power power, T scale, T* sum) {
+  constexpr Tag<T> d{};
+  const auto everywhere = hn::Set(d, scale);
+  for_sums(x, yz, n, T{0}, [&](int32_t i, int32_t v, hn::Vec<Tag<T>> t) {
+    T* const to = sum + 64 * i + v;
+    auto s = power(d, t);
+    if (!direct)
+      s = hn::Mul(s, hn::Mul(hn::Set(d, x[8 * n + i]), hn::LoadU(d, yz + 64 * n + v)));
+    hn::StoreU(hn::MulAdd(s, everywhere, hn::LoadU(d, to)), d, to);
   });
 }
 
@@ -77,43 +94,58 @@ HWY_INLINE void accumulate_roots(const float* x, const float* yz, int32_t n, flo
   });
 }
 
-template <bool direct>
-HWY_INLINE void add_unit(const BlockUnits& u, const BlockRows& rows, int32_t n, float* sum) {
-  const auto s = static_cast<size_t>(n);
-  const auto row = static_cast<size_t>(u.begin[s] + (direct ? 0 : n));
+template <bool direct, class T>
+HWY_INLINE void add_unit(const UnitsOf<T>& u, const BlockRows<T>& rows, size_t s, T* sum) {
+  const size_t row = static_cast<size_t>(u.begin[s]) + (direct ? 0 : s);
   const int32_t atoms = u.begin[s + 1] - u.begin[s];
-  const float *const x = &rows.x[8 * row], *const yz = &rows.yz[64 * row], p = u.exponent[s],
-                     scale = direct ? rows.scale[s] : 1;
-  if (direct && u.folded && p == 0.5f)
-    u.root[s] > 0 ? accumulate_roots<true>(x, yz, atoms, sum) : accumulate_roots<false>(x, yz, atoms, sum);
-  else if (p == 1.0f)
+  const T *const x = &rows.x[8 * row], *const yz = &rows.yz[64 * row], p = u.exponent[s], scale = rows.scale[s];
+  if (p == 1)
     accumulate<direct>(x, yz, atoms, One{}, scale, sum);
-  else if (p == 0.5f)
+  else if (p == T{0.5})
     accumulate<direct>(x, yz, atoms, Half{}, scale, sum);
-  else if (p == 2.0f)
+  else if (p == 2)
     accumulate<direct>(x, yz, atoms, Two{}, scale, sum);
   else
-    accumulate<direct>(x, yz, atoms, Any{hn::Set(f, p)}, scale, sum);
+    accumulate<direct>(x, yz, atoms, Any<T>{p}, scale, sum);
 }
 
-void add_units_simd(const BlockUnits& u, const BlockRows& rows, int32_t first, int32_t last, float* sum) {
-  for (int32_t n = first; n < last; ++n)
-    u.direct ? add_unit<true>(u, rows, n, sum) : add_unit<false>(u, rows, n, sum);
+HWY_INLINE void add_folded_root(const BlockUnits& u, const BlockRows<float>& rows, size_t s, float* sum) {
+  const auto row = static_cast<size_t>(u.begin[s]);
+  const int32_t atoms = u.begin[s + 1] - u.begin[s];
+  const float *const x = &rows.x[8 * row], *const yz = &rows.yz[64 * row];
+  u.root[s] > 0 ? accumulate_roots<true>(x, yz, atoms, sum) : accumulate_roots<false>(x, yz, atoms, sum);
 }
 
-void sum_units_simd(const BlockUnits& u, const BlockRows& rows, float start, float* sum) {
-  for (int32_t i = 0; i < 512; i += lanes)
-    hn::StoreU(hn::Set(f, start), f, sum + i);
-  add_units_simd(u, rows, 0, u.n, sum);
+void add_units_simd(const BlockUnits& u, const BlockRows<float>& rows, int32_t first, int32_t last, float* sum) {
+  for (auto s = static_cast<size_t>(first); s < static_cast<size_t>(last); ++s)
+    if (u.folded && u.exponent[s] == 0.5f)
+      add_folded_root(u, rows, s, sum);
+    else
+      u.direct ? add_unit<true>(u, rows, s, sum) : add_unit<false>(u, rows, s, sum);
+}
+
+void add_exact_units_simd(const ExactUnits& u, const BlockRows<double>& rows, int32_t first, int32_t last,
+                          double* sum) {
+  for (auto s = static_cast<size_t>(first); s < static_cast<size_t>(last); ++s)
+    add_unit<false>(u, rows, s, sum);
+}
+
+template <class T>
+HWY_INLINE void raise(T p, T* from, T* to) {
+  constexpr Tag<T> d{};
+  const auto least = hn::Set(d, std::numeric_limits<T>::min());
+  for (int32_t i = 0; i < 512; i += lanes_of<T>) {
+    const auto v = hn::LoadU(d, from + i), power = exp2(d, hn::Mul(hn::Set(d, p), log2(d, hn::Max(v, least))));
+    hn::StoreU(hn::Add(hn::LoadU(d, to + i), hn::IfThenElseZero(hn::Gt(v, least), power)), d, to + i);
+    hn::StoreU(hn::Zero(d), d, from + i);
+  }
 }
 
 void raise_group_simd(float p, float* from, float* to) {
-  for (int32_t i = 0; i < 512; i += lanes) {
-    const V v = hn::LoadU(f, from + i), least = hn::Set(f, 1.2e-38f);
-    const V power = hn::IfThenElseZero(hn::Gt(v, least), exp2(hn::Mul(hn::Set(f, p), log2(hn::Max(v, least)))));
-    hn::StoreU(hn::Add(hn::LoadU(f, to + i), power), f, to + i);
-    hn::StoreU(hn::Zero(f), f, from + i);
-  }
+  raise(p, from, to);
+}
+void raise_exact_group_simd(double p, double* from, double* to) {
+  raise(p, from, to);
 }
 
 float rough_root_error_simd() {
@@ -133,19 +165,23 @@ HWY_AFTER_NAMESPACE();
 namespace molmesh::density {
 
 HWY_EXPORT(add_units_simd);
-HWY_EXPORT(sum_units_simd);
+HWY_EXPORT(add_exact_units_simd);
 HWY_EXPORT(raise_group_simd);
+HWY_EXPORT(raise_exact_group_simd);
 HWY_EXPORT(rough_root_error_simd);
 HWY_EXPORT(instruction_set_name);
 
-void add_units(const BlockUnits& units, const BlockRows& rows, int32_t first, int32_t last, float* sum) {
+void add_units(const BlockUnits& units, const BlockRows<float>& rows, int32_t first, int32_t last, float* sum) {
   HWY_DYNAMIC_DISPATCH(add_units_simd)(units, rows, first, last, sum);
 }
-void sum_units(const BlockUnits& units, const BlockRows& rows, float start, float* sum) {
-  HWY_DYNAMIC_DISPATCH(sum_units_simd)(units, rows, start, sum);
+void add_units(const ExactUnits& units, const BlockRows<double>& rows, int32_t first, int32_t last, double* sum) {
+  HWY_DYNAMIC_DISPATCH(add_exact_units_simd)(units, rows, first, last, sum);
 }
 void raise_group(float p, float* from, float* to) {
   HWY_DYNAMIC_DISPATCH(raise_group_simd)(p, from, to);
+}
+void raise_group(double p, double* from, double* to) {
+  HWY_DYNAMIC_DISPATCH(raise_exact_group_simd)(p, from, to);
 }
 float rough_root_error() {
   return HWY_DYNAMIC_DISPATCH(rough_root_error_simd)();

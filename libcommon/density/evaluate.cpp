@@ -1,4 +1,4 @@
-// evaluate.cpp — separable sums per unit, powers, sums of the groups above.
+// evaluate.cpp — the units of a block summed and raised, up the levels.
 #include "density/evaluate.hpp"
 #include "density/block_kernel.hpp"
 #include <algorithm>
@@ -31,169 +31,95 @@ private:
 };
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr int edge = 8, points = 512;
-
-/// start·ratio^i for the eight points of an axis.
-void geometric(double start, double ratio, double* out) {
-  for (int i = 0; i < edge; ++i, start *= ratio)
-    out[i] = start;
-}
-
-/// T of a unit at every point.
-void sum_atoms(const Selection& s, const Unit& u, double decay, double h, double* T) {
-  std::fill_n(T, points, 0.0);
-  double ex[edge], ey[edge], ez[edge], eyz[edge * edge];
-  for (auto a = static_cast<size_t>(u.begin); a < static_cast<size_t>(u.end); ++a) {
-    const double step = 2 * decay * h;
-    const double tx = step * s.offset_x[a], ty = step * s.offset_y[a], tz = step * s.offset_z[a];
-    geometric(std::exp(s.ln_weight[a] - 3.5 * tx), std::exp(tx), ex);
-    geometric(std::exp(-3.5 * ty), std::exp(ty), ey);
-    geometric(std::exp(-3.5 * tz), std::exp(tz), ez);
-    for (int j = 0; j < edge; ++j)
-      for (int k = 0; k < edge; ++k)
-        eyz[8 * j + k] = ey[j] * ez[k];
-    for (int i = 0; i < edge; ++i)
-      for (int jk = 0; jk < 64; ++jk)
-        T[64 * i + jk] += ex[i] * eyz[jk];
-  }
-}
-
-/// ln of what T is multiplied with in S, at point i of an axis; times P.
-void quadratic(const Unit& u, double decay, Vec3d middle, double h, int axis, double* q) {
-  for (int i = 0; i < edge; ++i) {
-    const double d = (i - 3.5) * h;
-    q[i] = -u.exponent * decay * (2 * d * (middle[axis] - u.centroid[axis]) + d * d);
-  }
-}
-
-/// sum += (S)^P at every point.
-void add_power(const Unit& u, double decay, Vec3d middle, double h, const double* T, double* sum) {
-  double q[3][edge], qyz[64], eyz[64];
-  double widest = std::abs(u.exponent * u.ln_center);
-  for (int axis = 0; axis < 3; ++axis) {
-    quadratic(u, decay, middle, h, axis, q[axis]);
-    for (const double v : q[axis])
-      widest = std::max(widest, std::abs(v));
-  }
-  const bool separable = widest < 200; // then no factor leaves what a double holds
-  for (double& v : q[0])
-    v += u.exponent * u.ln_center;
-  for (int j = 0; j < edge; ++j)
-    for (int k = 0; k < edge; ++k) {
-      qyz[8 * j + k] = q[1][j] + q[2][k];
-      eyz[8 * j + k] = separable ? std::exp(qyz[8 * j + k]) : 0;
-    }
-  const auto p = u.exponent;
-  for (int i = 0; i < edge; ++i) {
-    const double ex = separable ? std::exp(q[0][i]) : 0;
-    double* const to = sum + 64 * i;
-    const double* const t = T + 64 * i;
-    if (separable && p == 1)
-      for (int jk = 0; jk < 64; ++jk)
-        to[jk] += ex * eyz[jk] * t[jk];
-    else if (separable && p == 0.5)
-      for (int jk = 0; jk < 64; ++jk)
-        to[jk] += ex * eyz[jk] * std::sqrt(t[jk]);
-    else
-      for (int jk = 0; jk < 64; ++jk)
-        to[jk] += std::exp(q[0][i] + qyz[jk] + p * std::log(t[jk]));
-  }
-}
+constexpr int points = 512;
 
 } // namespace
 
-void Evaluator::in_single(const Field& f, const Selection& s, double h, float* out) {
-  constexpr double log2e = std::numbers::log2e;
+/// out: G from the units and their factors.
+template <class T, class Units>
+void Evaluator::sum(const Field& f, const Selection& s, const Units& u, const BlockShape<T>& shape,
+                    Scratch<T>& scratch, T* out) {
   [[maybe_unused]] const FlushSubnormals flush;
-  const BlockUnits& u = s.block_units;
-  const double step = 2 * f.decay * h * log2e;
-  BlockShape shape{{}, static_cast<float>(step), static_cast<float>(-0.5 * step * h)};
-  std::copy_n(s.box.middle, 3, shape.middle);
-  const auto rows = static_cast<size_t>(s.atoms + s.units);
-  rows_.x.resize(std::max(rows_.x.size(), 8 * rows));
-  rows_.yz.resize(std::max(rows_.yz.size(), 64 * rows));
-  rows_.scale.resize(std::max(rows_.scale.size(), static_cast<size_t>(s.units) + 16));
-  make_rows(u, shape, rows_);
-  const auto start = static_cast<float>(s.added);
+  BlockRows<T>& rows = scratch.rows;
+  const auto n = static_cast<size_t>(s.atoms + s.units);
+  rows.x.resize(std::max(rows.x.size(), 8 * n));
+  rows.yz.resize(std::max(rows.yz.size(), 64 * n));
+  rows.scale.resize(std::max(rows.scale.size(), static_cast<size_t>(s.units) + 16));
+  make_rows(u, shape, rows);
+  std::fill_n(out, points, static_cast<T>(s.added));
   OpenGroups groups(f);
-  if (groups.levels() == 1) {
-    sum_units(u, rows_, start, out);
-  } else {
-    std::fill_n(out, points, start);
-    single_.assign(groups.levels() * points, 0.0f); // [l]: the open group of level l
-    const auto sum_of = [&](size_t l) { return l < groups.levels() ? &single_[l * points] : out; };
-    const auto close = [&](size_t l, int64_t g) {
-      raise_group(static_cast<float>(f.level[l].exponent[static_cast<size_t>(g)]), sum_of(l), sum_of(l + 1));
-    };
-    for (int32_t n = 0; n < u.n; ++n) {
-      groups.enter(s.group_of(n), close);
-      add_units(u, rows_, n, n + 1, sum_of(1));
-    }
-    groups.finish(close);
-  }
-}
-
-void Evaluator::in_double(const Field& f, const Selection& s, Vec3d middle, double h, float* out) {
-  OpenGroups groups(f);
-  double_.assign((groups.levels() + 1) * points, 0.0); // [0]: G, [l]: the open group of level l, last: T
-  double* const T = &double_[groups.levels() * points];
+  if (groups.levels() == 1)
+    return add_units(u, rows, 0, u.n, out);
+  scratch.level.assign(groups.levels() * points, 0);
+  const auto sum_of = [&](size_t l) { return l < groups.levels() ? &scratch.level[l * points] : out; };
   const auto close = [&](size_t l, int64_t g) {
-    const double p = f.level[l].exponent[static_cast<size_t>(g)];
-    double* const from = &double_[l * points];
-    double* const to = l + 1 < groups.levels() ? from + points : double_.data();
-    for (int i = 0; i < points; ++i)
-      to[i] += p == 1 ? from[i] : std::pow(from[i], p);
-    std::fill_n(from, points, 0.0);
+    raise_group(static_cast<T>(f.level[l].exponent[static_cast<size_t>(g)]), sum_of(l), sum_of(l + 1));
   };
-  for (const Unit& u : s.unit) {
-    groups.enter(u.group, close);
-    sum_atoms(s, u, f.decay, h, T);
-    add_power(u, f.decay, middle, h, T, groups.levels() > 1 ? &double_[points] : double_.data());
+  for (int32_t i = 0; i < u.n; ++i) {
+    groups.enter(s.group_of(i), close);
+    add_units(u, rows, i, i + 1, sum_of(1));
   }
   groups.finish(close);
-  for (int i = 0; i < points; ++i)
-    out[i] = static_cast<float>(double_[static_cast<size_t>(i)] + s.added);
 }
 
-void Evaluator::by_logarithms(const Field& f, const Selection& s, Vec3d middle, double h, float* out) {
+void Evaluator::in_single(const Field& f, const Selection& s, double h, float* out) {
+  const double step = 2 * f.decay * h * std::numbers::log2e;
+  BlockShape<float> shape{{}, static_cast<float>(step), static_cast<float>(-0.5 * step * h)};
+  std::copy_n(s.box.middle, 3, shape.middle);
+  sum(f, s, s.block_units, shape, single_, out);
+}
+
+void Evaluator::in_double(const Field& f, const Selection& s, double h, float* out) {
+  const double step = 2 * f.decay * h * std::numbers::log2e;
+  exact_.resize(points);
+  sum(f, s, s.exact_units, BlockShape<double>{{}, step, -0.5 * step * h}, double_, exact_.data());
+  std::copy_n(exact_.begin(), points, out);
+}
+
+void Evaluator::by_logarithms(const Field& f, const Selection& s, double h, float* out) {
+  constexpr double ln2 = std::numbers::ln2;
+  const ExactUnits& units = s.exact_units;
   OpenGroups groups(f);
   std::vector<double> open(groups.levels());
   for (int point = 0; point < points; ++point) {
-    const Vec3d d = h * Vec3d{(point >> 6) - 3.5, (point >> 3 & 7) - 3.5, (point & 7) - 3.5};
+    const Vec3d at{(point >> 6) - 3.5, (point >> 3 & 7) - 3.5, (point & 7) - 3.5}, d = h * at;
     std::fill(open.begin(), open.end(), -infinity);
     const auto close = [&](size_t l, int64_t g) {
       double& to = l + 1 < open.size() ? open[l + 1] : open[0];
       to = log_add(to, f.level[l].exponent[static_cast<size_t>(g)] * open[l]);
       open[l] = -infinity;
     };
-    for (const Unit& u : s.unit) {
-      groups.enter(u.group, close);
+    for (int32_t n = 0; n < units.n; ++n) {
+      const auto u = static_cast<size_t>(n);
+      groups.enter(s.group_of(n), close);
       double top = -infinity, sum = 0;
       const auto term = [&](size_t a) {
-        return s.ln_weight[a] + 2 * f.decay * (d.x * s.offset_x[a] + d.y * s.offset_y[a] + d.z * s.offset_z[a]);
+        return ln2 * (units.atom_constant[a] + dot(at, Vec3d{units.atom_x[a], units.atom_y[a], units.atom_z[a]}));
       };
-      for (auto a = static_cast<size_t>(u.begin); a < static_cast<size_t>(u.end); ++a)
+      const auto begin = static_cast<size_t>(units.begin[u]), end = static_cast<size_t>(units.begin[u + 1]);
+      for (size_t a = begin; a < end; ++a)
         top = std::max(top, term(a));
-      for (auto a = static_cast<size_t>(u.begin); a < static_cast<size_t>(u.end); ++a)
+      for (size_t a = begin; a < end; ++a)
         sum += std::exp(term(a) - top);
+      const Vec3d center{units.x[u], units.y[u], units.z[u]};
       const double ln_sum =
-          top + std::log(sum) + u.ln_center - f.decay * (2 * dot(d, middle - u.centroid) + norm2(d));
+          top + std::log(sum) + ln2 * units.log2_term[u] + f.decay * (2 * dot(d, center) - norm2(d));
       double& to = open.size() > 1 ? open[1] : open[0];
-      to = log_add(to, u.exponent * ln_sum);
+      to = log_add(to, units.exponent[u] * ln_sum);
     }
     groups.finish(close);
     out[point] = static_cast<float>(std::exp(open[0]) + s.added);
   }
 }
 
-void Evaluator::evaluate(const Field& f, const Selection& s, Vec3d middle, double h, float* out) {
+void Evaluator::evaluate(const Field& f, const Selection& s, double h, float* out) {
   switch (s.arithmetic) {
   case Arithmetic::in_single:
     return in_single(f, s, h, out);
   case Arithmetic::in_double:
-    return in_double(f, s, middle, h, out);
+    return in_double(f, s, h, out);
   case Arithmetic::in_logarithms:
-    return by_logarithms(f, s, middle, h, out);
+    return by_logarithms(f, s, h, out);
   }
 }
 

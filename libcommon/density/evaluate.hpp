@@ -8,16 +8,24 @@ namespace molmesh::density {
 /// Scratch of one thread.
 class Evaluator {
 public:
-  /// middle: Å, of the block's points, spaced h. out[512]: slot 64·i + 8·j + k.
-  void evaluate(const Field& f, const Selection& s, Vec3d middle, double h, float* out);
+  /// h: Å, between the block's points. out[512]: slot 64·i + 8·j + k.
+  void evaluate(const Field& f, const Selection& s, double h, float* out);
 
 private:
+  template <class T>
+  struct Scratch {
+    BlockRows<T> rows;
+    Numbers<T> level; ///< [512 l]: the open group of level l
+  };
+  template <class T, class Units>
+  void sum(const Field& f, const Selection& s, const Units& u, const BlockShape<T>& shape, Scratch<T>& scratch,
+           T* out);
   void in_single(const Field& f, const Selection& s, double h, float* out);
-  void in_double(const Field& f, const Selection& s, Vec3d middle, double h, float* out);
-  void by_logarithms(const Field& f, const Selection& s, Vec3d middle, double h, float* out);
-  BlockRows rows_;
-  Floats single_;
-  std::vector<double> double_;
+  void in_double(const Field& f, const Selection& s, double h, float* out);
+  void by_logarithms(const Field& f, const Selection& s, double h, float* out);
+  Scratch<float> single_;
+  Scratch<double> double_;
+  Numbers<double> exact_;
 };
 
 } // namespace molmesh::density

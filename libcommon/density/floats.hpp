@@ -1,4 +1,4 @@
-// floats.hpp — arrays of floats for the kernels. They begin on a cache line, so that no vector of 16 lies on two.
+// floats.hpp — arrays of numbers for the kernels. They begin on a cache line, so that no vector of 16 lies on two.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -23,6 +23,8 @@ private:
   static constexpr std::align_val_t line{64};
 };
 
-using Floats = std::vector<float, LineAllocator<float>>;
+template <class T>
+using Numbers = std::vector<T, LineAllocator<T>>;
+using Floats = Numbers<float>;
 
 } // namespace molmesh::density

@@ -55,7 +55,7 @@ NodeSearch::NodeSearch(const Field& f, const GridFrame& frame, const SearchOptio
 
 /// Values of a block from the selection made for it, not rounded.
 void NodeSearch::evaluate(Vec3i corner, Workspace& w, float* value) const {
-  w.evaluator.evaluate(f_, w.selection, middle_of(corner, 1), frame_.spacing, value);
+  w.evaluator.evaluate(f_, w.selection, frame_.spacing, value);
   ++w.counts.blocks_evaluated;
   w.counts.group_visits += w.selection.units;
   w.counts.atom_visits += w.selection.atoms;

@@ -13,14 +13,54 @@ namespace molmesh::density {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// log2 of what multiplies T^p everywhere. Half{} gives twice the square root.
-HWY_INLINE V log2_scale(V p, V log2_term) {
-  return hn::MulSub(p, log2_term, hn::IfThenElseZero(hn::Eq(p, hn::Set(f, 0.5f)), hn::Set(f, 1.0f)));
-}
+template <class T>
+struct Bend {
+  explicit Bend(T c) : curvature(c) {}
+  T curvature;
+};
+
+/// Rows of as many atoms as a vector holds.
+template <class T>
+class Rows {
+public:
+  using D = Tag<T>;
+  using V = hn::Vec<D>;
+  Rows(V x, V y, V z, V constant) {
+    hn::Store(x, D(), x_);
+    hn::Store(y, D(), y_);
+    hn::Store(z, D(), z_);
+    hn::Store(constant, D(), constant_);
+  }
+  template <bool bent>
+  void write(int32_t row, const Bend<T>& bend, T* x, T* yz) const {
+    T y[8];
+    const auto q = hn::Set(d8, bent ? bend.curvature : 0);
+    const auto factors = [&](int32_t l, T slope, T constant) {
+      const auto t = hn::Add(hn::Iota(d8, static_cast<T>(l)), hn::Set(d8, T{-3.5}));
+      return exp2(d8, hn::MulAdd(hn::MulAdd(q, t, hn::Set(d8, slope)), t, hn::Set(d8, constant)));
+    };
+    for (int32_t l = 0; l < 8; l += lanes8) {
+      hn::StoreU(factors(l, x_[row], constant_[row]), d8, x + l);
+      hn::StoreU(factors(l, y_[row], 0), d8, y + l);
+    }
+    for (int32_t l = 0; l < 8; l += lanes8) {
+      const auto z = factors(l, z_[row], 0);
+      for (int32_t j = 0; j < 8; ++j)
+        hn::StoreU(hn::Mul(hn::Set(d8, y[j]), z), d8, yz + 8 * j + l);
+    }
+  }
+
+private:
+  using D8 = hn::CappedTag<T, 8>;
+  static constexpr D8 d8{};
+  static constexpr int32_t lanes8 = HWY_MIN(8, lanes_of<T>);
+  HWY_ALIGN T x_[lanes_of<T>], y_[lanes_of<T>], z_[lanes_of<T>], constant_[lanes_of<T>];
+};
 
 #if HWY_TARGET <= HWY_AVX3
 /// What bends the exponents of a row: 2^(curvature·t²) along x, and y times z.
-struct Bend {
+template <>
+struct Bend<float> {
   explicit Bend(float curvature) {
     alignas(64) static constexpr float steps[16] = {-3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f,
                                                     -3.5f, -2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f};
@@ -37,7 +77,8 @@ struct Bend {
 
 /// Rows of 16 atoms. An exponent that is linear along an axis makes a geometric series: its terms r^(i - 4) are
 /// products of r, r² and r⁻⁴, of those that the bits of i choose.
-class Rows {
+template <>
+class Rows<float> {
 public:
   Rows(V x, V y, V z, V constant) {
     const V half = hn::Set(f, 0.5f);
@@ -48,7 +89,7 @@ public:
     keep_powers(z, z_);
   }
   template <bool bent>
-  void write(int32_t row, const Bend& bend, float* x, float* yz) const {
+  void write(int32_t row, const Bend<float>& bend, float* x, float* yz) const {
     __m256 tx = _mm256_set1_ps(start_x_[row]);
     tx = _mm256_mask_mul_ps(tx, 0xaa, tx, _mm256_set1_ps(x_[0][row]));
     tx = _mm256_mask_mul_ps(tx, 0xcc, tx, _mm256_set1_ps(x_[1][row]));
@@ -76,92 +117,68 @@ private:
   }
   HWY_ALIGN float start_x_[16], start_yz_[16], x_[3][16], y_[3][16], z_[3][16];
 };
-#else
-struct Bend {
-  explicit Bend(float c) : curvature(c) {}
-  float curvature;
-};
-
-class Rows {
-public:
-  Rows(V x, V y, V z, V constant) {
-    hn::Store(x, f, x_);
-    hn::Store(y, f, y_);
-    hn::Store(z, f, z_);
-    hn::Store(constant, f, constant_);
-  }
-  template <bool bent>
-  void write(int32_t row, const Bend& bend, float* x, float* yz) const {
-    float y[8];
-    const auto q = hn::Set(f8, bent ? bend.curvature : 0);
-    const auto factors = [&](int32_t l, float slope, float constant) {
-      const auto t = hn::Add(hn::Iota(f8, static_cast<float>(l)), hn::Set(f8, -3.5f));
-      return exp2(f8, hn::MulAdd(hn::MulAdd(q, t, hn::Set(f8, slope)), t, hn::Set(f8, constant)));
-    };
-    for (int32_t l = 0; l < 8; l += lanes8) {
-      hn::StoreU(factors(l, x_[row], constant_[row]), f8, x + l);
-      hn::StoreU(factors(l, y_[row], 0), f8, y + l);
-    }
-    for (int32_t l = 0; l < 8; l += lanes8) {
-      const auto z = factors(l, z_[row], 0);
-      for (int32_t j = 0; j < 8; ++j)
-        hn::StoreU(hn::Mul(hn::Set(f8, y[j]), z), f8, yz + 8 * j + l);
-    }
-  }
-
-private:
-  using F8 = hn::CappedTag<float, 8>;
-  static constexpr F8 f8{};
-  static constexpr int32_t lanes8 = static_cast<int32_t>(HWY_MIN(8, HWY_LANES(float)));
-  HWY_ALIGN float x_[lanes], y_[lanes], z_[lanes], constant_[lanes];
-};
 #endif
 
 /// Rows of all atoms: one after the other when direct, else with room for one more after those of each unit.
-template <bool direct>
-HWY_INLINE void make_atom_rows(const BlockUnits& u, float curvature, float* x, float* yz) {
-  const Bend bend(curvature);
+template <bool direct, class T>
+HWY_INLINE void make_atom_rows(const UnitsOf<T>& u, T curvature, T* x, T* yz) {
+  constexpr Tag<T> d{};
+  const Bend<T> bend(curvature);
   const int32_t atoms = u.begin[static_cast<size_t>(u.n)];
   size_t unit = 0;
-  for (int32_t a = 0; a < atoms; a += lanes) {
-    const auto get = [&](const Floats& v) { return hn::LoadU(f, v.data() + a); };
-    const Rows rows(get(u.atom_x), get(u.atom_y), get(u.atom_z), get(u.atom_constant));
-    for (int32_t l = 0; l < std::min(lanes, atoms - a); ++l) {
+  for (int32_t a = 0; a < atoms; a += lanes_of<T>) {
+    const auto get = [&](const Numbers<T>& v) { return hn::LoadU(d, v.data() + a); };
+    const Rows<T> rows(get(u.atom_x), get(u.atom_y), get(u.atom_z), get(u.atom_constant));
+    for (int32_t l = 0; l < std::min(lanes_of<T>, atoms - a); ++l) {
       if (!direct)
         unit += a + l == u.begin[unit + 1];
       const auto row = static_cast<size_t>(a + l) + unit;
-      rows.write<direct>(l, bend, x + 8 * row, yz + 64 * row);
+      rows.template write<direct>(l, bend, x + 8 * row, yz + 64 * row);
     }
   }
 }
 
-/// The last row of each unit: what multiplies its power.
-HWY_INLINE void make_unit_rows(const BlockUnits& u, const BlockShape& b, float* x, float* yz) {
-  for (int32_t n = 0; n < u.n; n += lanes) {
-    const V p = hn::LoadU(f, u.exponent.data() + n), slope = hn::Mul(p, hn::Set(f, b.slope));
-    const auto along = [&](const Floats& center, int axis) {
-      return hn::Mul(slope, hn::Sub(hn::LoadU(f, center.data() + n), hn::Set(f, b.middle[axis])));
+/// The last row of each unit: what multiplies its power, but for the scale.
+template <class T>
+HWY_INLINE void make_unit_rows(const UnitsOf<T>& u, const BlockShape<T>& b, T* x, T* yz) {
+  constexpr Tag<T> d{};
+  for (int32_t n = 0; n < u.n; n += lanes_of<T>) {
+    const auto slope = hn::Mul(hn::LoadU(d, u.exponent.data() + n), hn::Set(d, b.slope));
+    const auto along = [&](const Numbers<T>& center, int axis) {
+      return hn::Mul(slope, hn::Sub(hn::LoadU(d, center.data() + n), hn::Set(d, b.middle[axis])));
     };
-    const Rows rows(along(u.x, 0), along(u.y, 1), along(u.z, 2),
-                    log2_scale(p, hn::LoadU(f, u.log2_term.data() + n)));
-    for (int32_t l = 0; l < std::min(lanes, u.n - n); ++l) {
+    const Rows<T> rows(along(u.x, 0), along(u.y, 1), along(u.z, 2), hn::Zero(d));
+    for (int32_t l = 0; l < std::min(lanes_of<T>, u.n - n); ++l) {
       const auto unit = static_cast<size_t>(n + l);
       const size_t row = static_cast<size_t>(u.begin[unit + 1]) + unit;
-      rows.write<true>(l, Bend(u.exponent[unit] * b.curvature), x + 8 * row, yz + 64 * row);
+      rows.template write<true>(l, Bend<T>(u.exponent[unit] * b.curvature), x + 8 * row, yz + 64 * row);
     }
   }
 }
 
-void make_rows_simd(const BlockUnits& u, const BlockShape& b, BlockRows& rows) {
-  float *const x = rows.x.data(), *const yz = rows.yz.data();
-  if (!u.direct) {
-    make_atom_rows<false>(u, 0, x, yz);
-    return make_unit_rows(u, b, x, yz);
+template <class T>
+HWY_INLINE void make_rows_of(const UnitsOf<T>& u, bool direct, const BlockShape<T>& b, BlockRows<T>& rows) {
+  constexpr Tag<T> d{};
+  T *const x = rows.x.data(), *const yz = rows.yz.data();
+  if (direct) {
+    make_atom_rows<true>(u, b.curvature, x, yz);
+  } else {
+    make_atom_rows<false>(u, T{0}, x, yz);
+    make_unit_rows(u, b, x, yz);
   }
-  make_atom_rows<true>(u, b.curvature, x, yz);
-  for (int32_t n = 0; n < u.n; n += lanes)
-    hn::StoreU(exp2(log2_scale(hn::LoadU(f, u.exponent.data() + n), hn::LoadU(f, u.log2_term.data() + n))), f,
-               rows.scale.data() + n);
+  for (int32_t n = 0; n < u.n; n += lanes_of<T>) {
+    // Half{} gives twice the square root.
+    const auto p = hn::LoadU(d, u.exponent.data() + n),
+               roots = hn::IfThenElseZero(hn::Eq(p, hn::Set(d, T{0.5})), hn::Set(d, T{1}));
+    hn::StoreU(exp2(d, hn::MulSub(p, hn::LoadU(d, u.log2_term.data() + n), roots)), d, rows.scale.data() + n);
+  }
+}
+
+void make_rows_simd(const BlockUnits& u, const BlockShape<float>& b, BlockRows<float>& rows) {
+  make_rows_of(u, u.direct, b, rows);
+}
+void make_exact_rows_simd(const ExactUnits& u, const BlockShape<double>& b, BlockRows<double>& rows) {
+  make_rows_of(u, false, b, rows);
 }
 
 } // namespace
@@ -173,9 +190,13 @@ HWY_AFTER_NAMESPACE();
 namespace molmesh::density {
 
 HWY_EXPORT(make_rows_simd);
+HWY_EXPORT(make_exact_rows_simd);
 
-void make_rows(const BlockUnits& units, const BlockShape& shape, BlockRows& rows) {
+void make_rows(const BlockUnits& units, const BlockShape<float>& shape, BlockRows<float>& rows) {
   HWY_DYNAMIC_DISPATCH(make_rows_simd)(units, shape, rows);
+}
+void make_rows(const ExactUnits& units, const BlockShape<double>& shape, BlockRows<double>& rows) {
+  HWY_DYNAMIC_DISPATCH(make_exact_rows_simd)(units, shape, rows);
 }
 
 } // namespace molmesh::density

@@ -103,25 +103,29 @@ double Selection::drop(double budget) {
   return budget - left;
 }
 
-/// Units for arithmetic in single precision. False when it does not hold here.
-bool Selection::take_single() {
+/// block_units. False when single precision does not hold for their sums here.
+bool Selection::take_atoms() {
   BlockUnits& u = block_units;
   const auto n = static_cast<int32_t>(units);
   // Where a block is small beside an atom's reach, its terms need no reference of their own.
   const double half = std::sqrt(double{box.half[0]} * box.half[0] + double{box.half[1]} * box.half[1] +
                                 double{box.half[2]} * box.half[2]);
-  u.direct = log2e * f_.decay * half * (2 * (reach_ + half) + half) < 1.4 * log2_range;
+  u.direct = arithmetic == Arithmetic::in_single &&
+             log2e * f_.decay * half * (2 * (reach_ + half) + half) < 1.4 * log2_range;
   // Where no factor of y and z comes near to what single precision holds, nor does one of x with the unit's in it.
   u.folded = u.direct && 2 * std::numbers::sqrt2 * log2e * f_.decay * box.half[0] * (reach_ + half) < 70;
   const size_t room = static_cast<size_t>(n) + 17, atom_room = 16 * near_.cluster.size() + 32;
   if (u.x.size() < room) {
-    u.begin.resize(2 * room);
+    for (std::vector<int32_t>* v : {&u.begin, &u.center_slot})
+      v->resize(2 * room);
     for (Floats* v : {&u.exponent, &u.log2_term, &u.root, &u.log2_factor, &u.x, &u.y, &u.z})
       v->resize(2 * room);
   }
-  if (u.atom_x.size() < atom_room)
+  if (u.atom_x.size() < atom_room) {
+    u.atom_slot.resize(2 * atom_room);
     for (Floats* v : {&u.atom_x, &u.atom_y, &u.atom_z, &u.atom_constant})
       v->resize(2 * atom_room);
+  }
   if (u.folded && f_.plain_above) // where units add so little together that their roots need few digits
     choose_roots(effect_.data(), kept_.data(), n,
                  static_cast<float>(budget_.roots) / (rough_root_error_ * static_cast<float>(n)), u.root.data());
@@ -133,16 +137,14 @@ bool Selection::take_single() {
                       absolute ? log2_upper_ : nullptr,
                       static_cast<float>(absolute ? 2 * (budget_.within + budget_.block) - dropped_ : within_), u);
   };
-  if (!take()) {
-    if (!u.direct)
-      return false;
+  bool holds = take();
+  if (!holds && u.direct) {
     u.direct = u.folded = false;
-    if (!take())
-      return false;
+    holds = take();
   }
   added += 0.5 * static_cast<double>(u.dropped);
   atoms = u.begin[static_cast<size_t>(n)];
-  return true;
+  return holds;
 }
 
 void Selection::select(int octant, bool classify) {
@@ -169,16 +171,14 @@ void Selection::take_octant(int octant, bool classify) {
   dropped_ = drop(2 * budget_.block);
   added = 0.5 * (dropped_in_part_ + dropped_);
   const Vec3d middle = octant_middle(octant), half = 3.5 * h_ * Vec3d{1, 1, 1};
-  if (arithmetic == Arithmetic::in_single && !take_single())
+  if (!take_atoms() && arithmetic == Arithmetic::in_single)
     arithmetic = Arithmetic::in_double;
-  if (arithmetic != Arithmetic::in_single)
-    take_double(middle);
   if (classify && surely_inside(middle, half)) {
     side = Side::inside;
     return;
   }
-  if (arithmetic != Arithmetic::in_single)
-    filter(middle, half);
+  if (arithmetic != Arithmetic::in_single && !place_exactly(middle))
+    arithmetic = Arithmetic::in_logarithms;
 }
 
 } // namespace molmesh::density

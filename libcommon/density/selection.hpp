@@ -29,18 +29,6 @@ enum class Arithmetic { in_single, in_double, in_logarithms };
 /// overflow.
 Arithmetic arithmetic_for(const Field& f, double tolerance);
 
-/// A unit is a sum of atoms that is raised to one power: an innermost group, or one cluster of it when its exponent
-/// is 1; in double precision:
-/// In the block S(x) = exp(ln_center - κ(2δ·(m - centroid) + δ²)) · T(x), δ = x - m, m the block's middle,
-/// T(x) = Σ exp(ln_weight + 2κ δ·offset), at least about 1.
-struct Unit {
-  int64_t group;      ///< innermost group
-  double exponent;    ///< P
-  int32_t begin, end; ///< kept atoms in Selection::ln_weight and so on
-  double ln_center;
-  Vec3d centroid; ///< Å
-};
-
 /// Works through the blocks of a node. One thread; refilled for each node and block.
 class Selection {
 public:
@@ -61,13 +49,12 @@ public:
   Arithmetic arithmetic;        ///< that this block needs: the one asked for, or a safer one
   int64_t units = 0, atoms = 0; ///< kept
   double added = 0;             ///< half of the most that what is dropped may add to G anywhere in the block
-  /// Kept units and atoms when the arithmetic is in_single.
+  /// Kept units and atoms. A unit is a sum of atoms that is raised to one power: an innermost group, or one cluster
+  /// of it when its exponent is 1.
   BlockUnits block_units;
-  LocalBox box; ///< of the block
+  ExactUnits exact_units; ///< the same when the arithmetic is not in_single
+  LocalBox box;           ///< of the block
   int64_t group_of(int32_t u) const { return near_.group[static_cast<size_t>(kept_[static_cast<size_t>(u)])]; }
-  /// Kept units and atoms otherwise.
-  std::vector<Unit> unit;
-  std::vector<double> ln_weight, offset_x, offset_y, offset_z; ///< offsets in Å
 
 private:
   static constexpr double single = 1e-3; ///< more than single precision can do to a bound, relative
@@ -83,10 +70,9 @@ private:
   double upper_bound();
   bool surely_outside() { return (1 + slack_) * upper_bound() + 2 * budget_.total() < lower_; }
   double drop(double budget);
-  bool take_single();
-  void take_double(Vec3d middle);
+  bool take_atoms();
+  bool place_exactly(Vec3d middle);
   bool surely_inside(Vec3d middle, Vec3d half);
-  void filter(Vec3d middle, Vec3d half);
   Vec3d octant_middle(int octant) const {
     return part_middle_ + 4 * h_ * Vec3d{octant & 4 ? 1.0 : -1.0, octant & 2 ? 1.0 : -1.0, octant & 1 ? 1.0 : -1.0};
   }

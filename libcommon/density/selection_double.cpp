@@ -1,86 +1,56 @@
-// selection_double.cpp — the units of a block in double precision, relative to the mean of their atoms.
+// selection_double.cpp — the atoms of a block's units in double precision.
 #include "density/selection.hpp"
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numbers>
 
 namespace molmesh::density {
-namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-} // namespace
-
-/// Units with the atoms' logarithms and positions, not yet relative to the unit's middle.
-void Selection::take_double(Vec3d middle) {
-  unit.clear();
-  for (std::vector<double>* v : {&ln_weight, &offset_x, &offset_y, &offset_z})
-    v->clear();
-  for (const int32_t k : kept()) {
-    const auto n = static_cast<size_t>(k);
-    const int64_t group = near_.group[n];
-    Unit u{group, f_.level[0].exponent[static_cast<size_t>(group)], static_cast<int32_t>(ln_weight.size()), 0, 0,
-           {}};
-    double largest = -infinity;
-    for (auto i = static_cast<size_t>(near_.begin[n]); i < static_cast<size_t>(near_.begin[n + 1]); ++i) {
-      const auto cluster = static_cast<size_t>(local_.cluster[static_cast<size_t>(near_.cluster[i])]);
-      for (auto a = static_cast<size_t>(f_.begin[cluster]); a < static_cast<size_t>(f_.begin[cluster + 1]); ++a) {
-        const Vec3d d{f_.x[a] - middle.x, f_.y[a] - middle.y, f_.z[a] - middle.z};
-        ln_weight.push_back(f_.peak[a] - f_.decay * norm2(d));
-        largest = std::max(largest, ln_weight.back());
-        offset_x.push_back(f_.x[a]);
-        offset_y.push_back(f_.y[a]);
-        offset_z.push_back(f_.z[a]);
-      }
+/// exact_units from block_units. False when double precision does not hold for their sums here: then logarithms do.
+bool Selection::place_exactly(Vec3d middle) {
+  constexpr double log2e = std::numbers::log2e;
+  const BlockUnits& from = block_units;
+  ExactUnits& to = exact_units;
+  const auto n = static_cast<size_t>(from.n), all = static_cast<size_t>(from.begin[n]);
+  to.n = from.n;
+  to.begin.assign(from.begin.begin(), from.begin.begin() + from.n + 1);
+  for (Numbers<double>* v : {&to.exponent, &to.log2_term, &to.x, &to.y, &to.z})
+    v->resize(n + 16);
+  for (Numbers<double>* v : {&to.atom_x, &to.atom_y, &to.atom_z, &to.atom_constant})
+    v->resize(all + 16);
+  struct Placed {
+    Vec3d at; ///< relative to the middle
+    double log2_term;
+  };
+  const auto placed = [&](int32_t slot) {
+    const auto cluster = static_cast<size_t>(local_.cluster[static_cast<size_t>(slot / 16)]);
+    const auto a = static_cast<size_t>(f_.begin[cluster] + slot % 16);
+    const Vec3d at{f_.x[a] - middle.x, f_.y[a] - middle.y, f_.z[a] - middle.z};
+    return Placed{at, log2e * (f_.peak[a] - f_.decay * norm2(at))};
+  };
+  const double step = 2 * f_.decay * h_ * log2e, bend = 3 * 3.5 * 3.5 * h_ * h_ * f_.decay * log2e;
+  const auto most = [](Vec3d slope) { return 3.5 * (std::abs(slope.x) + std::abs(slope.y) + std::abs(slope.z)); };
+  double widest = 0, highest = 0; // logarithms of factors, and of what multiplies a power
+  for (size_t u = 0; u < n; ++u) {
+    const double p = to.exponent[u] = f_.level[0].exponent[static_cast<size_t>(group_of(static_cast<int32_t>(u)))];
+    const Placed center = placed(from.center_slot[u]);
+    to.log2_term[u] = center.log2_term;
+    to.x[u] = center.at.x;
+    to.y[u] = center.at.y;
+    to.z[u] = center.at.z;
+    widest = std::max(widest, p * (most(step * center.at) + bend));
+    highest = std::max(highest, std::abs(p * center.log2_term));
+    for (auto a = static_cast<size_t>(to.begin[u]); a < static_cast<size_t>(to.begin[u + 1]); ++a) {
+      const Placed atom = placed(from.atom_slot[a]);
+      const Vec3d slope = step * (atom.at - center.at);
+      to.atom_x[a] = slope.x;
+      to.atom_y[a] = slope.y;
+      to.atom_z[a] = slope.z;
+      to.atom_constant[a] = atom.log2_term - center.log2_term;
+      widest = std::max(widest, std::max(1.0, p) * most(slope));
     }
-    u.end = static_cast<int32_t>(ln_weight.size());
-    double sum = 0;
-    Vec3d moment{};
-    for (auto a = static_cast<size_t>(u.begin); a < static_cast<size_t>(u.end); ++a) {
-      const double w = std::exp(ln_weight[a] - largest);
-      sum += w;
-      moment += w * Vec3d{offset_x[a], offset_y[a], offset_z[a]};
-    }
-    u.ln_center = largest + std::log(sum);
-    u.centroid = moment / sum;
-    unit.push_back(u);
   }
-}
-
-/// Drops atoms as take_single does; makes logarithms and positions relative to the unit's middle and centroid.
-void Selection::filter(Vec3d middle, Vec3d half) {
-  size_t to = 0;
-  double range = 0;
-  for (Unit& u : unit) {
-    const double ln_small = std::log(within_ / (u.end - u.begin));
-    const auto begin = static_cast<size_t>(u.begin), end = static_cast<size_t>(u.end);
-    u.begin = static_cast<int32_t>(to);
-    for (size_t a = begin; a < end; ++a) {
-      const Vec3d offset = Vec3d{offset_x[a], offset_y[a], offset_z[a]} - u.centroid;
-      const double swing =
-          2 * f_.decay * (half.x * std::abs(offset.x) + half.y * std::abs(offset.y) + half.z * std::abs(offset.z));
-      const double ln = ln_weight[a] - u.ln_center;
-      if (ln + swing < ln_small)
-        continue;
-      range = std::max(range, swing);
-      ln_weight[to] = ln;
-      offset_x[to] = offset.x;
-      offset_y[to] = offset.y;
-      offset_z[to] = offset.z;
-      ++to;
-    }
-    u.end = static_cast<int32_t>(to);
-    const Vec3d away = middle - u.centroid;
-    range =
-        std::max(range, 2 * f_.decay * u.exponent *
-                            (half.x * std::abs(away.x) + half.y * std::abs(away.y) + half.z * std::abs(away.z)));
-  }
-  for (std::vector<double>* v : {&ln_weight, &offset_x, &offset_y, &offset_z})
-    v->resize(to);
-  units = static_cast<int64_t>(unit.size());
-  atoms = static_cast<int64_t>(to);
-  if (range > 690)
-    arithmetic = Arithmetic::in_logarithms;
+  return widest < 850 && highest < 1000;
 }
 
 } // namespace molmesh::density

@@ -89,9 +89,8 @@ double Selection::upper_bound() {
 bool Selection::surely_inside(Vec3d middle, Vec3d half) {
   const double bend = f_.decay * f_.steepest * norm2(half);
   const auto decay = static_cast<float>(f_.decay);
-  const bool plain_single = f_.plain_above && arithmetic == Arithmetic::in_single;
   float sum, gradient[3];
-  if (plain_single) {
+  if (f_.plain_above) {
     // The largest terms alone say where the test below has no chance; a wrong guess costs time only.
     const BlockUnits& u = block_units;
     sum_of_powers(u.n, u.exponent.data(), u.log2_term.data(), u.x.data(), u.y.data(), u.z.data(), box, decay, &sum,
@@ -102,13 +101,11 @@ bool Selection::surely_inside(Vec3d middle, Vec3d half) {
     if (3 * sum <= upper_ * (1 + fall * (1 + fall / 2 * (1 + fall / 3 * (1 + fall / 4)))))
       return false;
   }
-  if (arithmetic == Arithmetic::in_single) {
-    for (Floats* v : {&middles_.log2_sum, &middles_.x, &middles_.y, &middles_.z})
-      v->resize(static_cast<size_t>(block_units.n) + 16);
-    unit_middles(block_units, box, static_cast<float>(log2e * f_.decay), middles_);
-  }
+  for (Floats* v : {&middles_.log2_sum, &middles_.x, &middles_.y, &middles_.z})
+    v->resize(static_cast<size_t>(block_units.n) + 16);
+  unit_middles(block_units, box, static_cast<float>(log2e * f_.decay), middles_);
   Fold root;
-  if (plain_single) {
+  if (f_.plain_above) {
     sum_of_powers(block_units.n, block_units.exponent.data(), middles_.log2_sum.data(), middles_.x.data(),
                   middles_.y.data(), middles_.z.data(), box, decay, &sum, gradient);
     if (sum <= upper_)
@@ -121,19 +118,13 @@ bool Selection::surely_inside(Vec3d middle, Vec3d half) {
       (l + 1 < open.size() ? open[l + 1] : root).add(open[l].raised(f_.level[l].exponent[static_cast<size_t>(g)]));
       open[l] = Fold{};
     };
-    const auto add = [&](int64_t group, double exponent, double ln_center, Vec3d centroid) {
-      groups.enter(group, close);
-      (open.size() > 1 ? open[1] : root).add(Fold{ln_center, 2 * f_.decay * (centroid - middle)}.raised(exponent));
-    };
-    if (arithmetic == Arithmetic::in_single)
-      for (int32_t n = 0; n < block_units.n; ++n) {
-        const auto u = static_cast<size_t>(n);
-        add(group_of(n), block_units.exponent[u], ln2 * middles_.log2_sum[u],
-            node_middle_ + Vec3d{middles_.x[u], middles_.y[u], middles_.z[u]});
-      }
-    else
-      for (const Unit& u : unit)
-        add(u.group, u.exponent, u.ln_center, u.centroid);
+    for (int32_t n = 0; n < block_units.n; ++n) {
+      const auto u = static_cast<size_t>(n);
+      const Vec3d mean = node_middle_ + Vec3d{middles_.x[u], middles_.y[u], middles_.z[u]};
+      groups.enter(group_of(n), close);
+      (open.size() > 1 ? open[1] : root)
+          .add(Fold{ln2 * middles_.log2_sum[u], 2 * f_.decay * (mean - middle)}.raised(block_units.exponent[u]));
+    }
     groups.finish(close);
   }
   const Vec3d g = root.gradient;

@@ -49,6 +49,7 @@ void find_centers(const LocalClusters& node, const NearUnits& from, const int32_
     } else {
       first += 16 * static_cast<size_t>(*cluster);
     }
+    to.center_slot[s] = static_cast<int32_t>(first);
     to.exponent[s] = from.exponent[at];
     to.log2_term[s] = hn::GetLane(log2_largest);
     to.x[s] = node.atom_x[first];
@@ -79,7 +80,7 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
             share = hn::Set(f, !absolute ? 1
                                : p <= 1  ? 1 - p
                                          : 0),
-            log2_largest = hn::Set(f, term);
+            log2_largest = hn::Set(f, term), steepness = hn::Set(f, std::max(1.0f, p)); // T^P must hold, too
     const V cx = hn::Mul(hn::Sub(hn::Set(f, to.x[s]), middle.x), sx),
             cy = hn::Mul(hn::Sub(hn::Set(f, to.y[s]), middle.y), sy),
             cz = hn::Mul(hn::Sub(hn::Set(f, to.z[s]), middle.z), sz);
@@ -108,11 +109,13 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
       if (absolute)
         lost = hn::Add(lost, hn::IfThenZeroElse(keep, exp2_above(hn::Min(effect, hn::Set(f, 100.0f)))));
       if (!direct) {
+        hn::StoreU(hn::Compress(hn::Iota(I(), static_cast<int32_t>(a)), hn::RebindMask(I(), keep)), I(),
+                   &to.atom_slot[kept]);
         x = hn::Sub(x, cx);
         y = hn::Sub(y, cy);
         z = hn::Sub(z, cz);
       }
-      const V swing = direct ? hn::Add(along(x, y, z), weight) : along(x, y, z);
+      const V swing = direct ? hn::Add(along(x, y, z), weight) : hn::Mul(along(x, y, z), steepness);
       widest = hn::Max(widest, hn::IfThenElseZero(keep, swing));
       hn::StoreU(hn::Compress(x, keep), f, &to.atom_x[kept]);
       hn::StoreU(hn::Compress(y, keep), f, &to.atom_y[kept]);
