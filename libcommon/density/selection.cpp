@@ -131,17 +131,19 @@ bool Selection::take_atoms() {
                  static_cast<float>(budget_.roots) / (rough_root_error_ * static_cast<float>(n)), u.root.data());
   else
     std::fill_n(u.root.begin(), n, 2.0f);
-  const bool absolute = f_.plain_above && budget_.within > 0;
-  const auto take = [&] {
+  const auto take = [&](bool absolute) {
     return take_units(local_, near_, kept_.data(), n, box, static_cast<float>(log2e * f_.decay),
                       absolute ? log2_upper_ : nullptr,
                       static_cast<float>(absolute ? 2 * (budget_.within + budget_.block) - dropped_ : within_), u);
   };
-  bool holds = take();
+  const bool absolute = f_.plain_above && budget_.within > 0;
+  bool holds = take(absolute);
   if (!holds && u.direct) {
     u.direct = u.folded = false;
-    holds = take();
+    holds = take(absolute);
   }
+  if (!holds && absolute && arithmetic == Arithmetic::in_single)
+    take(false); // few blocks, of coarse grids: better too many atoms
   added += 0.5 * static_cast<double>(u.dropped);
   atoms = u.begin[static_cast<size_t>(n)];
   return holds;
