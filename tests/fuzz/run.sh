@@ -1,29 +1,26 @@
 #!/usr/bin/env bash
-# run.sh SECONDS [READER…]: builds the libFuzzer targets with clang in build-fuzz, then runs each for SECONDS, as many
-# at a time as there are cores. What it finds stays in build-fuzz/found; a finding is status 1.
+# run.sh SECONDS [READER…]: builds the libFuzzer targets in build-sanitize, then runs each for SECONDS, as many
+# at a time as there are cores. What it finds stays in build-sanitize/found; a finding is status 1.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 seconds=$1
 shift
 readers=("$@")
 [ ${#readers[@]} -gt 0 ] || readers=(hier vtu vdb pdb mmcif mmjson pqr rules)
-cmake -S . -B build-fuzz -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_COMPILER=clang++ -DMOLMESH_FUZZ=ON \
-  -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O1 -gline-tables-only' \
-  -DMOLMESH_TESTS=OFF -DMOLMESH_OPENMP=OFF >/dev/null &&
-  cmake --build build-fuzz --target "${readers[@]/#/fuzz_}" || exit 1
+cmake --preset sanitize >/dev/null && cmake --build --preset sanitize --target "${readers[@]/#/fuzz_}" || exit 1
 
 fuzz() { # fuzz READER: its seeds are the samples of its format and what an earlier run kept
   local reader=$1 seeds=() folder
   for folder in "tests/fuzz/corpus/$reader" "formats/$reader/samples/passed" "formats/$reader/samples/failed"; do
     [ -d "$folder" ] && seeds+=("$folder")
   done
-  mkdir -p "build-fuzz/corpus/$reader" build-fuzz/found
-  if "build-fuzz/bin/fuzz_$reader" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=2048 -print_final_stats=1 \
-    -artifact_prefix="build-fuzz/found/$reader-" "build-fuzz/corpus/$reader" "${seeds[@]}" >"build-fuzz/$reader.log" 2>&1; then
-    echo "$reader: $(sed -n 's/^stat::number_of_executed_units: *//p' "build-fuzz/$reader.log") inputs"
+  mkdir -p "build-sanitize/corpus/$reader" build-sanitize/found
+  if "build-sanitize/bin/fuzz_$reader" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=2048 -print_final_stats=1 \
+    -artifact_prefix="build-sanitize/found/$reader-" "build-sanitize/corpus/$reader" "${seeds[@]}" >"build-sanitize/$reader.log" 2>&1; then
+    echo "$reader: $(sed -n 's/^stat::number_of_executed_units: *//p' "build-sanitize/$reader.log") inputs"
   else
     echo "$reader: FOUND"
-    tail -n 40 "build-fuzz/$reader.log"
+    tail -n 40 "build-sanitize/$reader.log"
     return 1
   fi
 }

@@ -32,7 +32,7 @@ ion) # Born's energy within 1 %
 harmonic) # a harmonic polynomial to 1e-10; with one tetrahedron missing it must not be found
   pdb2hier -q "$SOURCE/tests/data/1tii.pdb" -o 1tii.hier
   for region in interior exterior both; do
-    mesh 1tii $region 3 "--iterations 2"
+    mesh 1tii $region 4 "--iterations 2"
     tetconvert -q 1tii.vtu -o 1tii.mesh
     inner=0
     [ $region != both ] || inner=1
