@@ -9,6 +9,7 @@
 #include "formats/vtu/vtu.hpp"
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 using namespace molmesh;
 
@@ -16,8 +17,8 @@ namespace {
 
 struct Options : cli::Common {
   Options() { require_device = cuda::require_device; }
-  std::string region = "interior", box = "auto", cavities = "keep";
-  double adapt = contour::Options{}.adapt, drop_below = 0;
+  std::string region = "interior", box = "auto", adapt = "auto", cavities = "keep";
+  double drop_below = 0;
 };
 
 contour::BoxRequest parse_box(const std::string& text) {
@@ -45,6 +46,15 @@ contour::BoxRequest parse_box(const std::string& text) {
   return box;
 }
 
+std::optional<double> parse_adapt(const std::string& text) {
+  if (text == "auto")
+    return {};
+  const double adapt = cli::numbers("--adapt", text, 1)[0];
+  if (!(adapt >= 0 && adapt <= 100))
+    fail(Status::usage, "--adapt: found '" + text + "', expected auto or a number from 0 to 100");
+  return adapt;
+}
+
 void describe(CLI::App& app, Options& o) {
   app.add_option("--region", o.region, "what to mesh: interior (the molecule), exterior (up to the box), both")
       ->check(CLI::IsMember({"interior", "exterior", "both"}));
@@ -53,10 +63,12 @@ void describe(CLI::App& app, Options& o) {
          "outer box: auto (at least twice the surface's extents), tight (the grid), a factor of the surface's "
          "extents (> 1), or x0,y0,z0,x1,y1,z1 in Å, which may cut the molecule")
       ->type_name("BOX");
-  app.add_option("--adapt", o.adapt,
-                 "how far the surface may lie from a coarser cell's mean plane, in grid spacings, and less where "
-                 "the chords of a small body would cost it volume; 0: uniform")
-      ->check(CLI::Range(0., 100.));
+  app.add_option(
+         "--adapt", o.adapt,
+         "how far the surface may lie from a coarser cell's mean plane, in grid spacings, and less where "
+         "the chords of a small body would cost it volume; 0: uniform; auto: 0.1, or as many as 0.1 Å are, at "
+         "most 0.5")
+      ->type_name("ERROR");
   app.add_option("--cavities", o.cavities, "closed cavities: keep (region 3) or fill (region 1)")
       ->check(CLI::IsMember({"keep", "fill"}));
   app.add_option("--drop-below", o.drop_below, "parts of the molecule smaller than this become outside")
@@ -70,7 +82,7 @@ Status run_tool(const Options& o, cli::Run& run) {
                    : o.region == "exterior" ? contour::Options::exterior
                                             : contour::Options::both;
   options.box = parse_box(o.box);
-  options.adapt = o.adapt;
+  options.adapt = parse_adapt(o.adapt);
   options.fill_cavities = o.cavities == "fill";
   options.drop_below = o.drop_below;
   options.threads = o.resolved_threads();
@@ -93,6 +105,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.counts["points"] = mesh.point.size();
   run.counts["tetrahedra"] = mesh.tet.size();
   run.counts["triangles"] = mesh.tri.size();
+  run.counts["adapt"] = summary.adapt;
   run.counts["leaves"] = summary.leaves;
   run.counts["surface_cells"] = summary.surface_cells;
   run.counts["split_cells"] = summary.split_cells;

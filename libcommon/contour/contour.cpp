@@ -12,7 +12,7 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   stages.find_surface(lattice);
   on_phase("octree");
   RefineOptions refine_options;
-  refine_options.adapt = options.adapt;
+  refine_options.adapt = summary.adapt = options.adapt.value_or(default_adapt(grid.frame.spacing));
   refine_options.inside = options.meshed != Options::exterior;
   refine_options.outside = with_outside;
   stages.select_leaves(refine_options);

@@ -1,21 +1,31 @@
 // options.hpp — what contour() is asked for, and what it tells besides the mesh.
 #pragma once
 #include "contour/lattice.hpp"
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace molmesh::contour {
 
+/// The tolerance of a grid of `spacing` Å, in spacings, where none is asked for: a tenth of a spacing, or 0.1 Å, to
+/// which an atom is known anyhow; at most half a spacing.
+inline double default_adapt(double spacing) {
+  return std::clamp(0.1 / spacing, 0.1, 0.5);
+}
+
 struct Options {
   enum Meshed { interior, exterior, both } meshed = interior;
   BoxRequest box;
-  double adapt = 0.1; ///< allowed distance from the mean plane, in grid spacings; 0: uniform
+  std::optional<double>
+      adapt; ///< allowed distance from the mean plane, in grid spacings; 0: uniform; default_adapt
   bool fill_cavities = false;
   double drop_below = 0; ///< Å³, 0: nothing
   int threads = 1;
 };
 
 struct Summary {
+  double adapt = 0; ///< as it was asked for, or by default
   int64_t leaves = 0, surface_cells = 0, split_cells = 0, restored_points = 0, relaxed_points = 0, face_points = 0,
           edge_points = 0;
   std::vector<double> molecule_volumes, cavity_volumes; ///< Å³ of each part, in the order of the octree's curve

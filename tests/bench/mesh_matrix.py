@@ -23,7 +23,7 @@ def main():
     parser.add_argument("bin", type=pathlib.Path)
     parser.add_argument("file", type=pathlib.Path, nargs="+")
     parser.add_argument("--region", default="both")
-    parser.add_argument("--adapt", default="0.1")
+    parser.add_argument("--adapt", default="auto")
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--grid")
     size.add_argument("--spacing", default="0.5")

@@ -33,7 +33,7 @@ void Parity::structure(const std::string& name, const Hierarchy& h, const densit
   tell(name + ", density", compare_grids(h, run_density(h, o, device_, t), host));
   if (!all_stages)
     return;
-  for (const double adapt : {contour::Options{}.adapt, 0.0}) {
+  for (const double adapt : {contour::default_adapt(host.frame.spacing), 0.0}) {
     contour::Options c;
     c.meshed = contour::Options::both;
     c.adapt = adapt;

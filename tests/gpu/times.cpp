@@ -96,7 +96,7 @@ void time_all(const Hierarchy& h, const density::Options& o, int repeats, const 
   contour::Options c;
   c.meshed = contour::Options::both;
   time_stage("density", name, repeats, peaks, [&](Timed& t) { grid = run_density(h, o, device, t); });
-  for (const double adapt : {0.0, contour::Options{}.adapt}) {
+  for (const double adapt : {0.0, contour::default_adapt(grid.frame.spacing)}) {
     c.adapt = adapt;
     std::printf("--adapt %g\n", adapt);
     const How one{By::host, 1};
