@@ -7,6 +7,22 @@
 namespace molmesh::improve {
 namespace {
 
+// How far apart points of one plane may lie: some units in the last place of the largest coordinate, by the digits
+// that the coordinates carry, and no less than a share of the mesh's size.
+double rounding(const TetMesh& mesh) {
+  Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  double largest = 0;
+  bool single = true; // from a program or a file of 32-bit coordinates
+  for (const Vec3d& p : mesh.point)
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], p[a]);
+      high[a] = std::max(high[a], p[a]);
+      largest = std::max(largest, std::abs(p[a]));
+      single = single && double(static_cast<float>(p[a])) == p[a];
+    }
+  return std::max(1e-12 * norm(high - low), largest * (single ? 0x1p-22 : 0x1p-50));
+}
+
 // A label is flat when all its triangles lie in one plane normal to an axis, up to rounding.
 void find_flat_labels(DynamicMesh& m, const TetMesh& mesh) {
   std::vector<Vec3d> low(m.labels.size(), Vec3d{1e300, 1e300, 1e300}),
@@ -22,9 +38,10 @@ void find_flat_labels(DynamicMesh& m, const TetMesh& mesh) {
         high[l][a] = std::max(high[l][a], mesh.point[size_t(v)][a]);
       }
   }
+  const double least = rounding(mesh);
   for (size_t l = 1; l < m.labels.size(); ++l)
     for (int a = 0; a < 3; ++a)
-      if (high[l][a] - low[l][a] <= 1e-12 * std::max(std::abs(low[l][a]), std::abs(high[l][a])))
+      if (high[l][a] - low[l][a] <= least)
         m.labels[l].axis = a;
 }
 

@@ -1,0 +1,88 @@
+// kinds_test.cpp — walls are known as planes wherever the mesh lies and whatever digits its coordinates carry.
+#include "improve/dynamic_mesh.hpp"
+#include "improve/improve.hpp"
+#include "lattice_mesh.hpp"
+#include <catch2/catch.hpp>
+
+using namespace molmesh;
+using namespace molmesh::test;
+
+namespace {
+
+TetMesh ball_in_a_box() {
+  return lattice_mesh(
+      [](Vec3d p) {
+        return std::exp(-0.3 * (norm2(p - Vec3d{2.6, 2.5, 2.4}) - 1.44));
+      },
+      {0, 0, 0}, 0.5, 10);
+}
+
+std::array<int64_t, 4> kinds(const improve::DynamicMesh& m) {
+  std::array<int64_t, 4> count{};
+  for (const improve::Vertex& v : m.vertex)
+    ++count[size_t(v.kind)];
+  return count;
+}
+
+int64_t planes(const improve::DynamicMesh& m) {
+  return std::count_if(m.labels.begin(), m.labels.end(), [](const improve::Label& l) { return !l.curved(); });
+}
+
+} // namespace
+
+TEST_CASE("walls are planes far from the origin, after a turn, and in single precision") {
+  const TetMesh mesh = ball_in_a_box();
+  const auto expected = kinds(improve::build(mesh, 180, 1));
+  REQUIRE(expected[size_t(improve::Kind::sliding)] > 100);
+  const auto check = [&](const char* what, auto&& move) {
+    INFO(what);
+    TetMesh moved = mesh;
+    for (size_t v = 0; v < moved.point.size(); ++v)
+      moved.point[v] = move(moved.point[v], v);
+    const improve::DynamicMesh m = improve::build(moved, 180, 1);
+    CHECK(kinds(m) == expected);
+    CHECK(planes(m) == 6);
+  };
+  const Vec3d far{1e4, -1e4 + 0.3, 1e4 / 3};
+  check("translated", [&](Vec3d p, size_t) { return p + far; });
+  const double turn = 2 * std::atan(1.), c = std::cos(turn), s = std::sin(turn); // a quarter: c is 6e-17
+  const auto turned = [&](Vec3d p) { return Vec3d{c * p.x - s * p.y, s * p.x + c * p.y, p.z}; };
+  const Vec3d corner{0.25, 0.25, 0.25}; // of the box
+  check("turned about a corner", [&](Vec3d p, size_t) { return turned(p - corner); });
+  check("turned, then translated", [&](Vec3d p, size_t) { return turned(p - corner) + far; });
+  check("single precision, a digit off here and there", [&](Vec3d p, size_t v) {
+    Vec3d q = p + far;
+    for (int a = 0; a < 3; ++a) {
+      const auto x = static_cast<float>(q[a]);
+      q[a] = double(v % 5 == size_t(a) ? std::nextafter(x, 1e9f) : x);
+    }
+    return q;
+  });
+}
+
+TEST_CASE("a wall that is bent is no plane, far from the origin either") {
+  for (const double far : {0., 1e4}) {
+    TetMesh mesh = ball_in_a_box();
+    double low = 1e9;
+    for (const Vec3d& p : mesh.point)
+      low = std::min(low, p.x);
+    for (size_t v = 0; v < mesh.point.size(); ++v) {
+      Vec3d& p = mesh.point[v];
+      if (p.x == low)
+        p.x -= v % 2 == 0 ? 1e-6 : 0;
+      p += Vec3d{far + 0.1, far, far};
+    }
+    CHECK(planes(improve::build(mesh, 180, 1)) == 5);
+  }
+}
+
+TEST_CASE("a mesh far from the origin is improved as one at the origin is") {
+  improve::Options how;
+  TetMesh here = ball_in_a_box(), there = here;
+  for (Vec3d& p : there.point)
+    p += Vec3d{1e4, -1e4, 1e4};
+  const improve::Result a = improve::improve(here, nullptr, how), b = improve::improve(there, nullptr, how);
+  CHECK(a.before.min == Approx(b.before.min).epsilon(1e-6));
+  CHECK(b.after.min > 0.95 * a.after.min);
+  CHECK(b.after.below_25 <= a.after.below_25 + 1);
+}
