@@ -67,8 +67,7 @@ std::string text(const WorstTet& t, const std::optional<Hierarchy>& h) {
   std::ostringstream s;
   s.precision(4);
   s << "element " << t.tet << " has " << t.min << "° to " << t.max << "°, at ";
-  s.precision(6);
-  s << t.centre.x << ' ' << t.centre.y << ' ' << t.centre.z;
+  s.precision(6), s << t.centre.x << ' ' << t.centre.y << ' ' << t.centre.z;
   if (h) {
     const int64_t atom = nearest_atom(*h, t.centre);
     s << ", nearest to " << groups_of(*h, atom) << ' ' << h->names[h->atom[size_t(atom)].name];
@@ -118,6 +117,7 @@ Status run_tool(const Options& o, cli::Run& run) {
                      {"face_swaps", c.face_swaps},
                      {"contractions", c.contractions},
                      {"splits", c.splits},
+                     {"hand_overs", c.hand_overs},
                      {"quality_before", json(result.before)},
                      {"quality_after", json(result.after)}});
   if (grid)

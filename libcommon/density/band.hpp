@@ -17,11 +17,6 @@ struct BandBlock {
   const float* value; ///< G of the active points, in order; belongs to the band
 };
 
-} // namespace molmesh::density
-template <>
-inline constexpr bool molmesh::leave_untouched<molmesh::density::BandBlock> = true;
-namespace molmesh::density {
-
 /// What BlockGrid holds, in a third of its memory.
 struct Band {
   GridFrame frame;
@@ -37,3 +32,6 @@ BlockGrid to_block_grid(const Band& band, int threads);
 bool wall_cuts_surface(const Band& band);
 
 } // namespace molmesh::density
+
+template <>
+inline constexpr bool molmesh::leave_untouched<molmesh::density::BandBlock> = true;

@@ -51,10 +51,8 @@ bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) cons
 
 // A labelled face of e seen from the side that counts it, with vertex `from` moving.
 void Editor::add_sail(const Element& e, size_t face, int32_t from) {
-  if (!target_ || !m_.labels[e.label[face]].curved())
+  if (!target_ || !m_.labels[e.label[face]].curved() || !m_.counts_here(e, face))
     return;
-  if (e.n[face] >= 0 && m_.element[size_t(e.n[face])].region < e.region)
-    return; // its other side counts it
   Sail s{{}, -1};
   for (size_t i = 0; i < 3; ++i) {
     const int32_t v = e.v[size_t(outward_face[face][i])];
@@ -100,8 +98,7 @@ bool Editor::sails_fit(Vec3d x, const Fit& before) const {
 
 bool Editor::bent(int32_t t, size_t face) const {
   const Element& e = m_.element[size_t(t)];
-  return e.label[face] != 0 && (e.n[face] < 0 || m_.element[size_t(e.n[face])].region > e.region) &&
-         misfit_face(e, face, -1, {}) > 1;
+  return m_.counts_here(e, face) && misfit_face(e, face, -1, {}) > 1;
 }
 
 double Editor::off(int32_t v) const {

@@ -7,10 +7,8 @@ namespace molmesh::improve {
 
 // For a vertex a on a labelled face: a and b have no neighbours in common but the ring's, on the surface none but
 // its two ends, and no triangle over an edge of both links but the ring's (Dey, Edelsbrunner, Guha and Nekhayev
-// 1999). Needs star_ = star of a. False too when b's star is not ours.
+// 1999). Needs star_ = star of a, star2_ = star of b.
 bool Editor::surface_link_holds(int32_t a, int32_t b, const Ring& r) {
-  if (!star(b, star2_))
-    return false;
   const auto on_ring = [&](int32_t v) { return std::find(r.vertex.begin(), r.vertex.end(), v) - r.vertex.begin(); };
   const auto size = static_cast<std::ptrdiff_t>(r.vertex.size());
   std::vector<int32_t> near_a, surface_a, surface_b;
@@ -70,8 +68,7 @@ bool Editor::may_contract(const Vertex& a, const Vertex& b) const {
   return a.kind != Kind::sliding || b.kind != Kind::sliding || (a.frozen & ~b.frozen) == 0;
 }
 
-// For a on a labelled face: the edge a b runs in all its labels, and the links hold. Needs star_ = star of a;
-// star2_ is then b's.
+// For a on a labelled face: the edge a b runs in all its labels, and its elements may go. Sets ring_.
 bool Editor::borders_allow(int32_t e, int32_t a, int32_t b) {
   const Vertex& ka = m_.vertex[size_t(a)];
   if (!ring(e, a, b, ring_) || ring_.border.size() != 2)
@@ -87,7 +84,7 @@ bool Editor::borders_allow(int32_t e, int32_t a, int32_t b) {
     if (el.n[fb] < 0 && el.n[fa] < 0)
       return false;
   }
-  return surface_link_holds(a, b, ring_);
+  return true;
 }
 
 bool Editor::is_tiny(int32_t e, int i, int j) const {
@@ -124,7 +121,7 @@ bool Editor::contract(int32_t e, int i, int j) {
     gather(star_, a, length, fit);
     const Vec3d pb = m_.point[size_t(b)];
     std::erase_if(sails_, [&](const Sail& s) { return s.p[0] == pb || s.p[1] == pb || s.p[2] == pb; });
-    if (!sails_fit(pb, fit) || !borders_allow(e, a, b))
+    if (!sails_fit(pb, fit) || !borders_allow(e, a, b) || !star(b, star2_) || !surface_link_holds(a, b, ring_))
       return false;
   }
   rim_.clear();
@@ -194,9 +191,9 @@ bool Editor::merge(int32_t e, int i, int j) {
   if (straighten)
     best = worth(x, above);
   search(kb, x, best, std::max(goal, above), length, fit, above);
-  if ((straighten ? !sails_fit(x, fit) : best <= above) || (ka.kind != Kind::interior && !borders_allow(e, a, b)))
+  if (straighten ? !sails_fit(x, fit) : best <= above)
     return false;
-  if (ka.kind == Kind::interior && !star(b, star2_))
+  if (ka.kind != Kind::interior && (!borders_allow(e, a, b) || !surface_link_holds(a, b, ring_)))
     return false;
   m_.point[size_t(b)] = x;
   bool good = true;

@@ -143,7 +143,7 @@ void set_directions(DynamicMesh& m, const TetMesh& mesh, const std::vector<int64
     for (size_t i = 0; i < 4; ++i) {
       const Element& el = m.element[e];
       const uint8_t l = el.label[i];
-      if (l == 0 || (el.n[i] >= 0 && m.element[size_t(el.n[i])].region < el.region))
+      if (!m.counts_here(el, i))
         continue;
       const Sorted s = sorted_face(mesh, 4 * int64_t(e) + int64_t(i));
       if (s.v == wanted[l].v)
@@ -192,10 +192,11 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
     for (const int32_t v : mesh.tet[e])
       m.incident[size_t(v)] = static_cast<int32_t>(e);
   std::vector<int64_t> first;
-  link(m, mesh, set_labels(m, mesh, first), threads);
+  const std::vector<uint8_t> label = set_labels(m, mesh, first);
+  link(m, mesh, label, threads);
   check_labels(m, threads);
   set_directions(m, mesh, first);
-  set_kinds(m, mesh, sharp);
+  set_kinds(m, mesh, label, sharp);
   return m;
 }
 

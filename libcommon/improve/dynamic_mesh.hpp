@@ -61,6 +61,10 @@ struct DynamicMesh {
   std::vector<Element> element;
   std::vector<Label> labels; ///< [0] is no label
 
+  /// Whether the face is labelled and this side's to count: the lower region's.
+  bool counts_here(const Element& e, size_t face) const {
+    return e.label[face] != 0 && (e.n[face] < 0 || element[size_t(e.n[face])].region > e.region);
+  }
   float quality(const std::array<int32_t, 4>& v) const {
     return tet_quality(point[size_t(v[0])], point[size_t(v[1])], point[size_t(v[2])], point[size_t(v[3])]);
   }

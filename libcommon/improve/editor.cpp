@@ -14,6 +14,7 @@ Counts& Counts::operator+=(const Counts& o) {
   face_swaps += o.face_swaps;
   contractions += o.contractions;
   splits += o.splits;
+  hand_overs += o.hand_overs;
   return *this;
 }
 

@@ -18,9 +18,12 @@ namespace molmesh::improve {
 
 /// Operations done.
 struct Counts {
-  int64_t moves = 0, edge_removals = 0, surface_flips = 0, face_swaps = 0, contractions = 0, splits = 0;
+  int64_t moves = 0, edge_removals = 0, surface_flips = 0, face_swaps = 0, contractions = 0, splits = 0,
+          hand_overs = 0;
   Counts& operator+=(const Counts& o);
-  int64_t total() const { return moves + edge_removals + surface_flips + face_swaps + contractions + splits; }
+  int64_t total() const {
+    return moves + edge_removals + surface_flips + face_swaps + contractions + splits + hand_overs;
+  }
 };
 
 /// What one part may touch. Reserved slots are those of dead elements and vertices.

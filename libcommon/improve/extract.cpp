@@ -3,14 +3,6 @@
 #include "par/par.hpp"
 
 namespace molmesh::improve {
-namespace {
-
-// Whether the face's triangle is written for this element: the lower region's.
-bool counts_here(const DynamicMesh& m, const Element& e, size_t face) {
-  return e.label[face] != 0 && (e.n[face] < 0 || m.element[size_t(e.n[face])].region > e.region);
-}
-
-} // namespace
 
 TetMesh extract(const DynamicMesh& m, int threads) {
   TetMesh out;
@@ -30,7 +22,7 @@ TetMesh extract(const DynamicMesh& m, int threads) {
   });
   const auto faces = par::select<int64_t>(4 * slots, threads, [&](int64_t f) {
     const Element& e = m.element[size_t(f / 4)];
-    return e.alive() && counts_here(m, e, size_t(f % 4));
+    return e.alive() && m.counts_here(e, size_t(f % 4));
   });
   out.tri.resize(faces.size());
   out.boundary.resize(faces.size());

@@ -8,12 +8,6 @@
 namespace molmesh::improve {
 namespace {
 
-// Whether a curved face is counted from this side: the lower region's.
-bool counts_here(const DynamicMesh& m, const Element& e, size_t face) {
-  return e.label[face] != 0 && m.labels[e.label[face]].curved() &&
-         (e.n[face] < 0 || e.region < m.element[size_t(e.n[face])].region);
-}
-
 void add_triangle(const DynamicMesh& m, const Isosurface& surface, const Element& e, size_t face, Fidelity& sum) {
   const auto t = outward_triangle(e.v, face);
   const Vec3d a = m.point[size_t(t[0])], b = m.point[size_t(t[1])], c = m.point[size_t(t[2])];
@@ -58,7 +52,7 @@ Fidelity measure_triangles(const DynamicMesh& m, const Isosurface& surface, int 
         const Element& e = m.element[size_t(t)];
         if (e.alive())
           for (size_t f = 0; f < 4; ++f)
-            if (counts_here(m, e, f))
+            if (m.counts_here(e, f) && m.labels[e.label[f]].curved())
               add_triangle(m, surface, e, f, sum);
         return sum;
       },

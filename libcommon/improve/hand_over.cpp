@@ -118,7 +118,7 @@ bool Editor::hand_over(int32_t v) {
       if (list == &star_ || u >= 0)
         for (const int32_t w : m_.element[size_t(t)].v)
           m_.touched[size_t(w)] = time;
-  ++counts.surface_flips;
+  ++counts.hand_overs;
   return true;
 }
 

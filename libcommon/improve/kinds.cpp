@@ -2,7 +2,6 @@
 #include "improve/kinds.hpp"
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace molmesh::improve {
 namespace {
@@ -24,14 +23,11 @@ double rounding(const TetMesh& mesh) {
 }
 
 // A label is flat when all its triangles lie in one plane normal to an axis, up to rounding.
-void find_flat_labels(DynamicMesh& m, const TetMesh& mesh) {
+void find_flat_labels(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label) {
   std::vector<Vec3d> low(m.labels.size(), Vec3d{1e300, 1e300, 1e300}),
       high(m.labels.size(), Vec3d{-1e300, -1e300, -1e300});
-  std::map<int32_t, size_t> index;
-  for (size_t l = 1; l < m.labels.size(); ++l)
-    index[m.labels[l].name] = l;
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
-    const size_t l = index[mesh.boundary[t]];
+    const size_t l = label[t];
     for (const int32_t v : mesh.tri[t])
       for (int a = 0; a < 3; ++a) {
         low[l][a] = std::min(low[l][a], mesh.point[size_t(v)][a]);
@@ -47,8 +43,8 @@ void find_flat_labels(DynamicMesh& m, const TetMesh& mesh) {
 
 } // namespace
 
-void set_kinds(DynamicMesh& m, const TetMesh& mesh, double sharp) {
-  find_flat_labels(m, mesh);
+void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, double sharp) {
+  find_flat_labels(m, mesh, label);
   std::vector<std::array<uint8_t, 3>> seen(m.point.size(), {0, 0, 0});
   std::vector<uint8_t> many(m.point.size(), 0);
   struct Edge {
@@ -58,22 +54,19 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, double sharp) {
   };
   std::vector<Edge> edges;
   edges.reserve(3 * mesh.tri.size());
-  std::map<int32_t, uint8_t> index;
-  for (size_t l = 1; l < m.labels.size(); ++l)
-    index[m.labels[l].name] = static_cast<uint8_t>(l);
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
-    const uint8_t label = index[mesh.boundary[t]];
+    const uint8_t l = label[t];
     for (size_t i = 0; i < 3; ++i) {
       const int32_t v = mesh.tri[t][i], w = mesh.tri[t][(i + 1) % 3];
       auto& s = seen[size_t(v)];
       size_t k = 0;
-      while (k < 3 && s[k] != 0 && s[k] != label)
+      while (k < 3 && s[k] != 0 && s[k] != l)
         ++k;
       if (k == 3)
         many[size_t(v)] = 1;
       else
-        s[k] = label;
-      edges.push_back({std::min(v, w), std::max(v, w), label, static_cast<int32_t>(t)});
+        s[k] = l;
+      edges.push_back({std::min(v, w), std::max(v, w), l, static_cast<int32_t>(t)});
     }
   }
   for (size_t v = 0; v < m.point.size(); ++v) {
