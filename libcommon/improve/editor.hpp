@@ -1,6 +1,11 @@
 // editor.hpp — local operations on one part of a mesh: cavity out, cavity in, and the worst element must rise.
 // Parts are sets of vertices. An operation changes only elements whose four vertices belong to its part, so editors
 // of different parts may run at the same time, and what they do does not depend on the order.
+// Of an element of no part an editor also writes the one side, neighbour and label, that it shows to an element of
+// its own, and reads the others to find it. No other editor touches that element's sides: it has three vertices in
+// this part, so every face towards an element of another part would need one vertex of each. Nor does anyone write
+// its vertices, region or quality. Arrays do not grow while editors run: slots for new elements are reserved
+// before.
 #pragma once
 #include "improve/dynamic_mesh.hpp"
 #include "improve/guard.hpp"
