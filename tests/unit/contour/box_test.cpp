@@ -1,0 +1,74 @@
+// box_test.cpp — outer boxes: exact walls, cuts through the molecule, what is refused.
+#include "contour/contour.hpp"
+#include "error.hpp"
+#include "unit/contour/checked.hpp"
+#include "unit/contour/sample_grid.hpp"
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace molmesh;
+using contour::Options;
+using test::atom;
+using test::checked;
+using test::cube_grid;
+using test::mesh_of;
+using test::region_volume;
+
+TEST_CASE("boxes: exact walls, a cut through the molecule, few elements far away") {
+  const BlockGrid grid = cube_grid(6, 0.5, atom);
+  Options options;
+  options.meshed = Options::both;
+  options.box.kind = contour::BoxRequest::corners;
+  options.box.lower = {-7.3, -11.1, -6.2};
+  options.box.upper = {8.125, 9.77, 14.01};
+  Validity v = checked(mesh_of(grid, options));
+  CHECK(v.low == options.box.lower);
+  CHECK(v.high == options.box.upper);
+
+  SECTION("a cut") {
+    options.box.lower = {-1.1, -9, -9};
+    options.box.upper = {9, 0.77, 9};
+    for (auto meshed : {Options::interior, Options::exterior, Options::both}) {
+      options.meshed = meshed;
+      v = checked(mesh_of(grid, options));
+    }
+    CHECK(v.low == options.box.lower);
+    CHECK(v.high == options.box.upper);
+    CHECK(region_volume(v, molecule) > 20);
+  }
+  SECTION("a box that misses the grid") {
+    options.box.lower = {100, -9, -9};
+    options.box.upper = {120, 9, 9};
+    CHECK_THROWS_WITH(mesh_of(grid, options), Catch::Contains("expected a box that meets the grid"));
+    options.box.lower = {-9, -9, -120};
+    options.box.upper = {9, 9, -100};
+    CHECK_THROWS_AS(mesh_of(grid, options), Error);
+    options.box.lower = {-1, -1, -1}; // within the molecule
+    options.box.upper = {1.5, 1, 1.2};
+    CHECK(region_volume(checked(mesh_of(grid, options)), molecule) == Approx(2.5 * 2 * 2.2));
+    options.meshed = Options::exterior;
+    CHECK_THROWS_WITH(mesh_of(grid, options), Catch::Contains("nothing to mesh"));
+  }
+  SECTION("a far box") {
+    options.box.kind = contour::BoxRequest::factor;
+    options.box.scale = 3;
+    const size_t near = mesh_of(grid, options).tet.size();
+    options.box.scale = 40;
+    const TetMesh far = mesh_of(grid, options);
+    v = checked(far);
+    CHECK(v.high.x - v.low.x == Approx(40 * 6));
+    // A shell for each doubling of the box, whatever the molecule's size.
+    CHECK(double(far.tet.size()) - double(near) < 6000 * std::log2(40. / 3));
+    options.box.scale = 20; // 130 spacings: no multiple of a large cell's edge
+    CHECK(mesh_of(grid, options).tet.size() < far.tet.size());
+  }
+}
+
+TEST_CASE("a surface that meets the wall is refused unless the box was asked to cut it") {
+  const BlockGrid grid = cube_grid(2.5, 0.5, atom); // all inside but for nothing: no surface
+  Options options;
+  CHECK_THROWS_AS(mesh_of(grid, options), Error);
+  const BlockGrid cut = test::sample_grid({-12, -12, 0}, {25, 25, 13}, 0.5, 2, atom);
+  CHECK_THROWS_AS(mesh_of(cut, options), Error);
+}
