@@ -8,12 +8,8 @@
 #include <cmath>
 
 using namespace molmesh;
+using namespace molmesh::test;
 using contour::Options;
-using test::atom;
-using test::checked;
-using test::cube_grid;
-using test::mesh_of;
-using test::region_volume;
 
 TEST_CASE("boxes: exact walls, a cut through the molecule, few elements far away") {
   const BlockGrid grid = cube_grid(6, 0.5, atom);

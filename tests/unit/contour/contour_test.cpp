@@ -7,12 +7,8 @@
 #include <cmath>
 
 using namespace molmesh;
+using namespace molmesh::test;
 using contour::Options;
-using test::atom;
-using test::checked;
-using test::cube_grid;
-using test::mesh_of;
-using test::region_volume;
 
 namespace {
 

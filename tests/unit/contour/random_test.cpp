@@ -9,9 +9,8 @@
 #include <random>
 
 using namespace molmesh;
+using namespace molmesh::test;
 using contour::Options;
-using test::checked;
-using test::mesh_of;
 
 namespace {
 
@@ -69,15 +68,15 @@ int64_t trilinear_euler(const BlockGrid& grid) {
 TEST_CASE("random densities: always valid, ties with the isovalue among them") {
   std::mt19937_64 random(5);
   for (int trial = 0; trial < 36; ++trial) {
-    const BlockGrid grid = test::random_grid(random, trial);
-    const auto meshed = std::array{Options::both, Options::interior, Options::exterior}[size_t(trial / 3 % 3)];
-    for (double adapt : {0.0, 0.3}) {
-      CAPTURE(trial, int(meshed), adapt);
-      Options options;
-      options.meshed = meshed;
-      options.adapt = adapt;
-      checked(mesh_of(grid, options));
-    }
+    const BlockGrid grid = random_grid(random, trial);
+    for (auto meshed : {Options::interior, Options::exterior, Options::both})
+      for (double adapt : {0.0, 0.3}) {
+        CAPTURE(trial, int(meshed), adapt);
+        Options options;
+        options.meshed = meshed;
+        options.adapt = adapt;
+        checked(mesh_of(grid, options));
+      }
   }
 }
 
@@ -85,7 +84,7 @@ TEST_CASE("random densities: always valid, ties with the isovalue among them") {
 TEST_CASE("a thousand random densities: always valid, ties with the isovalue among them", "[.][thousand]") {
   std::mt19937_64 random(6);
   for (int trial = 0; trial < 1000; ++trial) {
-    const BlockGrid grid = test::random_grid(random, trial);
+    const BlockGrid grid = random_grid(random, trial);
     for (double adapt : {0.0, contour::default_adapt(grid.frame.spacing)}) {
       CAPTURE(trial, adapt);
       Options options;

@@ -109,7 +109,7 @@ TEST_CASE("device stages: the host's, one by one, on random densities with ambig
   std::mt19937_64 random(5);
   contour::Summary sum;
   int64_t meshes = 0, dropped = 0, filled = 0;
-  for (int trial = 0; trial < 12; ++trial) {
+  for (int trial = 0; trial < 24; ++trial) {
     const BlockGrid grid = test::random_grid(random, trial);
     const auto meshed = std::array{Options::interior, Options::exterior, Options::both}[size_t(trial / 2 % 3)];
     for (double adapt : {0.0, 0.3}) {
@@ -137,7 +137,7 @@ TEST_CASE("device stages: the host's, one by one, on random densities with ambig
       filled += s.summary.filled_cavities;
     }
   }
-  CHECK(meshes == 24);
+  CHECK(meshes == 48);
   CHECK(sum.face_points > 1000);
   CHECK(sum.edge_points > 1000);
   CHECK(sum.restored_points > 0);
