@@ -17,8 +17,8 @@ inline double default_adapt(double spacing) {
 struct Options {
   enum Meshed { interior, exterior, both } meshed = interior;
   BoxRequest box;
-  std::optional<double>
-      adapt; ///< allowed distance from the mean plane, in grid spacings; 0: uniform; default_adapt
+  /// Allowed distance from the mean plane, in grid spacings; 0: uniform; none: default_adapt.
+  std::optional<double> adapt;
   bool fill_cavities = false;
   double drop_below = 0; ///< Å³, 0: nothing
   int threads = 1;
