@@ -17,17 +17,13 @@ using contour::detail::RelaxView;
 template <class Team>
 class TeamStar {
 public:
-  /// spoke, quality, order: scratch for all stars, as MoveTeams has it. side: of 6
-  HD TeamStar(const RelaxView& r, int32_t c, Team team, improve::Spoke<float>* spoke, float* quality,
-              uint16_t* order, float* side)
+  /// spoke, quality: scratch for all stars, as MoveTeams has it. side: of 6
+  HD TeamStar(const RelaxView& r, int32_t c, Team team, improve::Spoke<float>* spoke, float* quality, float* side)
       : r_(r), team_(team), vertex_(r.vertex[c]), n_(static_cast<int32_t>(r.first[c + 1] - r.first[c])),
-        groups_((n_ + lanes - 1) / lanes), element_(r.element + r.first[c]), spoke_(spoke + r.first[c]),
-        quality_(quality + r.first[c]), order_(order + r.first[c] / lanes + c), side_(side),
+        element_(r.element + r.first[c]), spoke_(spoke + r.first[c]), quality_(quality + r.first[c]), side_(side),
         origin_(r.e.position[vertex_]) {
-    for (int32_t g = team_.rank(); g < groups_; g += Team::size)
-      order_[g] = static_cast<uint16_t>(g);
     const double length = norm(corner(0, 1) - corner(0, 2));
-    scale_ = length < 1e-300 ? 1e-300 : length;
+    inverse_ = 1 / (length < 1e-300 ? 1e-300 : length);
     for (int32_t k = team_.rank(); k < n_; k += Team::size)
       spoke_[k] = improve::make_spoke(local(corner(k, 1)), local(corner(k, 2)), local(corner(k, 3)));
     team_.sync();
@@ -42,38 +38,19 @@ public:
     return sum / (3. * double(n_));
   }
 
-  HD float worst(Vec3d x, float above) {
+  HD TeamStar& spokes() { return *this; }
+
+  HD float worst(Vec3d x, float) {
     evaluate_all(x);
-    float w = 2;
-    int32_t g = 0;
-    bool enough = false;
-    for (; g < groups_ && !enough; ++g) {
-      const int32_t first = lanes * order_[g];
-      float least = quality_[first];
-      for (int32_t k = first + 1; k < first + lanes && k < n_; ++k)
-        least = quality_[k] < least ? quality_[k] : least;
-      w = least < w ? least : w;
-      enough = !(w > above);
-    }
-    team_.sync();
-    if (enough && g > 1 && team_.rank() == 0) { // the group that decided goes one place forward
-      const uint16_t decided = order_[g - 1];
-      order_[g - 1] = order_[g - 2];
-      order_[g - 2] = decided;
-    }
+    const float w = quality_[worst_element()];
     team_.sync();
     return w;
   }
 
   HD Vec3d ascent(Vec3d x, double step) {
     evaluate_all(x);
-    int32_t worst = lanes * order_[0];
-    float w = 2;
-    for (int32_t g = 0; g < groups_; ++g)
-      for (int32_t k = lanes * order_[g]; k < lanes * (order_[g] + 1) && k < n_; ++k)
-        if (quality_[k] < w)
-          w = quality_[worst = k];
-    const auto d = static_cast<float>(step / scale_);
+    const int32_t worst = worst_element();
+    const auto d = static_cast<float>(step * inverse_);
     for (int s = team_.rank(); s < 6; s += Team::size) {
       Vec3f y = local(x);
       y[s / 2] = s % 2 ? y[s / 2] - d : y[s / 2] + d;
@@ -108,8 +85,6 @@ public:
     return true;
   }
 
-  static constexpr int32_t lanes = 8; ///< of a group of Spokes
-
 private:
   /// Of element k, the vertex in front.
   HD Vec3d corner(int32_t k, int i) const {
@@ -118,13 +93,21 @@ private:
     return r_.e.position[t[static_cast<size_t>(improve::spoke_corner(moving, i))]];
   }
   HD Vec3f local(Vec3d x) const {
-    const Vec3d u = (x - origin_) / scale_;
+    const Vec3d u = (x - origin_) * inverse_;
     return {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z)};
   }
   HD float evaluate(int32_t k, const Vec3f& y) const {
     float q;
-    improve::spoke_quality(spoke_[k], y, q);
+    improve::spoke_quality(spoke_[k], y.x, y.y, y.z, q);
     return q;
+  }
+  /// Of equals the first.
+  HD int32_t worst_element() const {
+    int32_t worst = 0;
+    for (int32_t k = 1; k < n_; ++k)
+      if (quality_[k] < quality_[worst])
+        worst = k;
+    return worst;
   }
   HD void evaluate_all(Vec3d x) {
     const Vec3f y = local(x);
@@ -135,14 +118,13 @@ private:
 
   const RelaxView& r_;
   Team team_;
-  int32_t vertex_, n_, groups_;
+  int32_t vertex_, n_;
   const int32_t* element_;
   improve::Spoke<float>* spoke_; ///< [n]
   float* quality_;               ///< [n]
-  uint16_t* order_;              ///< [groups] in which worst() looks at them
   float* side_;
   Vec3d origin_;
-  double scale_ = 0;
+  double inverse_ = 0; ///< of the unit of length
 };
 
 /// Those who have the turn.
@@ -154,7 +136,6 @@ struct MoveTeams {
   Fate* fate;
   improve::Spoke<float>* spoke; ///< [star entries]
   float* quality;               ///< [star entries]
-  uint16_t* order;              ///< [star entries / 8 + candidates]
   struct Shared {
     float side[6];
   };
@@ -162,7 +143,7 @@ struct MoveTeams {
   HD void operator()(int64_t i, Team team, Shared& shared) const {
     if (fate[i] != Fate::stays)
       return;
-    TeamStar<Team> star(r, active[i], team, spoke, quality, order, shared.side);
+    TeamStar<Team> star(r, active[i], team, spoke, quality, shared.side);
     if (contour::detail::move_vertex(r, surface, most_distance, active[i], star) && team.rank() == 0)
       fate[i] = Fate::moves;
   }
@@ -172,17 +153,19 @@ template <class Backend>
 class TeamMover {
 public:
   TeamMover(Backend& b, const improve::Isosurface& surface) : b_(b), surface_(b, surface) {}
+  void judge(const contour::detail::Qualities& all) {
+    const auto tets = double(all.e.tets);
+    b_.for_n("element qualities", all.e.tets, all, {tets * 20 + double(all.e.positions) * 25, 180. * tets, true});
+  }
   void begin(const RelaxView&, int64_t candidates, int64_t entries) {
     entries_ = double(entries) / double(candidates);
     spoke_ = b_.template array<improve::Spoke<float>>(entries);
     quality_ = b_.template array<float>(entries);
-    order_ = b_.template array<uint16_t>(entries / TeamStar<Solo>::lanes + candidates);
   }
   void move(const RelaxView& r, const int32_t* active, int64_t n, Fate* fate, double most_distance) {
-    b_.for_teams(
-        "move vertices", n,
-        MoveTeams{r, surface_.view(), most_distance, active, fate, spoke_.data(), quality_.data(), order_.data()},
-        {double(n) * entries_ * 112});
+    b_.for_teams("move vertices", n,
+                 MoveTeams{r, surface_.view(), most_distance, active, fate, spoke_.data(), quality_.data()},
+                 {double(n) * entries_ * 112});
   }
 
 private:
@@ -191,7 +174,6 @@ private:
   double entries_ = 0; ///< of a star, in the mean
   typename Backend::template Array<improve::Spoke<float>> spoke_;
   typename Backend::template Array<float> quality_;
-  typename Backend::template Array<uint16_t> order_;
 };
 
 } // namespace molmesh::cuda

@@ -1,11 +1,15 @@
-// relax.cpp — the passes on the host's threads, elements of a star eight at a time.
+// relax.cpp — the passes on the host's threads, many elements or places at a time.
 #include "contour/relax.hpp"
 #include "contour/detail/at.hpp"
 #include "contour/detail/move_vertex.hpp"
 #include "contour/detail/relax_passes.hpp"
 #include "geom/predicates.hpp"
+#include "improve/isosurface.hpp"
+#include "improve/near_isosurface.hpp"
+#include "improve/quality_kernel.hpp"
 #include "improve/spokes.hpp"
 #include "par/launcher.hpp"
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -15,6 +19,17 @@ using detail::at;
 using detail::Fate;
 namespace {
 
+using Judged = std::vector<improve::EightElements>;
+
+void put(Judged& to, size_t k, size_t corner, Vec3d x) {
+  improve::EightElements& e = to[k / 8];
+  e.x[corner][k % 8] = x.x, e.y[corner][k % 8] = x.y, e.z[corner][k % 8] = x.z;
+}
+Vec3d got(const Judged& from, size_t k, size_t corner) {
+  const improve::EightElements& e = from[k / 8];
+  return {e.x[corner][k % 8], e.y[corner][k % 8], e.z[corner][k % 8]};
+}
+
 /// Of detail::move_vertex; keeps its memory from star to star.
 class Star {
 public:
@@ -22,41 +37,48 @@ public:
     r_ = &r;
     vertex_ = r.vertex[candidate];
     element_ = r.element + r.first[candidate];
+    elements_ = at(r.first[candidate + 1] - r.first[candidate]);
+    corner_.resize((elements_ + 7) / 8);
+    moving_.resize(elements_);
     const Vec3d x = r.e.position[vertex_];
     spokes_.clear(x);
-    corner_.clear();
-    moving_.clear();
     length_ = 0;
-    for (const int32_t* e = element_; e < r.element + r.first[candidate + 1]; ++e) {
-      const Tet& t = r.e.tet[*e];
+    for (size_t k = 0; k < elements_; ++k) {
+      const Tet& t = r.e.tet[element_[k]];
       std::array<Vec3d, 4> p;
       size_t moving = 0;
       for (size_t i = 0; i < 4; ++i) {
         p[i] = r.e.position[t[i]];
+        put(corner_, k, i, p[i]);
         length_ += norm(p[i] - x);
         if (t[i] == vertex_)
           moving = i;
       }
       spokes_.add(p, static_cast<int>(moving));
-      corner_.push_back(p);
-      moving_.push_back(moving);
+      moving_[k] = moving;
     }
-    length_ /= 3. * double(spokes_.size());
+    length_ /= 3. * double(elements_);
   }
   double length() const { return length_; }
-  float worst(Vec3d x, float above) { return spokes_.worst(x, above); }
-  Vec3d ascent(Vec3d x, double step) { return spokes_.ascent(x, step); }
+  improve::Spokes& spokes() { return spokes_; }
   bool take(Vec3d x, float worst) {
-    quality_.clear();
-    for (size_t k = 0; k < corner_.size(); ++k) {
-      std::array<Vec3d, 4>& p = corner_[k];
-      p[moving_[k]] = x;
-      quality_.push_back(improve::tet_quality(p[0], p[1], p[2], p[3]));
-      if (quality_.back() <= worst || orient3d(p[0], p[1], p[2], p[3]) <= 0)
-        return false;
+    quality_.resize(8 * corner_.size());
+    for (size_t k = 0; k < elements_; ++k)
+      put(corner_, k, moving_[k], x);
+    for (size_t g = 0; g < corner_.size(); ++g) {
+      float q[8];
+      improve::qualities(corner_[g], q);
+      for (size_t k = 8 * g; k < elements_ && k < 8 * g + 8; ++k) {
+        if (q[k % 8] <= worst)
+          return false;
+        if (q[k % 8] < improve::surely_positive &&
+            orient3d(got(corner_, k, 0), got(corner_, k, 1), got(corner_, k, 2), got(corner_, k, 3)) <= 0)
+          return false;
+        quality_[k] = q[k % 8];
+      }
     }
     r_->e.position[vertex_] = x;
-    for (size_t k = 0; k < quality_.size(); ++k)
+    for (size_t k = 0; k < elements_; ++k)
       r_->quality[element_[k]] = quality_[k];
     return true;
   }
@@ -64,18 +86,62 @@ public:
 private:
   const detail::RelaxView* r_ = nullptr;
   const int32_t* element_ = nullptr;
+  size_t elements_ = 0;
   int32_t vertex_ = 0;
   double length_ = 0;
   improve::Spokes spokes_;
-  std::vector<std::array<Vec3d, 4>> corner_;
+  Judged corner_;
   std::vector<size_t> moving_;
   std::vector<float> quality_;
 };
 
+/// A chunk of elements: those of the lattice apart, the others eight at a time.
+struct JudgeChunk {
+  static constexpr int64_t grain = 1, chunk = 4096;
+  detail::Qualities all;
+  void operator()(int64_t c) const {
+    const ElementsView& e = all.e;
+    improve::EightElements some{};
+    std::array<int64_t, 8> tet{};
+    size_t n = 0;
+    const auto judge = [&] {
+      float q[8];
+      improve::qualities(some, q);
+      for (size_t l = 0; l < n; ++l)
+        all.quality[tet[l]] = q[l];
+      n = 0;
+    };
+    for (int64_t t = c * chunk, end = std::min(e.tets, t + chunk); t < end; ++t) {
+      if (all.of_lattice(e.tet[t])) {
+        all.quality[t] = 1;
+        continue;
+      }
+      for (size_t i = 0; i < 4; ++i) {
+        const Vec3d& x = e.position[e.tet[t][i]];
+        some.x[i][n] = x.x, some.y[i][n] = x.y, some.z[i][n] = x.z;
+      }
+      tet[n++] = t;
+      if (n == 8)
+        judge();
+    }
+    judge();
+  }
+};
+
+/// As it is best asked for one vertex.
+improve::NearIsosurface near(const improve::IsosurfaceView& surface) {
+  return improve::NearIsosurface(surface);
+}
+template <class Surface>
+const Surface& near(const Surface& surface) {
+  return surface;
+}
+
+template <class Surface>
 struct MoveFirst {
   static constexpr int64_t grain = 16;
   detail::RelaxView r;
-  const improve::Target* surface;
+  const Surface& surface;
   double most_distance;
   const int32_t* active;
   Fate* fate;
@@ -84,34 +150,55 @@ struct MoveFirst {
       return;
     thread_local Star star;
     star.begin(r, active[i]);
-    if (detail::move_vertex(r, *surface, most_distance, active[i], star))
+    const auto& here = near(surface);
+    if (detail::move_vertex(r, here, most_distance, active[i], star))
       fate[i] = Fate::moves;
   }
 };
 
+template <class Surface>
 class Mover {
 public:
-  Mover(par::Launcher& m, const improve::Target* surface) : m_(m), surface_(surface) {}
+  Mover(par::Launcher& m, const Surface& surface) : m_(m), surface_(surface) {}
+  void judge(const detail::Qualities& all) {
+    m_.for_n("element qualities", (all.e.tets + JudgeChunk::chunk - 1) / JudgeChunk::chunk, JudgeChunk{all});
+  }
   void begin(const detail::RelaxView&, int64_t, int64_t) {}
   void move(const detail::RelaxView& r, const int32_t* active, int64_t n, Fate* fate, double most_distance) {
-    m_.for_n("move vertices", n, MoveFirst{r, surface_, most_distance, active, fate});
+    m_.for_n("move vertices", n, MoveFirst<Surface>{r, surface_, most_distance, active, fate});
   }
 
 private:
   par::Launcher& m_;
-  const improve::Target* surface_;
+  const Surface& surface_;
 };
+
+/// Without a surface: vertices on it do not ask.
+struct NoSurface {
+  bool probe(Vec3d, double&, Vec3d&) const { return false; }
+  double spacing() const { return 0; }
+};
+
+template <class Surface>
+int64_t relax_on(const Surface& surface, bool surface_moves, Elements& elements,
+                 const LargeArray<uint8_t>& lattice_class, int threads) {
+  par::Launcher launcher(threads);
+  Mover<Surface> mover(launcher, surface);
+  return detail::RelaxPasses<par::Launcher, Mover<Surface>>(launcher, elements.view(), lattice_class.data(),
+                                                            static_cast<int64_t>(lattice_class.size()),
+                                                            surface_moves, mover)
+      .run();
+}
 
 } // namespace
 
 int64_t relax(Elements& elements, const LargeArray<uint8_t>& lattice_class, const improve::Target* surface,
               int threads) {
-  par::Launcher launcher(threads);
-  Mover mover(launcher, surface);
-  return detail::RelaxPasses<par::Launcher, Mover>(launcher, elements.view(), lattice_class.data(),
-                                                   static_cast<int64_t>(lattice_class.size()), surface != nullptr,
-                                                   mover)
-      .run();
+  if (!surface)
+    return relax_on(NoSurface{}, false, elements, lattice_class, threads);
+  if (const auto* isosurface = dynamic_cast<const improve::Isosurface*>(surface))
+    return relax_on(isosurface->view(), true, elements, lattice_class, threads);
+  return relax_on(*surface, true, elements, lattice_class, threads);
 }
 
 } // namespace molmesh::contour

@@ -20,14 +20,27 @@ struct IsosurfaceView {
   /// f = log(G / isovalue) and its gradient (1/Å); outside the known cells by the next one, a quarter of a cell
   /// far. False beyond.
   HD bool evaluate(Vec3d p, double& f, Vec3d& gradient) const {
-    const Vec3d u = (p - frame.origin) / frame.spacing;
-    if (!(std::abs(u.x) < 1e9 && std::abs(u.y) < 1e9 && std::abs(u.z) < 1e9))
+    Vec3d u;
+    Vec3i c;
+    if (!locate(p, u, c))
       return false;
-    Vec3i c{static_cast<int32_t>(std::floor(u.x)), static_cast<int32_t>(std::floor(u.y)),
-            static_cast<int32_t>(std::floor(u.z))};
     double v[8];
     if (!values(c, v) && !values_beside(u, c, v))
       return false;
+    interpolate(u, c, v, f, gradient);
+    return true;
+  }
+
+  /// u: p in spacings; c: the lower corner of its cell. False beyond all grids.
+  HD bool locate(Vec3d p, Vec3d& u, Vec3i& c) const {
+    u = (p - frame.origin) / frame.spacing;
+    if (!(std::abs(u.x) < 1e9 && std::abs(u.y) < 1e9 && std::abs(u.z) < 1e9))
+      return false;
+    c = {lower(u.x), lower(u.y), lower(u.z)};
+    return true;
+  }
+  /// As evaluate, at u by the cell at c with the corners' values v.
+  HD void interpolate(Vec3d u, Vec3i c, const double (&v)[8], double& f, Vec3d& gradient) const {
     const Vec3d t = u - to_double(c);
     const double z0 = v[0] + t.z * (v[1] - v[0]), z1 = v[2] + t.z * (v[3] - v[2]);
     const double z2 = v[4] + t.z * (v[5] - v[4]), z3 = v[6] + t.z * (v[7] - v[6]);
@@ -36,14 +49,14 @@ struct IsosurfaceView {
     const double d0 = (v[1] - v[0]) + t.y * ((v[3] - v[2]) - (v[1] - v[0]));
     const double d1 = (v[5] - v[4]) + t.y * ((v[7] - v[6]) - (v[5] - v[4]));
     gradient = Vec3d{y1 - y0, (z1 - z0) + t.x * ((z3 - z2) - (z1 - z0)), d0 + t.x * (d1 - d0)} / frame.spacing;
-    return true;
   }
 
   HD bool probe(Vec3d p, double& distance, Vec3d& normal) const {
     double f;
     Vec3d g;
-    if (!evaluate(p, f, g))
-      return false;
+    return evaluate(p, f, g) && to_distance(f, g, distance, normal);
+  }
+  HD bool to_distance(double f, Vec3d g, double& distance, Vec3d& normal) const {
     const double length = norm(g);
     if (!(length > 0))
       return false;
@@ -68,8 +81,7 @@ struct IsosurfaceView {
     return false;
   }
 
-private:
-  /// False where a corner is not active.
+  /// At the corners of the cell at c, z fastest. False where one is not active.
   HD bool values(Vec3i c, double (&v)[8]) const {
     double sum = 0; // NaN when one is
     if ((c.x & 7) < 7 && (c.y & 7) < 7 && (c.z & 7) < 7) {
@@ -89,6 +101,13 @@ private:
       }
     }
     return std::isfinite(sum);
+  }
+
+private:
+  /// std::floor, which is a call where processors may lack the instruction.
+  HD static int32_t lower(double x) {
+    const auto towards_zero = static_cast<int32_t>(x);
+    return towards_zero - (x < towards_zero);
   }
   /// Of the known cell behind the nearest face, whose corner c becomes: where the isosurface touches a grid point,
   /// a point may come to lie in a cell that it does not cross.

@@ -9,10 +9,11 @@ namespace molmesh::improve {
 
 /// Raises best = worth.worst(x) by moving x until it reaches the goal or no step helps. `basis`: up to three
 /// orthonormal directions to search. constrain(y) moves a trial onto what the vertex is bound to, or refuses;
-/// accept(y) has the last word. Worth: worst() and ascent() as in Spokes. Host and device.
+/// accept(y) has the last word. Worth: worst() and ascent() as in Spokes, and first_above() where that is faster
+/// than asking one by one. Steps under `least_step` of the length are not tried. Host and device.
 template <class Worth, class Constrain, class Accept>
 HD bool pattern_search(Worth& worth, Vec3d& x, float& best, float goal, double length, const Vec3d* basis,
-                       int dimensions, Constrain constrain, Accept accept) {
+                       int dimensions, Constrain constrain, Accept accept, double least_step = 0.01) {
   Vec3d direction[14];
   int directions = 0;
   for (int a = 0; a < dimensions; ++a) {
@@ -38,8 +39,31 @@ HD bool pattern_search(Worth& worth, Vec3d& x, float& best, float goal, double l
     best = q;
     return true;
   };
+  const auto try_directions = [&](double step) {
+    if constexpr (requires(float q) { worth.first_above(direction, 0, 14, q, q); }) {
+      static_assert(Worth::most_places >= 14);
+      Vec3d place[14];
+      int places = 0;
+      for (int d = 0; d < directions; ++d)
+        if (place[places] = x + step * direction[d]; constrain(place[places]))
+          ++places;
+      const float above = best + 1e-9f + 5e-3f * best;
+      float q;
+      for (int k = 0; (k = worth.first_above(place, k, places, above, q)) < places; ++k)
+        if (accept(place[k])) {
+          x = place[k];
+          best = q;
+          return true;
+        }
+    } else {
+      for (int d = 0; d < directions; ++d)
+        if (try_step(direction[d], step))
+          return true;
+    }
+    return false;
+  };
   bool moved = false;
-  for (double step = 0.2 * length; step > 0.01 * length && best < goal; step *= 0.4) {
+  for (double step = 0.2 * length; step > least_step * length && best < goal; step *= 0.4) {
     bool again = true;
     for (int round = 0; again && round < 4 && best < goal; ++round) {
       again = false;
@@ -52,8 +76,7 @@ HD bool pattern_search(Worth& worth, Vec3d& x, float& best, float goal, double l
         again = moved = true;
         continue;
       }
-      for (int d = 0; d < directions && !again; ++d)
-        again = try_step(direction[d], step);
+      again = try_directions(step);
       moved |= again;
     }
   }

@@ -4,8 +4,8 @@
 
 namespace molmesh::improve {
 
-/// What does not move of an element (vertex, a, b, c), which is positive. V: float, or a vector of the compiler's
-/// with an element in each lane.
+/// What does not move of an element (vertex, a, b, c), which is positive. V: float, or one of the compiler's
+/// vectors with an element in each lane.
 template <class V>
 struct Spoke {
   V ax, ay, az, bx, by, bz, cx, cy, cz;
@@ -24,13 +24,15 @@ HD constexpr int spoke_corner(int moving, int i) {
   return (moving == 0 ? 0x3210 : moving == 1 ? 0x2301 : moving == 2 ? 0x1032 : 0x0123) >> (4 * i) & 3;
 }
 
-/// With the vertex at x. Vectors come and go by reference: what they look like as arguments depends on the
-/// processor.
-template <class V>
-HD __attribute__((always_inline)) inline void spoke_quality(const Spoke<V>& s, const Vec3f& x, V& q) {
-  const V ax = s.ax - x.x, ay = s.ay - x.y, az = s.az - x.z;
-  const V bx = s.bx - x.x, by = s.by - x.y, bz = s.bz - x.z;
-  const V cx = s.cx - x.x, cy = s.cy - x.y, cz = s.cz - x.z;
+/// With the vertex at x, y, z. V: the wider of S and X, of which either may be float: elements in the lanes, or
+/// places. A lane's bits are the scalar's. Vectors come and go by reference: what they look like as arguments
+/// depends on the processor.
+template <class S, class X, class V>
+HD __attribute__((always_inline)) inline void spoke_quality(const Spoke<S>& s, const X& x, const X& y, const X& z,
+                                                            V& q) {
+  const V ax = s.ax - x, ay = s.ay - y, az = s.az - z;
+  const V bx = s.bx - x, by = s.by - y, bz = s.bz - z;
+  const V cx = s.cx - x, cy = s.cy - y, cz = s.cz - z;
   // Outward normals of the faces opposite a, b, c; n is that of the one opposite the vertex.
   const V ux = cy * bz - cz * by, uy = cz * bx - cx * bz, uz = cx * by - cy * bx;
   const V vx = ay * cz - az * cy, vy = az * cx - ax * cz, vz = ax * cy - ay * cx;

@@ -26,7 +26,7 @@ HD bool to_surface(const Surface& surface, const Bounds& bound, int32_t vertex, 
 }
 
 /// most_distance: of a surface vertex from the surface, in its spacings, if it was nearer. Star, of candidate c:
-/// worst() and ascent() as in improve::Spokes; length(), the mean of its edges at the vertex; and take(x, worst),
+/// spokes(), what improve::pattern_search asks; length(), the mean of its edges at the vertex; and take(x, worst),
 /// which puts the vertex there unless an element is no better than `worst`, in double precision, or not positive by
 /// the exact predicate.
 template <class Surface, class Star>
@@ -50,7 +50,7 @@ HD bool move_vertex(const RelaxView& r, const Surface& surface, double most_dist
   const auto constrain = [&](Vec3d& y) { return !on_surface || to_surface(surface, r.bound, vertex, most, y); };
   const auto accept = [](const Vec3d&) { return true; };
   float best = r.worst[c];
-  return improve::pattern_search(star, x, best, r.goal, star.length(), axis, axes, constrain, accept) &&
+  return improve::pattern_search(star.spokes(), x, best, r.goal, star.length(), axis, axes, constrain, accept) &&
          star.take(x, r.worst[c]);
 }
 

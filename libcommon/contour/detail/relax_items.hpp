@@ -5,6 +5,7 @@
 #include "contour/detail/elements_view.hpp"
 #include "contour/detail/raise.hpp"
 #include "improve/quality.hpp"
+#include <array>
 
 namespace molmesh::contour::detail {
 
@@ -35,8 +36,6 @@ struct Qualities {
   int64_t known; ///< of the vertices
   float* quality;
   HD void operator()(int64_t t) const { quality[t] = of_lattice(e.tet[t]) ? 1 : quality_of(e, t); }
-
-private:
   HD bool of_lattice(const Tet& t) const {
     for (size_t c = 0; c < 4; ++c)
       if (t[c] >= known)
@@ -68,16 +67,16 @@ struct RaiseBounds {
 struct RelaxView {
   ElementsView e;
   Bounds bound;
-  float* quality;         ///< [tets]
-  float goal;             ///< elements below it are bad
-  const int32_t* vertex;  ///< [candidates] ascending
-  const int32_t* number;  ///< [vertices] of the candidate, or -1
-  const int64_t* first;   ///< [candidates + 1] into element
-  const int32_t* element; ///< ascending at each candidate
-  float* worst;           ///< [candidates] worst element's quality as the round began
-  uint32_t* turn;         ///< [candidates]
-  uint8_t* wakes;         ///< [candidates] looks again in the next round
-  int32_t* moves;         ///< [candidates] how often it has moved
+  float* quality;                       ///< [tets]
+  float goal;                           ///< elements below it are bad
+  const int32_t* vertex;                ///< [candidates] ascending
+  const int64_t* first;                 ///< [candidates + 1] into element
+  const int32_t* element;               ///< ascending at each candidate
+  const std::array<int32_t, 4>* corner; ///< [entries of element] its corners' candidates, or -1
+  float* worst;                         ///< [candidates] worst element's quality as the round began
+  uint32_t* turn;                       ///< [candidates]
+  uint8_t* wakes;                       ///< [candidates] looks again in the next round
+  int32_t* moves;                       ///< [candidates] how often it has moved
 
   static constexpr uint32_t at_rest = ~uint32_t{0}; ///< of turn: does not want to move
 };
@@ -124,9 +123,12 @@ struct CornerCandidate {
 struct PlaceStars {
   CornerCandidate of;
   int32_t *element, *owner;
+  std::array<int32_t, 4>* corner;
   HD void operator()(int64_t slot, int64_t i) const {
     element[slot] = of.near[i >> 2];
     owner[slot] = static_cast<int32_t>(of(i));
+    const Tet& t = of.tet[element[slot]];
+    corner[slot] = {of.number[t[0]], of.number[t[1]], of.number[t[2]], of.number[t[3]]};
   }
 };
 struct FirstOfStars {
@@ -180,8 +182,8 @@ private:
     if (mine == RelaxView::at_rest)
       return false;
     for (int64_t k = r.first[c]; k < r.first[c + 1]; ++k)
-      for (size_t corner = 0; corner < 4; ++corner) {
-        const int32_t j = r.number[r.e.tet[r.element[k]][corner]];
+      for (size_t i = 0; i < 4; ++i) {
+        const int32_t j = r.corner[k][i];
         if (j >= 0 && (r.turn[j] < mine || (r.turn[j] == mine && j < c)))
           return false;
       }
@@ -203,8 +205,8 @@ struct WakeNeighbours {
       return;
     ++r.moves[c];
     for (int64_t k = r.first[c]; k < r.first[c + 1]; ++k)
-      for (size_t corner = 0; corner < 4; ++corner)
-        if (const int32_t j = r.number[r.e.tet[r.element[k]][corner]]; j >= 0)
+      for (size_t m = 0; m < 4; ++m)
+        if (const int32_t j = r.corner[k][m]; j >= 0)
           raise(r.wakes[j]);
   }
 };

@@ -5,8 +5,8 @@
 
 namespace molmesh::contour::detail {
 
-/// Mover: move(view, active, n, fate, most_distance) lets those move who have the turn; begin(view, candidates,
-/// entries) before the first round over these stars.
+/// Mover: judge(qualities) lets that item judge all elements; move(view, active, n, fate, most_distance) lets those
+/// move who have the turn; begin(view, candidates, entries) before the first round over these stars.
 template <class Launcher, class Mover>
 class RelaxPasses {
   template <class T>
@@ -23,8 +23,7 @@ public:
     r_.quality = quality_.data();
     r_.bound = {bound_.data()};
     r_.goal = static_cast<float>(improve::angle_quality(largest_angle));
-    m.for_n("element qualities", e.tets, Qualities{e, lattice_class, known, r_.quality},
-            {double(e.tets) * 20 + double(e.positions) * 25, 180. * double(e.tets), true});
+    mover_.judge(Qualities{e, lattice_class, known, r_.quality});
     m.for_n("bounds", e.tris, RaiseBounds{e, r_.bound}, {double(e.tris) * 16});
   }
 
@@ -63,17 +62,18 @@ private:
     const int64_t n = vertex_.n;
     if (n == 0)
       return 0;
-    number_ = m_.filled(e.positions, int32_t{-1});
-    m_.for_n("number candidates", n, NumberCandidates{vertex_.data(), number_.data()}, {double(n) * 8});
+    auto number = m_.filled(e.positions, int32_t{-1});
+    m_.for_n("number candidates", n, NumberCandidates{vertex_.data(), number.data()}, {double(n) * 8});
     const Ids near = gather<int32_t>(m_, "near elements", e.tets, NearTets{e.tet, wanted.data()});
-    const CornerCandidate of{e.tet, near.data(), number_.data()};
+    const CornerCandidate of{e.tet, near.data(), number.data()};
     Array<int32_t> owner;
     int64_t entries = 0;
     place_by(m_, "stars", 4 * near.n, n, of, [&](int64_t slots) {
       entries = slots;
       element_ = m_.template array<int32_t>(slots);
       owner = m_.template array<int32_t>(slots);
-      return PlaceStars{of, element_.data(), owner.data()};
+      corner_ = m_.template array<std::array<int32_t, 4>>(slots);
+      return PlaceStars{of, element_.data(), owner.data(), corner_.data()};
     });
     first_ = m_.filled(n + 1, entries);
     m_.for_n("first of stars", entries, FirstOfStars{owner.data(), first_.data()}, {double(entries) * 4});
@@ -82,9 +82,9 @@ private:
     wakes_ = m_.filled(n, uint8_t{1});
     moves_ = m_.filled(n + 1, int32_t{0});
     r_.vertex = vertex_.data();
-    r_.number = number_.data();
     r_.first = first_.data();
     r_.element = element_.data();
+    r_.corner = corner_.data();
     r_.worst = worst_.data();
     r_.turn = turn_.data();
     r_.wakes = wakes_.data();
@@ -109,7 +109,8 @@ private:
   Array<float> quality_;
   Array<uint8_t> bound_;
   Ids vertex_;
-  Array<int32_t> number_, element_, moves_;
+  Array<int32_t> element_, moves_;
+  Array<std::array<int32_t, 4>> corner_;
   Array<int64_t> first_;
   Array<float> worst_;
   Array<uint32_t> turn_;

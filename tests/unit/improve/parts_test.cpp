@@ -3,9 +3,13 @@
 #include "improve/dynamic_mesh.hpp"
 #include "improve/editor.hpp"
 #include "improve/isosurface.hpp"
+#include "improve/near_isosurface.hpp"
+#include "improve/quality_kernel.hpp"
 #include "improve/reference_surface.hpp"
 #include "improve/spokes.hpp"
 #include "lattice_mesh.hpp"
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -78,6 +82,40 @@ TEST_CASE("spokes find the worst element wherever their vertex is") {
       }
       CHECK(spokes.worst(x, -1.f) == Approx(worst).epsilon(2e-3).margin(1e-6));
     }
+    // Many places at once: the answer of one by one, to the last bit.
+    std::array<Vec3d, improve::Spokes::most_places> place;
+    std::array<float, improve::Spokes::most_places> worst;
+    for (size_t k = 0; k < place.size(); ++k) {
+      place[k] = origin + random_point(0.05);
+      worst[k] = spokes.worst(place[k], -2.f);
+    }
+    const int places = 1 + n % improve::Spokes::most_places, from = n / 16 % places;
+    for (const float above : {-2.f, *std::max_element(worst.begin(), worst.end()), worst[0], worst[7]}) {
+      spokes.ascent(place[0], 1e-3);
+      int first = from;
+      while (first < places && !(worst[size_t(first)] > above))
+        ++first;
+      float q = -3;
+      REQUIRE(spokes.first_above(place.data(), from, places, above, q) == first);
+      if (first < places)
+        CHECK(q == worst[size_t(first)]);
+    }
+  }
+}
+
+TEST_CASE("eight elements are judged as one is, to the last bit") {
+  for (int n = 0; n < 1000; ++n) {
+    improve::EightElements eight;
+    std::array<std::array<Vec3d, 4>, 8> p;
+    for (size_t l = 0; l < 8; ++l)
+      for (size_t i = 0; i < 4; ++i) {
+        p[l][i] = n % 10 == 0 && i == 3 ? 0.5 * (p[l][0] + p[l][1]) : random_point(); // some are flat
+        eight.x[i][l] = p[l][i].x, eight.y[i][l] = p[l][i].y, eight.z[i][l] = p[l][i].z;
+      }
+    float q[8];
+    improve::qualities(eight, q);
+    for (size_t l = 0; l < 8; ++l)
+      CHECK(q[l] == improve::tet_quality(p[l][0], p[l][1], p[l][2], p[l][3]));
   }
 }
 
@@ -98,6 +136,16 @@ TEST_CASE("points are projected onto the isosurface of a sphere") {
     double distance = 1;
     Vec3d normal;
     REQUIRE(surface.probe(p, distance, normal));
+    const improve::IsosurfaceView view = surface.view();
+    const improve::NearIsosurface near(view);
+    for (int k = 0; k < 20; ++k) { // the same, to the last bit, and where nothing is known
+      const Vec3d y = p + random_point(k < 18 ? 0.3 : 9);
+      double d[2] = {1, 1};
+      Vec3d m[2];
+      REQUIRE(near.probe(y, d[0], m[0]) == surface.probe(y, d[1], m[1]));
+      CHECK(d[0] == d[1]);
+      CHECK(m[0] == m[1]);
+    }
     CHECK(std::abs(distance) <= 1e-3 * h);
     CHECK(dot(normal, unit) > 0.95);
   }
