@@ -43,8 +43,15 @@ public:
     const Vec3d x = r.e.position[vertex_];
     spokes_.clear(x);
     length_ = 0;
+    // In three steps, so that many elements and then corners are on their way from memory at once.
+    tet_.resize(elements_);
+    for (size_t k = 0; k < elements_; ++k)
+      tet_[k] = r.e.tet[element_[k]];
+    for (const Tet& t : tet_)
+      for (const int32_t v : t)
+        __builtin_prefetch(&r.e.position[v]);
     for (size_t k = 0; k < elements_; ++k) {
-      const Tet& t = r.e.tet[element_[k]];
+      const Tet& t = tet_[k];
       std::array<Vec3d, 4> p;
       size_t moving = 0;
       for (size_t i = 0; i < 4; ++i) {
@@ -90,6 +97,7 @@ private:
   int32_t vertex_ = 0;
   double length_ = 0;
   improve::Spokes spokes_;
+  std::vector<Tet> tet_;
   Judged corner_;
   std::vector<size_t> moving_;
   std::vector<float> quality_;

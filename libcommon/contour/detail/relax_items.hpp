@@ -76,6 +76,7 @@ struct RelaxView {
   float* worst;                         ///< [candidates] worst element's quality as the round began
   uint32_t* turn;                       ///< [candidates]
   uint8_t* wakes;                       ///< [candidates] looks again in the next round
+  uint8_t* changed;                     ///< [candidates] since `worst` was found an element may have
   int32_t* moves;                       ///< [candidates] how often it has moved
 
   static constexpr uint32_t at_rest = ~uint32_t{0}; ///< of turn: does not want to move
@@ -113,22 +114,31 @@ struct NearTets {
     return 1;
   }
 };
-/// Corner i % 4 of near element i / 4: its candidate, or -1.
-struct CornerCandidate {
+/// Of near element i: its corners' candidates, or -1.
+struct CornerCandidates {
   const Tet* tet;
   const int32_t *near, *number;
-  HD int64_t operator()(int64_t i) const { return number[tet[near[i >> 2]][static_cast<size_t>(i & 3)]]; }
+  std::array<int32_t, 4>* corner;
+  HD void operator()(int64_t i) const {
+    const Tet& t = tet[near[i]];
+    corner[i] = {number[t[0]], number[t[1]], number[t[2]], number[t[3]]};
+  }
+};
+/// Corner i % 4 of near element i / 4.
+struct CornerCandidate {
+  const std::array<int32_t, 4>* corner;
+  HD int64_t operator()(int64_t i) const { return corner[i >> 2][static_cast<size_t>(i & 3)]; }
 };
 /// In the order of the candidates, then of the elements.
 struct PlaceStars {
   CornerCandidate of;
+  const int32_t* near;
   int32_t *element, *owner;
   std::array<int32_t, 4>* corner;
   HD void operator()(int64_t slot, int64_t i) const {
-    element[slot] = of.near[i >> 2];
+    element[slot] = near[i >> 2];
     owner[slot] = static_cast<int32_t>(of(i));
-    const Tet& t = of.tet[element[slot]];
-    corner[slot] = {of.number[t[0]], of.number[t[1]], of.number[t[2]], of.number[t[3]]};
+    corner[slot] = of.corner[i >> 2];
   }
 };
 struct FirstOfStars {
@@ -155,11 +165,15 @@ struct StartRound {
   int round;
   HD void operator()(int64_t i) const {
     const int32_t c = active[i];
-    float w = 1;
-    for (int64_t k = r.first[c]; k < r.first[c + 1]; ++k)
-      if (const float q = r.quality[r.element[k]]; q < w)
-        w = q;
-    r.worst[c] = w;
+    float w = r.worst[c];
+    if (r.changed[c]) {
+      w = 1;
+      for (int64_t k = r.first[c]; k < r.first[c + 1]; ++k)
+        if (const float q = r.quality[r.element[k]]; q < w)
+          w = q;
+      r.worst[c] = w;
+      r.changed[c] = 0;
+    }
     r.turn[c] = w < r.goal ? turn(c, round) : RelaxView::at_rest;
     r.wakes[c] = 0;
   }
@@ -206,8 +220,10 @@ struct WakeNeighbours {
     ++r.moves[c];
     for (int64_t k = r.first[c]; k < r.first[c + 1]; ++k)
       for (size_t m = 0; m < 4; ++m)
-        if (const int32_t j = r.corner[k][m]; j >= 0)
+        if (const int32_t j = r.corner[k][m]; j >= 0) {
           raise(r.wakes[j]);
+          raise(r.changed[j]);
+        }
   }
 };
 

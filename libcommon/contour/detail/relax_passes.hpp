@@ -65,7 +65,11 @@ private:
     auto number = m_.filled(e.positions, int32_t{-1});
     m_.for_n("number candidates", n, NumberCandidates{vertex_.data(), number.data()}, {double(n) * 8});
     const Ids near = gather<int32_t>(m_, "near elements", e.tets, NearTets{e.tet, wanted.data()});
-    const CornerCandidate of{e.tet, near.data(), number.data()};
+    auto near_corner = m_.template array<std::array<int32_t, 4>>(near.n);
+    m_.for_n("corner candidates", near.n, CornerCandidates{e.tet, near.data(), number.data(), near_corner.data()},
+             {double(near.n) * 52});
+    number = {};
+    const CornerCandidate of{near_corner.data()};
     Array<int32_t> owner;
     int64_t entries = 0;
     place_by(m_, "stars", 4 * near.n, n, of, [&](int64_t slots) {
@@ -73,13 +77,14 @@ private:
       element_ = m_.template array<int32_t>(slots);
       owner = m_.template array<int32_t>(slots);
       corner_ = m_.template array<std::array<int32_t, 4>>(slots);
-      return PlaceStars{of, element_.data(), owner.data(), corner_.data()};
+      return PlaceStars{of, near.data(), element_.data(), owner.data(), corner_.data()};
     });
     first_ = m_.filled(n + 1, entries);
     m_.for_n("first of stars", entries, FirstOfStars{owner.data(), first_.data()}, {double(entries) * 4});
     worst_ = m_.template array<float>(n);
     turn_ = m_.filled(n, RelaxView::at_rest);
     wakes_ = m_.filled(n, uint8_t{1});
+    changed_ = m_.filled(n, uint8_t{1});
     moves_ = m_.filled(n + 1, int32_t{0});
     r_.vertex = vertex_.data();
     r_.first = first_.data();
@@ -88,6 +93,7 @@ private:
     r_.worst = worst_.data();
     r_.turn = turn_.data();
     r_.wakes = wakes_.data();
+    r_.changed = changed_.data();
     r_.moves = moves_.data();
     mover_.begin(r_, n, entries);
     return n;
@@ -114,7 +120,7 @@ private:
   Array<int64_t> first_;
   Array<float> worst_;
   Array<uint32_t> turn_;
-  Array<uint8_t> wakes_;
+  Array<uint8_t> wakes_, changed_;
 };
 
 } // namespace molmesh::contour::detail
