@@ -1,6 +1,7 @@
 // quality_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "improve/quality_kernel.hpp"
 #include "improve/quality.hpp"
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "improve/quality_kernel.cpp"
@@ -14,22 +15,22 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::CappedTag<double, 8>;
-using V = decltype(hn::Zero(F()).raw); // the compiler's own: tet_quality's text is the scalar's and the device's
 constexpr F f{};
 constexpr int lanes = static_cast<int>(HWY_MIN(8, HWY_LANES(double)));
+typedef double V __attribute__((vector_size(sizeof(double) * lanes))); // tet_quality's text is the device's too
 
 void qualities_simd(const EightElements& e, float (&quality)[8]) {
   for (int l = 0; l < 8; l += lanes) {
     Corners<V> p;
     for (int i = 0; i < 4; ++i) {
-      p.x[i] = hn::Load(f, e.x[i] + l).raw;
-      p.y[i] = hn::Load(f, e.y[i] + l).raw;
-      p.z[i] = hn::Load(f, e.z[i] + l).raw;
+      std::memcpy(&p.x[i], e.x[i] + l, sizeof(V));
+      std::memcpy(&p.y[i], e.y[i] + l, sizeof(V));
+      std::memcpy(&p.z[i], e.z[i] + l, sizeof(V));
     }
     V q;
     corners_quality(p, q);
     const hn::Rebind<float, F> to;
-    hn::StoreU(hn::DemoteTo(to, hn::Vec<F>{q}), to, quality + l);
+    hn::StoreU(hn::DemoteTo(to, hn::Load(f, reinterpret_cast<const double*>(&q))), to, quality + l);
   }
 }
 

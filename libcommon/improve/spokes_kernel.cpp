@@ -16,9 +16,16 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::CappedTag<float, 16>;
-using V = decltype(hn::Zero(F()).raw); // the compiler's own: spoke_quality's text is the device's too
 constexpr F f{};
 constexpr int32_t lanes = static_cast<int32_t>(HWY_MIN(16, HWY_LANES(float)));
+typedef float V __attribute__((vector_size(sizeof(float) * lanes))); // spoke_quality's text is the device's too
+
+HWY_INLINE void load(const float* from, V& v) {
+  std::memcpy(&v, from, sizeof v);
+}
+HWY_INLINE hn::Vec<F> to_highway(const V& v) {
+  return hn::Load(f, reinterpret_cast<const float*>(&v));
+}
 
 /// Spokes from `first` on, a multiple of the lanes.
 HWY_INLINE void evaluate(const SpokesView& s, int32_t first, const Vec3f& x, V& q) {
@@ -28,7 +35,7 @@ HWY_INLINE void evaluate(const SpokesView& s, int32_t first, const Vec3f& x, V& 
                                      &spoke.cx, &spoke.cy, &spoke.cz, &spoke.nx, &spoke.ny, &spoke.nz,
                                      &spoke.r,  &spoke.ab, &spoke.bc, &spoke.ca};
   for (int k = 0; k < SpokeGroup::fields; ++k)
-    *to[k] = hn::Load(f, from + SpokeGroup::lanes * k).raw;
+    load(from + SpokeGroup::lanes * k, *to[k]);
   spoke_quality(spoke, x.x, x.y, x.z, q);
 }
 
@@ -55,7 +62,7 @@ float worst_spoke_simd(const SpokesView& s, Vec3f x, float above) {
   for (int32_t i = 0; i < chunks; ++i) {
     V q;
     evaluate(s, lanes * chunk, x, q);
-    const float least = hn::GetLane(hn::MinOfLanes(f, hn::Vec<F>{q}));
+    const float least = hn::GetLane(hn::MinOfLanes(f, to_highway(q)));
     w = least < w ? least : w;
     if (!(w > above)) {
       *s.decided = lanes * chunk;
@@ -70,7 +77,7 @@ void judge_spokes_simd(const SpokesView& s, Vec3f x, float* quality) {
   for (int32_t k = 0; k < s.count; k += lanes) {
     V q;
     evaluate(s, k, x, q);
-    hn::StoreU(hn::Vec<F>{q}, f, quality + k);
+    hn::StoreU(to_highway(q), f, quality + k);
   }
 }
 
@@ -84,9 +91,10 @@ void judge_around_simd(const SpokesView& s, int32_t spoke, Vec3f x, float d, flo
   const Spoke<float> one = one_spoke(s, spoke);
   alignas(64) float all[Places::most];
   for (int32_t k = 0; k < 6; k += lanes) {
-    V q;
-    spoke_quality(one, hn::Load(f, p.x + k).raw, hn::Load(f, p.y + k).raw, hn::Load(f, p.z + k).raw, q);
-    hn::Store(hn::Vec<F>{q}, f, all + k);
+    V px, py, pz, q;
+    load(p.x + k, px), load(p.y + k, py), load(p.z + k, pz);
+    spoke_quality(one, px, py, pz, q);
+    hn::Store(to_highway(q), f, all + k);
   }
   std::copy_n(all, 6, out);
 }
@@ -94,14 +102,14 @@ void judge_around_simd(const SpokesView& s, int32_t spoke, Vec3f x, float d, flo
 int first_place_above_simd(const SpokesView& s, const Places& places, int from, int n, float above, float& q) {
   constexpr int few = 2; // places left are asked about one by one: an element a lane takes two steps for a star
   for (int begin = from / lanes * lanes; begin < n; begin += lanes) {
-    const V x = hn::Load(f, places.x + begin).raw, y = hn::Load(f, places.y + begin).raw,
-            z = hn::Load(f, places.z + begin).raw;
+    V x, y, z;
+    load(places.x + begin, x), load(places.y + begin, y), load(places.z + begin, z);
     const auto ahead = [](int k) { return k <= 0 ? 0u : k >= lanes ? (1u << lanes) - 1 : (1u << k) - 1; };
     uint32_t left = ahead(n - begin) & ~ahead(from - begin);
     for (int32_t k = 0; k < s.count && std::popcount(left) > few; ++k) {
       V at;
       spoke_quality(one_spoke(s, s.order[k]), x, y, z, at);
-      left &= bits_of(hn::Gt(hn::Vec<F>{at}, hn::Set(f, above)));
+      left &= bits_of(hn::Gt(to_highway(at), hn::Set(f, above)));
       if (left == 0 && k > 0) { // decides next time too
         const int32_t decided = s.order[k];
         s.order[k] = s.order[k - 1];
