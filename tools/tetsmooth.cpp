@@ -15,6 +15,7 @@
 #include "molecule/nearest.hpp"
 #include <optional>
 #include <sstream>
+#include <utility>
 
 using namespace molmesh;
 
@@ -123,7 +124,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   if (grid)
     run.counts["surface"] = json(result.fidelity);
   run.phase("partition");
-  mesh.part = partition(mesh, o.parts, threads);
+  mesh.part = partition(mesh, o.parts, threads, std::move(result.across));
   arrays.put_into(mesh, threads);
   if (!arrays.empty())
     run.note("carried from the nearest element before: " + arrays.names());

@@ -13,7 +13,7 @@ bool Editor::outward(const Element& e, size_t face) const {
 }
 
 double Editor::misfit(Vec3d a, Vec3d b, Vec3d c) const {
-  return improve::misfit(*target_, guard_, a, b, c);
+  return improve::misfit(*target_, guard_, most_tilt_, a, b, c);
 }
 
 // Of a labelled face with vertex `from` put at `at`; 0 for flat labels and without a target.

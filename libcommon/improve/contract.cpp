@@ -116,9 +116,7 @@ bool Editor::contract(int32_t e, int i, int j) {
   if (lack(now_) > (tiny ? 0.9f : 1.f) * lack(star_))
     return false;
   if (ka.kind != Kind::interior) {
-    double length;
-    Fit fit;
-    gather(star_, a, length, fit);
+    const Fit fit = gather_sails(star_, a);
     const Vec3d pb = m_.point[size_t(b)];
     std::erase_if(sails_, [&](const Sail& s) { return s.p[0] == pb || s.p[1] == pb || s.p[2] == pb; });
     if (!sails_fit(pb, fit) || !borders_allow(e, a, b) || !star(b, star2_) || !surface_link_holds(a, b, ring_))
@@ -138,11 +136,10 @@ bool Editor::merge(int32_t e, int i, int j) {
     return false;
   const float before = std::min(worst(star_), worst(star2_)), above = demand(before);
   const Vec3d pa = m_.point[size_t(a)], pb = m_.point[size_t(b)];
-  double length;
-  Fit fit, fit_b;
-  gather(star_, a, length, fit);
+  const double length = mean_edge(star2_, b);
+  Fit fit = gather_sails(star_, a);
   const std::vector<Sail> sails_a = sails_;
-  gather(star2_, b, length, fit_b);
+  const Fit fit_b = gather_sails(star2_, b);
   fit.worst = std::max(fit.worst, fit_b.worst);
   fit.excess += fit_b.excess;
   sails_.insert(sails_.end(), sails_a.begin(), sails_a.end());

@@ -83,7 +83,7 @@ void require_slots(int64_t elements, int64_t vertices); ///< of one that grows: 
 DynamicMesh build(const TetMesh& mesh, double sharp, int threads);
 
 /// Elements, vertices and triangles in slot order, unused slots squeezed out; triangles point as they did.
-/// isovalue, source and creator are the caller's.
-TetMesh extract(const DynamicMesh& mesh, int threads = 1);
+/// isovalue, source and creator are the caller's. across: what face_neighbors() would find.
+TetMesh extract(const DynamicMesh& mesh, int threads = 1, std::vector<int32_t>* across = nullptr);
 
 } // namespace molmesh::improve

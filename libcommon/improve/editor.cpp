@@ -21,7 +21,7 @@ Counts& Counts::operator+=(const Counts& o) {
 Editor::Editor(DynamicMesh& mesh, const Target* target, const Sheets* sheets, const Parts& parts,
                std::vector<uint32_t>& stamp, PartRoom& room, Guard guard)
     : m_(mesh), target_(target), sheets_(sheets), changed_sheets_(target ? target->spacing() : 1), parts_(parts),
-      stamp_(stamp), room_(room), guard_(guard), table_(512) {}
+      stamp_(stamp), room_(room), guard_(guard), most_tilt_(guard.tilt()), table_(512) {}
 
 bool Editor::owned(int32_t e) const {
   return parts_.owns(room_.part, m_.element[size_t(e)].v);
@@ -42,8 +42,11 @@ bool Editor::star(int32_t v, std::vector<int32_t>& out) {
       const int32_t n = e.n[f];
       if (e.v[f] == v || n < 0 || stamp_[size_t(n)] == clock_)
         continue;
-      if (!owned(n))
-        return false;
+      // It shares three vertices with one of ours.
+      const Element& next = m_.element[size_t(n)];
+      for (size_t g = 0; g < 4; ++g)
+        if (next.n[g] == out[i] && parts_.owner[size_t(next.v[g])] != room_.part)
+          return false;
       stamp_[size_t(n)] = clock_;
       out.push_back(n);
     }
@@ -53,70 +56,77 @@ bool Editor::star(int32_t v, std::vector<int32_t>& out) {
 
 bool Editor::ring(int32_t e, int32_t a, int32_t b, Ring& r) const {
   constexpr size_t longest = 40;
-  // The two others, in the order that makes (a, b, c, d) positive.
-  const auto others = [&](int32_t t, int32_t& c, int32_t& d) {
-    const Element& el = m_.element[size_t(t)];
-    const int i = el.find(a), j = el.find(b);
-    int k = 0;
-    while (k == i || k == j)
-      ++k;
-    const int l = 6 - i - j - k;
-    c = el.v[size_t(k)];
-    d = el.v[size_t(l)];
-    const bool odd = ((i > j) + (i > k) + (i > l) + (j > k) + (j > l) + (k > l)) & 1;
-    if (odd)
-      std::swap(c, d);
+  // Faces of el at the edge with the two others in the order that makes (a, b, c, d) positive: behind lies a b c.
+  const auto at_edge = [&](const Element& el, size_t& behind, size_t& ahead) {
+    // By the places of a and b: opposite d, and opposite c.
+    static constexpr int8_t table[4][4][2] = {{{0, 0}, {3, 2}, {1, 3}, {2, 1}},
+                                              {{2, 3}, {0, 0}, {3, 0}, {0, 2}},
+                                              {{3, 1}, {0, 3}, {0, 0}, {1, 0}},
+                                              {{1, 2}, {2, 0}, {0, 1}, {0, 0}}};
+    const auto& f = table[el.find(a)][el.find(b)];
+    behind = size_t(f[0]), ahead = size_t(f[1]);
+  };
+  // From t on until there is no next one, or the next one is t.
+  const auto go = [&](int32_t first) {
+    r.element.clear();
+    r.vertex.clear();
+    r.border.clear();
+    r.label.clear();
+    for (int32_t t = first;;) {
+      if (r.element.size() > longest || !owned(t))
+        return false;
+      const Element& el = m_.element[size_t(t)];
+      size_t behind, ahead;
+      at_edge(el, behind, ahead);
+      if (el.label[behind] != 0) {
+        r.border.push_back(static_cast<int>(r.vertex.size()));
+        r.label.push_back(el.label[behind]);
+      }
+      r.element.push_back(t);
+      r.vertex.push_back(el.v[ahead]);
+      const int32_t next = el.n[ahead];
+      r.closed = next >= 0;
+      if (!r.closed) {
+        r.border.push_back(static_cast<int>(r.vertex.size()));
+        r.label.push_back(el.label[ahead]);
+        r.vertex.push_back(el.v[behind]);
+        return true;
+      }
+      if (next == first)
+        return true;
+      t = next;
+    }
   };
   r.a = a;
   r.b = b;
-  r.closed = true;
-  int32_t start = e, c, d;
-  for (size_t steps = 0;; ++steps) { // back to the outside, or once around
-    if (steps > longest || !owned(start))
+  size_t behind, ahead;
+  at_edge(m_.element[size_t(e)], behind, ahead);
+  const int32_t second = m_.element[size_t(e)].n[ahead];
+  if (second >= 0) {
+    if (!go(second))
       return false;
-    others(start, c, d);
-    const Element& el = m_.element[size_t(start)];
-    const int32_t before = el.n[size_t(el.find(d))];
-    if (before < 0) {
-      r.closed = false;
-      break;
-    }
-    if (before == e)
-      break;
-    start = before;
+    if (r.closed)
+      return true;
   }
-  r.element.clear();
-  r.vertex.clear();
-  r.border.clear();
-  r.label.clear();
-  for (int32_t t = start;;) {
-    if (r.element.size() > longest || !owned(t))
+  int32_t start = e; // the mesh ends beside the edge: back to where
+  for (size_t steps = 0;; ++steps) {
+    if (steps > longest || !owned(start))
       return false; // an open ring goes on beyond e
-    others(t, c, d);
-    const Element& el = m_.element[size_t(t)];
-    const size_t behind = size_t(el.find(d)), ahead = size_t(el.find(c));
-    if (el.label[behind] != 0) {
-      r.border.push_back(static_cast<int>(r.vertex.size()));
-      r.label.push_back(el.label[behind]);
-    }
-    r.element.push_back(t);
-    r.vertex.push_back(c);
-    const int32_t next = el.n[ahead];
-    if (next < 0) {
-      r.border.push_back(static_cast<int>(r.vertex.size()));
-      r.label.push_back(el.label[ahead]);
-      r.vertex.push_back(d);
-      return true;
-    }
-    if (next == start)
-      return true;
-    t = next;
+    at_edge(m_.element[size_t(start)], behind, ahead);
+    const int32_t before = m_.element[size_t(start)].n[behind];
+    if (before < 0)
+      return go(start);
+    start = before;
   }
 }
 
 // Sets the quality; false unless it is above `above` and the volume is positive.
 bool Editor::judge(Candidate& c, float above) const {
   c.q = m_.quality(c.v);
+  return is_above(c, above);
+}
+
+bool Editor::is_above(const Candidate& c, float above) const {
   if (!(c.q > above))
     return false;
   if (c.q > 1e-6f)

@@ -137,6 +137,7 @@ private:
   bool star(int32_t v, std::vector<int32_t>& out);
   bool ring(int32_t e, int32_t a, int32_t b, Ring& r) const;
   bool judge(Candidate& c, float above) const;
+  bool is_above(const Candidate& c, float above) const; ///< by the quality that it has
   bool match(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface);
   /// False, and nothing changed, when faces do not match or the surface would cross itself. rim_: triangles that
   /// have moved with the operation already; surface: the operation may change them.
@@ -174,7 +175,9 @@ private:
   float demand(float before) const {
     return straighten ? 0.999999f * (before < goal ? before : goal) : before + 1e-9f + 0.01f * before;
   }
-  void gather(const std::vector<int32_t>& elements, int32_t v, double& length, Fit& before);
+  Fit gather_sails(const std::vector<int32_t>& star, int32_t v);
+  void gather(const std::vector<int32_t>& star, int32_t v, double& length, Fit& before);
+  double mean_edge(const std::vector<int32_t>& star, int32_t v) const;
   float worth(Vec3d x, float above);
   /// What hand_over() moves to the other side.
   struct Side {
@@ -200,6 +203,7 @@ private:
   std::vector<uint32_t>& stamp_;
   PartRoom& room_;
   Guard guard_;
+  double most_tilt_; ///< the guard's
   uint32_t clock_ = 0;
   struct FaceEntry {
     std::array<int32_t, 3> v;       ///< ascending

@@ -12,21 +12,26 @@ struct Guard {
   double reach = 0.5;     ///< of a projection, in edge lengths: further, and pinches drop two points on one place
   double lift = 0;        ///< how far one operation may take a surface point off the target, in spacings
   bool operator==(const Guard&) const = default;
+  HD double tilt() const { return 1 - std::cos(angle * 3.14159265358979323846 / 180); } ///< as misfit() wants it
 };
 
 /// Of a triangle that runs as the target's normal does: at most 1 when the guard is kept. A triangle where the
-/// target is not known is bad, but not worse than another such one. Surface: probe() and spacing() as in Target.
+/// target is not known is bad, but not worse than another such one. most_tilt: guard.tilt(), for many triangles.
+/// Surface: probe() and spacing() as in Target.
 template <class Surface>
-HD double misfit(const Surface& target, const Guard& guard, Vec3d a, Vec3d b, Vec3d c) {
+HD double misfit(const Surface& target, const Guard& guard, double most_tilt, Vec3d a, Vec3d b, Vec3d c) {
   double distance;
   Vec3d normal;
   if (!target.probe((a + b + c) / 3., distance, normal))
     return 10;
   const Vec3d n = cross(b - a, c - a);
   const double length = norm(n), cosine = dot(n, normal) / (length > 1e-300 ? length : 1e-300);
-  const double limit = std::cos(guard.angle * 3.14159265358979323846 / 180);
-  const double far = std::abs(distance) / (guard.distance * target.spacing()), tilt = (1 - cosine) / (1 - limit);
+  const double far = std::abs(distance) / (guard.distance * target.spacing()), tilt = (1 - cosine) / most_tilt;
   return far < tilt ? tilt : far;
+}
+template <class Surface>
+HD double misfit(const Surface& target, const Guard& guard, Vec3d a, Vec3d b, Vec3d c) {
+  return misfit(target, guard, guard.tilt(), a, b, c);
 }
 
 /// What an element below the goal lacks: goal / q - 1 when the worst matter most, (1 - q / goal)² when all do;

@@ -11,37 +11,6 @@
 namespace molmesh::improve {
 namespace {
 
-Angles measure(const TetMesh& mesh, int threads) {
-  return par::reduce(
-      static_cast<int64_t>(mesh.tet.size()), threads, Angles{},
-      [&](int64_t t) {
-        const Tet& v = mesh.tet[size_t(t)];
-        std::array<Vec3d, 4> n;
-        for (size_t f = 0; f < 4; ++f) {
-          const auto p = [&](int k) { return mesh.point[size_t(v[size_t(outward_face[f][size_t(k)])])]; };
-          n[f] = cross(p(1) - p(0), p(2) - p(0));
-        }
-        Angles a;
-        for (size_t i = 0; i < 4; ++i)
-          for (size_t j = i + 1; j < 4; ++j) {
-            const double angle =
-                std::atan2(norm(cross(n[i], n[j])), -dot(n[i], n[j])) * 180 / 3.14159265358979323846;
-            a.min = std::min(a.min, angle);
-            a.max = std::max(a.max, angle);
-          }
-        a.below_25 = a.min < 25;
-        a.above_140 = a.max > 140;
-        return a;
-      },
-      [](Angles a, const Angles& b) {
-        a.min = std::min(a.min, b.min);
-        a.max = std::max(a.max, b.max);
-        a.below_25 += b.below_25;
-        a.above_140 += b.above_140;
-        return a;
-      });
-}
-
 std::vector<uint8_t> curved_triangles(const DynamicMesh& m, const TetMesh& mesh) {
   std::vector<uint8_t> take(mesh.tri.size());
   for (size_t t = 0; t < mesh.tri.size(); ++t)
@@ -91,7 +60,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   Result result;
   begin("adjacency");
   DynamicMesh m = build(mesh, density ? 180 : options.sharp, options.threads);
-  result.before = result.after = measure(mesh, options.threads);
+  result.before = result.after = measure_angles(m, options.threads);
   if (options.iterations == 0 || mesh.tet.empty())
     return result;
 
@@ -172,12 +141,12 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     return result;
   }
   begin("result");
-  TetMesh out = extract(m, options.threads);
+  result.after = measure_angles(m, options.threads);
+  TetMesh out = extract(m, options.threads, &result.across);
   out.isovalue = mesh.isovalue;
   out.source = mesh.source;
   out.creator = mesh.creator;
   mesh = std::move(out);
-  result.after = measure(mesh, options.threads);
   return result;
 }
 

@@ -1,6 +1,7 @@
 // improve.hpp — quality improvement of a tetrahedral mesh: §5 of the paper and design §10.
 #pragma once
 #include "density/block_grid.hpp"
+#include "improve/angles.hpp"
 #include "improve/fidelity.hpp"
 #include "improve/schedule.hpp"
 #include "mesh/tet_mesh.hpp"
@@ -16,16 +17,12 @@ struct Options {
   int threads = 1;
 };
 
-struct Angles {
-  double min = 180, max = 0;           ///< degrees
-  int64_t below_25 = 0, above_140 = 0; ///< elements
-};
-
 struct Result {
   Counts counts;
   int rounds = 0;
   Angles before, after;
-  Fidelity fidelity; ///< after (with a density)
+  Fidelity fidelity;           ///< after (with a density)
+  std::vector<int32_t> across; ///< face_neighbors() of the mesh; empty where it stayed as it came
 };
 
 /// Moves many points at once where no element below the pass' goal becomes worse: what a device does before each

@@ -92,12 +92,13 @@ struct IsosurfaceView {
       for (int k = 0; k < 8; ++k)
         sum += v[k] = q[64 * (k >> 2) + 8 * (k >> 1 & 1) + (k & 1)];
     } else {
+      const int across = ((c.x & 7) == 7) << 2 | ((c.y & 7) == 7) << 1 | ((c.z & 7) == 7);
+      int64_t block[8]; // of the first corner in it: others differ in axes that stay inside
       for (int k = 0; k < 8; ++k) {
         const Vec3i corner = c + Vec3i{k >> 2, k >> 1 & 1, k & 1};
-        const int64_t b = index.find(corner);
-        if (b < 0)
+        if ((k & across) == k && (block[k] = index.find(corner)) < 0)
           return false;
-        sum += v[k] = log[512 * b + slot(corner)];
+        sum += v[k] = log[512 * block[k & across] + slot(corner)];
       }
     }
     return std::isfinite(sum);

@@ -1,5 +1,6 @@
 // moves.cpp — vertices move: search for the worst element, places on the target, settling there.
 #include "improve/editor.hpp"
+#include "improve/quality_kernel.hpp"
 #include <algorithm>
 
 namespace molmesh::improve {
@@ -84,41 +85,67 @@ bool Editor::place_on_target(Vec3d& x, double length, const Fit& before, float a
   return true;
 }
 
-// Spokes and sails of v's star; the mean length of its edges, and how it fits now.
-void Editor::gather(const std::vector<int32_t>& elements, int32_t v, double& length, Fit& before) {
-  const Vec3d from = m_.point[size_t(v)];
-  spokes_.clear(from);
+// Sails of v's star, and how they fit now.
+Fit Editor::gather_sails(const std::vector<int32_t>& star, int32_t v) {
   sails_.clear();
-  length = 0;
-  for (const int32_t t : elements) {
-    const Element& e = m_.element[size_t(t)];
-    const int i = e.find(v);
-    std::array<Vec3d, 4> p;
-    for (size_t j = 0; j < 4; ++j) {
-      p[j] = m_.point[size_t(e.v[j])];
-      length += norm(p[j] - from);
-    }
-    spokes_.add(p, i);
-    if (m_.vertex[size_t(v)].kind == Kind::surface)
+  if (m_.vertex[size_t(v)].kind == Kind::surface)
+    for (const int32_t t : star) {
+      const Element& e = m_.element[size_t(t)];
       for (size_t f = 0; f < 4; ++f)
-        if (e.label[f] != 0 && f != size_t(i))
+        if (e.label[f] != 0 && e.v[f] != v)
           add_sail(e, f, v);
-  }
-  length /= 3. * double(elements.size());
-  before = fit_of_sails();
+    }
+  Fit fit = fit_of_sails();
   if (straighten)
-    before.excess += std::max(0., off(v) - 1);
+    fit.excess += std::max(0., off(v) - 1);
+  return fit;
+}
+
+double Editor::mean_edge(const std::vector<int32_t>& star, int32_t v) const {
+  const Vec3d from = m_.point[size_t(v)];
+  double length = 0;
+  for (const int32_t t : star)
+    for (const int32_t w : m_.element[size_t(t)].v)
+      if (w != v)
+        length += norm(m_.point[size_t(w)] - from);
+  return length / (3. * double(star.size()));
+}
+
+// Spokes and sails of v's star; the mean length of its edges, and how it fits now.
+void Editor::gather(const std::vector<int32_t>& star, int32_t v, double& length, Fit& before) {
+  spokes_.clear(m_.point[size_t(v)]);
+  for (const int32_t t : star) {
+    const Element& e = m_.element[size_t(t)];
+    std::array<Vec3d, 4> p;
+    for (size_t j = 0; j < 4; ++j)
+      p[j] = m_.point[size_t(e.v[j])];
+    spokes_.add(p, e.find(v));
+  }
+  length = mean_edge(star, v);
+  before = gather_sails(star, v);
 }
 
 // v is at its new place: takes it when every element of the star is above.
 bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above, float allowed) {
   now_.clear();
-  for (const int32_t t : elements) {
-    const Element& e = m_.element[size_t(t)];
-    now_.push_back({e.v, e.region, 0, {}});
-    if (!judge(now_.back(), above)) {
-      m_.point[size_t(v)] = from;
-      return false;
+  constexpr size_t lanes = 8;
+  for (size_t first = 0; first < elements.size(); first += lanes) {
+    EightElements eight;
+    float q[lanes];
+    for (size_t l = 0; l < lanes; ++l)
+      for (size_t k = 0; k < 4; ++k) {
+        const auto& w = m_.element[size_t(elements[std::min(first + l, elements.size() - 1)])].v;
+        const Vec3d p = m_.point[size_t(w[k])];
+        eight.x[k][l] = p.x, eight.y[k][l] = p.y, eight.z[k][l] = p.z;
+      }
+    qualities(eight, q);
+    for (size_t i = first; i < std::min(first + lanes, elements.size()); ++i) {
+      const Element& e = m_.element[size_t(elements[i])];
+      now_.push_back({e.v, e.region, q[i - first], {}});
+      if (!is_above(now_.back(), above)) {
+        m_.point[size_t(v)] = from;
+        return false;
+      }
     }
   }
   rim_.clear();
@@ -173,11 +200,8 @@ bool Editor::settle(int32_t v, float floor) {
     return false;
   if (!star(v, star_))
     return false;
-  double length;
-  Fit fit;
-  gather(star_, v, length, fit);
   Vec3d to = from;
-  if (!target_->project(to, guard_.reach * length))
+  if (!target_->project(to, guard_.reach * mean_edge(star_, v)))
     return false;
   const float now = worst(star_), above = floor >= 1 ? 0.5f * now : std::min(floor, now) * 0.999999f;
   for (double step = 1; step > 0.1; step *= 0.5) {

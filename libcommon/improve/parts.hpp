@@ -19,12 +19,11 @@ struct Parts {
   int32_t count() const { return static_cast<int32_t>(n[0] * n[1] * n[2]); }
   /// The cell at p; beyond the outermost ones, the nearest of them.
   int32_t at(Vec3d p) const {
-    int64_t part = 0;
-    for (int a = 0; a < 3; ++a) {
-      const double place = (p[a] - low[a]) / cell + offset[size_t(a)], last = double(n[size_t(a)] - 1);
-      part = part * n[size_t(a)] + static_cast<int64_t>(std::clamp(place, 0., last));
-    }
-    return static_cast<int32_t>(part);
+    const auto on_axis = [this](double x, double first, size_t a) {
+      return static_cast<int32_t>(std::clamp((x - first) / cell + offset[a], 0., double(n[a] - 1)));
+    };
+    const auto rows = static_cast<int32_t>(n[1]), columns = static_cast<int32_t>(n[2]);
+    return (on_axis(p.x, low.x, 0) * rows + on_axis(p.y, low.y, 1)) * columns + on_axis(p.z, low.z, 2);
   }
   bool owns(int32_t part, const std::array<int32_t, 4>& v) const {
     return owner[size_t(v[0])] == part && owner[size_t(v[1])] == part && owner[size_t(v[2])] == part &&

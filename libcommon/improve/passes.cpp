@@ -1,4 +1,5 @@
 // passes.cpp — what a pass works on, and the order of operations on one element.
+#include "improve/choose.hpp"
 #include "improve/element_pass.hpp"
 #include "par/par.hpp"
 #include <algorithm>
@@ -90,19 +91,15 @@ Counts Schedule::run(const Pass& pass) {
   time_ += sweeps;
   const auto worthwhile = [&](int32_t t) {
     const Element& e = m_.element[size_t(t)];
-    if (!e.alive() || e.q >= pass.goal)
+    if (e.q >= pass.goal || !e.alive())
       return false;
     const auto& v = e.v;
     return e.tried <= since || std::max({m_.touched[size_t(v[0])], m_.touched[size_t(v[1])],
                                          m_.touched[size_t(v[2])], m_.touched[size_t(v[3])]}) >= e.tried;
   };
-  std::vector<int32_t> items, part;
-  for (size_t e = 0; e < m_.element.size(); ++e)
-    if (worthwhile(static_cast<int32_t>(e))) {
-      items.push_back(static_cast<int32_t>(e));
-      part.push_back(part_of(m_.element[e]));
-    }
-  return for_parts(items, part, pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
+  const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.element.size()), threads_,
+                                            [&](int64_t e) { return worthwhile(static_cast<int32_t>(e)); });
+  return for_parts(items, parts_of(items), pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
     editor.goal = pass.goal;
     editor.worst_first = pass.worst_first;
     editor.yield = pass.yield;
@@ -128,22 +125,20 @@ Counts Schedule::straighten(const Pass& pass) {
   time_ += sweeps;
   PartRoom none;
   const Editor look(m_, target_, nullptr, parts_, stamp_, none, pass.guard);
-  std::vector<uint8_t> off(m_.point.size()), misfits(m_.element.size());
+  std::vector<uint8_t> off(m_.point.size());
   par::for_n(static_cast<int64_t>(off.size()), threads_, [&](int64_t v) {
     off[size_t(v)] = m_.incident[size_t(v)] >= 0 && look.off(static_cast<int32_t>(v)) > 1;
   });
-  par::for_n(static_cast<int64_t>(misfits.size()), threads_, [&](int64_t t) {
+  const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
     const Element& e = m_.element[size_t(t)];
-    for (size_t i = 0; e.alive() && i < 4; ++i)
-      misfits[size_t(t)] |= off[size_t(e.v[i])] || look.bent(static_cast<int32_t>(t), i);
+    if (!e.alive())
+      return false;
+    bool misfit = off[size_t(e.v[0])] || off[size_t(e.v[1])] || off[size_t(e.v[2])] || off[size_t(e.v[3])];
+    for (size_t i = 0; !misfit && i < 4; ++i)
+      misfit = e.label[i] != 0 && look.bent(static_cast<int32_t>(t), i);
+    return misfit;
   });
-  std::vector<int32_t> items, part;
-  for (size_t e = 0; e < misfits.size(); ++e)
-    if (misfits[e]) {
-      items.push_back(static_cast<int32_t>(e));
-      part.push_back(part_of(m_.element[e]));
-    }
-  return for_parts(items, part, pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
+  return for_parts(items, parts_of(items), pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
     editor.goal = pass.goal;
     editor.worst_first = pass.worst_first;
     editor.straighten = true;
@@ -161,12 +156,12 @@ Counts Schedule::straighten(const Pass& pass) {
 
 Counts Schedule::settle(float floor, const Guard& guard) {
   set_parts(settles_++, cell_);
-  std::vector<int32_t> items, part;
-  for (size_t v = 0; v < m_.point.size(); ++v)
-    if (m_.incident[v] >= 0 && m_.vertex[v].kind == Kind::surface) {
-      items.push_back(static_cast<int32_t>(v));
-      part.push_back(parts_.owner[v]);
-    }
+  const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
+    return m_.incident[size_t(v)] >= 0 && m_.vertex[size_t(v)].kind == Kind::surface;
+  });
+  std::vector<int32_t> part;
+  for (const int32_t v : items)
+    part.push_back(parts_.owner[size_t(v)]);
   const int32_t time = ++time_;
   return for_parts(
       items, part, guard,

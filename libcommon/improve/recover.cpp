@@ -1,7 +1,9 @@
 // recover.cpp — points off the target come back, or leave the surface, where the elements around can be mended
 // after.
+#include "improve/choose.hpp"
 #include "improve/element_pass.hpp"
 #include "improve/schedule.hpp"
+#include "improve/vertex_numbers.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 
@@ -43,16 +45,19 @@ private:
         all.push_back(t);
     return all;
   }
-  std::vector<int32_t> points_off() const {
-    std::vector<int32_t> all;
+  std::vector<int32_t> points_off() {
+    surface_points_.clear();
     for (const int32_t t : slots_)
       if (const Element& e = m_.element[size_t(t)]; e.alive())
         for (const int32_t v : e.v)
           if (m_.vertex[size_t(v)].kind == Kind::surface)
-            all.push_back(v);
-    par::sort_unique(all, 1);
-    std::erase_if(all, [&](int32_t v) { return !(editor_.off(v) > 1); });
-    return all;
+            surface_points_(v);
+    std::vector<int32_t> off;
+    for (const int32_t v : surface_points_.met())
+      if (editor_.off(v) > 1)
+        off.push_back(v);
+    std::sort(off.begin(), off.end());
+    return off;
   }
   void count_bad(Faults& f) const {
     for (const int32_t t : slots_)
@@ -61,19 +66,19 @@ private:
         f.below += e.q < 0.94f * pass_.goal;
       }
   }
-  void count_misfits(Faults& f) const {
+  void count_misfits(Faults& f) {
     f.off = static_cast<int64_t>(points_off().size());
     for (const int32_t t : slots_)
       for (size_t i = 0; i < 4 && m_.element[size_t(t)].alive(); ++i)
         f.bent += editor_.bent(t, i);
   }
-  Faults faults() const {
+  Faults faults() {
     Faults f;
     count_bad(f);
     count_misfits(f);
     return f;
   }
-  bool better_than(const Faults& before) const {
+  bool better_than(const Faults& before) {
     Faults now;
     count_bad(now);
     if (now.below > before.below || (now.below > 0 && now.worst < before.worst))
@@ -195,6 +200,7 @@ private:
   const std::vector<int32_t> slots_; ///< all that elements of this part may be in
   const Pass& pass_;
   const int32_t time_;
+  VertexNumbers surface_points_;
 };
 
 } // namespace
@@ -215,15 +221,12 @@ Counts Schedule::recover(const Pass& pass) {
   if (wanted.empty())
     return {};
   par::sort_unique(wanted, threads_);
-  std::vector<int32_t> items, part;
-  for (size_t e = 0; e < m_.element.size(); ++e)
-    if (m_.element[e].alive())
-      if (const int32_t p = part_of(m_.element[e]); std::binary_search(wanted.begin(), wanted.end(), p)) {
-        items.push_back(static_cast<int32_t>(e));
-        part.push_back(p);
-      }
+  const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
+    const Element& e = m_.element[size_t(t)];
+    return e.alive() && std::binary_search(wanted.begin(), wanted.end(), part_of(e));
+  });
   return for_parts(
-      items, part, pass.guard,
+      items, parts_of(items), pass.guard,
       [&](Editor& editor, std::vector<int32_t>& list) {
         std::vector<int32_t> slots = list;
         slots.insert(slots.end(), editor.reserve().begin(), editor.reserve().end());

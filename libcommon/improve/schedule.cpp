@@ -60,19 +60,27 @@ int64_t Schedule::below(float goal) const {
 }
 
 void Schedule::set_parts(int shift, double cell) {
-  Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-  for (size_t v = 0; v < m_.point.size(); ++v)
-    for (int a = 0; a < 3 && m_.incident[v] >= 0; ++a) {
-      low[a] = std::min(low[a], m_.point[v][a]);
-      high[a] = std::max(high[a], m_.point[v][a]);
-    }
+  struct Box {
+    Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  };
+  const auto [low, high] = par::reduce(
+      static_cast<int64_t>(m_.point.size()), threads_, Box{},
+      [&](int64_t v) {
+        return m_.incident[size_t(v)] >= 0 ? Box{m_.point[size_t(v)], m_.point[size_t(v)]} : Box{};
+      },
+      [](Box a, const Box& b) {
+        a.low = {std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y), std::min(a.low.z, b.low.z)};
+        a.high = {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)};
+        return a;
+      });
   parts_.low = low;
   // Fractions of a cell that never line up again on all axes: every neighborhood lies inside some part soon.
   static constexpr double stride[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
   for (int a = 0; a < 3; ++a)
     parts_.offset[size_t(a)] = shift * stride[a] - std::floor(shift * stride[a]);
   const double most = std::clamp(16. * double(m_.point.size()), 1e6, 1e8); // memory as the points
-  const auto cells = [&](int a) { return std::floor((high[a] - low[a]) / cell) + 2; };
+  const Vec3d size = high - low;
+  const auto cells = [&](int a) { return std::floor(size[a] / cell) + 2; };
   while (cells(0) * cells(1) * cells(2) > most)
     cell *= 2;
   parts_.cell = cell;
@@ -87,6 +95,13 @@ void Schedule::set_parts(int shift, double cell) {
 int32_t Schedule::part_of(const Element& e) const {
   const int32_t p = parts_.owner[size_t(e.v[0])];
   return parts_.owns(p, e.v) ? p : -1;
+}
+
+std::vector<int32_t> Schedule::parts_of(const std::vector<int32_t>& elements) const {
+  std::vector<int32_t> part(elements.size());
+  par::for_n(static_cast<int64_t>(part.size()), threads_,
+             [&](int64_t i) { part[size_t(i)] = part_of(m_.element[size_t(elements[size_t(i)])]); });
+  return part;
 }
 
 // Items of one part, in order, go to one editor with slots of its own.

@@ -47,6 +47,7 @@ private:
                    const Work& work, double slots_per_item = 2);
   void set_parts(int shift, double cell);
   int32_t part_of(const Element& e) const; ///< -1: none
+  std::vector<int32_t> parts_of(const std::vector<int32_t>& elements) const;
 
   DynamicMesh& m_;
   const Target* target_;

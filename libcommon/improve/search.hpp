@@ -62,22 +62,27 @@ HD bool pattern_search(Worth& worth, Vec3d& x, float& best, float goal, double l
     }
     return false;
   };
-  bool moved = false;
+  bool moved = false, known = false; // the way up at x
+  Vec3d tangent;
   for (double step = 0.2 * length; step > least_step * length && best < goal; step *= 0.4) {
     bool again = true;
     for (int round = 0; again && round < 4 && best < goal; ++round) {
       again = false;
-      const Vec3d g = worth.ascent(x, 1e-3 * length);
-      Vec3d tangent;
-      for (int a = 0; a < dimensions; ++a)
-        tangent += dot(g, basis[a]) * basis[a];
+      if (!known) {
+        const Vec3d g = worth.ascent(x, 1e-3 * length);
+        tangent = {};
+        for (int a = 0; a < dimensions; ++a)
+          tangent += dot(g, basis[a]) * basis[a];
+      }
       const double t = norm(tangent);
       if (t > 0.1 && try_step(tangent / t, step)) {
         again = moved = true;
+        known = false;
         continue;
       }
       again = try_directions(step);
       moved |= again;
+      known = !again;
     }
   }
   return moved;

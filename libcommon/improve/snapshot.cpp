@@ -1,6 +1,6 @@
 // snapshot.cpp — a part's elements put by and brought back: operations that are only worth it all together.
 #include "improve/editor.hpp"
-#include "par/par.hpp"
+#include "improve/vertex_numbers.hpp"
 
 namespace molmesh::improve {
 
@@ -9,19 +9,19 @@ Snapshot Editor::save(const std::vector<int32_t>& inner) const {
   s.room = room_;
   s.sheets = changed_sheets_;
   s.counts = counts;
-  std::vector<int32_t> vertices;
+  VertexNumbers vertices;
   for (const int32_t t : inner) {
     const Element& e = m_.element[size_t(t)];
     s.element.emplace_back(t, e);
-    vertices.insert(vertices.end(), e.v.begin(), e.v.end());
+    for (const int32_t v : e.v)
+      vertices(v);
     for (const int32_t n : e.n)
       if (n >= 0 && !owned(n))
         for (size_t g = 0; g < 4; ++g)
           if (const Element& beyond = m_.element[size_t(n)]; beyond.n[g] == t)
             s.side.push_back({n, t, static_cast<uint8_t>(g), beyond.label[g]});
   }
-  par::sort_unique(vertices, 1);
-  for (const int32_t v : vertices)
+  for (const int32_t v : vertices.met())
     s.corner.push_back(
         {v, m_.point[size_t(v)], m_.vertex[size_t(v)], m_.incident[size_t(v)], m_.touched[size_t(v)]});
   return s;

@@ -5,6 +5,7 @@
 #include "mesh/adjacency.hpp"
 #include "par/par.hpp"
 #include <metis.h>
+#include <utility>
 
 namespace molmesh {
 namespace {
@@ -42,7 +43,7 @@ struct Graph {
   std::vector<idx_t> begin, neighbor, node_weight, edge_weight;
 };
 
-Graph dual_graph(const TetMesh& m, int threads) {
+Graph dual_graph(const TetMesh& m, int threads, std::vector<int32_t> across) {
   const auto n = static_cast<int64_t>(m.tet.size()), size = n < large ? 1 : cluster_size;
   const int64_t nodes = (n + size - 1) / size;
   LargeArray<uint32_t> order;
@@ -54,7 +55,8 @@ Graph dual_graph(const TetMesh& m, int threads) {
   g.node_weight.resize(size_t(nodes));
   g.begin.assign(size_t(nodes + 1), 0);
   par::for_n(n, threads, [&](int64_t k) { g.cluster[size_t(tet_at(k))] = static_cast<int32_t>(k / size); });
-  const std::vector<int32_t> across = face_neighbors(m, threads);
+  if (across.empty())
+    across = face_neighbors(m, threads);
   // visit(neighbour, faces), ascending
   const auto neighbors = [&](int64_t node, auto&& visit) {
     std::array<int32_t, 4 * cluster_size> near;
@@ -86,11 +88,11 @@ Graph dual_graph(const TetMesh& m, int threads) {
 
 } // namespace
 
-std::vector<int32_t> partition(const TetMesh& m, int parts, int threads) {
+std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, std::vector<int32_t> across) {
   std::vector<int32_t> part(m.tet.size(), 0);
   if (std::min<int64_t>(parts, int64_t(m.tet.size())) <= 1)
     return part;
-  Graph g = dual_graph(m, threads);
+  Graph g = dual_graph(m, threads, std::move(across));
   auto n = static_cast<idx_t>(g.node_weight.size());
   idx_t k = std::min<idx_t>(parts, n);
   std::vector<idx_t> part_of(size_t(n), 0);

@@ -1,0 +1,53 @@
+// angles.cpp — the angles of elements of low quality, among which are the extremes.
+#include "improve/angles.hpp"
+#include "par/par.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace molmesh::improve {
+namespace {
+
+Angles of_element(const DynamicMesh& m, const Element& e) {
+  std::array<Vec3d, 4> n;
+  for (size_t f = 0; f < 4; ++f) {
+    const auto p = [&](int k) { return m.point[size_t(e.v[size_t(outward_face[f][size_t(k)])])]; };
+    n[f] = cross(p(1) - p(0), p(2) - p(0));
+  }
+  Angles a;
+  for (size_t i = 0; i < 4; ++i)
+    for (size_t j = i + 1; j < 4; ++j) {
+      const double angle = std::atan2(norm(cross(n[i], n[j])), -dot(n[i], n[j])) * 180 / 3.14159265358979323846;
+      a.min = std::min(a.min, angle);
+      a.max = std::max(a.max, angle);
+    }
+  a.below_25 = a.min < 25;
+  a.above_140 = a.max > 140;
+  return a;
+}
+
+Angles measure_up_to(const DynamicMesh& m, float quality, int threads) {
+  return par::reduce(
+      static_cast<int64_t>(m.element.size()), threads, Angles{},
+      [&](int64_t t) {
+        const Element& e = m.element[size_t(t)];
+        return e.q <= quality && e.alive() ? of_element(m, e) : Angles{};
+      },
+      [](Angles a, const Angles& b) {
+        a.min = std::min(a.min, b.min);
+        a.max = std::max(a.max, b.max);
+        a.below_25 += b.below_25;
+        a.above_140 += b.above_140;
+        return a;
+      });
+}
+
+} // namespace
+
+Angles measure_angles(const DynamicMesh& m, int threads) {
+  // No element has less quality than any of its angles alone: those above this have none outside [27°, 137°].
+  const auto enough = static_cast<float>(1.001 * std::max(angle_quality(27), angle_quality(137)));
+  const Angles a = measure_up_to(m, enough, threads);
+  return a.min < 27 && a.max > 137 ? a : measure_up_to(m, 2, threads);
+}
+
+} // namespace molmesh::improve

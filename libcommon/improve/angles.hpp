@@ -1,0 +1,15 @@
+// angles.hpp — dihedral angles of a whole mesh.
+#pragma once
+#include "improve/dynamic_mesh.hpp"
+
+namespace molmesh::improve {
+
+struct Angles {
+  double min = 180, max = 0;           ///< degrees
+  int64_t below_25 = 0, above_140 = 0; ///< elements
+};
+
+/// Elements have their qualities. Same result for any number of threads.
+Angles measure_angles(const DynamicMesh& mesh, int threads);
+
+} // namespace molmesh::improve

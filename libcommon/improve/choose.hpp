@@ -1,0 +1,26 @@
+// choose.hpp — which of many slots a pass works on, each looked at once.
+#pragma once
+#include "par/par.hpp"
+#include <cstdint>
+#include <vector>
+
+namespace molmesh::improve {
+
+/// The i in [0, n) with keep(i), ascending; few of many. keep is asked once for each, where par::select asks twice.
+template <class Keep>
+std::vector<int32_t> choose(int64_t n, int threads, Keep&& keep) {
+  constexpr int64_t grain = 1 << 14;
+  const int64_t chunks = (n + grain - 1) / grain;
+  std::vector<std::vector<int32_t>> found(static_cast<size_t>(chunks));
+  par::for_n(chunks, threads, 1, [&](int64_t c) {
+    for (int64_t i = c * grain, end = std::min(n, i + grain); i < end; ++i)
+      if (keep(i))
+        found[static_cast<size_t>(c)].push_back(static_cast<int32_t>(i));
+  });
+  std::vector<int32_t> all;
+  for (const auto& f : found)
+    all.insert(all.end(), f.begin(), f.end());
+  return all;
+}
+
+} // namespace molmesh::improve
