@@ -1,6 +1,6 @@
-// device_mesh.hpp — the assembled mesh in a Backend's memory, and its way to the host.
+// device_mesh.hpp — the assembled mesh in a Backend's memory, and its way to the host beside the last kernels.
 #pragma once
-#include "cuda/par/backend.hpp"
+#include "cuda/par/run_copy.hpp"
 #include "mesh/tet_mesh.hpp"
 
 namespace molmesh::cuda {
@@ -9,21 +9,27 @@ namespace molmesh::cuda {
 template <class Backend>
 class DeviceMesh {
 public:
-  explicit DeviceMesh(Backend& b) : b_(b) {}
+  /// As RunCopy has them.
+  DeviceMesh(Backend& b, int threads, int64_t run_bytes) : b_(b), copy_(b, threads, run_bytes) {}
   Tet* tets(int64_t n) { return room(tet_, n); }
   int32_t* regions(int64_t n) { return room(region_, n); }
   Vec3d* points(int64_t n) { return room(point_, n); }
   Tri* tris(int64_t n) { return room(tri_, n); }
   int32_t* boundaries(int64_t n) { return room(boundary_, n); }
 
-  TetMesh on_host() const {
-    TetMesh mesh;
-    copy(tet_, mesh.tet);
-    copy(region_, mesh.region);
-    copy(point_, mesh.point);
-    copy(tri_, mesh.tri);
-    copy(boundary_, mesh.boundary);
-    return mesh;
+  /// Regions and points are as they stay; renumber(begin, end) makes these tets so.
+  template <class Renumber>
+  void renumber_tets(Renumber&& renumber) {
+    send(region_, mesh_.region);
+    send(point_, mesh_.point);
+    mesh_.tet.resize(static_cast<size_t>(tet_.size()));
+    copy_.send(tet_.data(), tet_.size(), mesh_.tet.data(), renumber);
+  }
+  TetMesh on_host() {
+    send(tri_, mesh_.tri);
+    send(boundary_, mesh_.boundary);
+    copy_.finish();
+    return std::move(mesh_);
   }
 
 private:
@@ -35,15 +41,17 @@ private:
     return array.data();
   }
   template <class T, class Vector>
-  void copy(const Array<T>& from, Vector& to) const {
+  void send(const Array<T>& from, Vector& to) {
     to.resize(static_cast<size_t>(from.size()));
-    b_.download(from, from.size(), to.data());
+    copy_.send(from.data(), from.size(), to.data());
   }
   Backend& b_;
+  TetMesh mesh_;
   Array<Tet> tet_;
   Array<int32_t> region_, boundary_;
   Array<Vec3d> point_;
   Array<Tri> tri_;
+  RunCopy<Backend> copy_; ///< the last: what is on its way ends before the arrays do
 };
 
 } // namespace molmesh::cuda

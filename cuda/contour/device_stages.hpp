@@ -11,6 +11,8 @@
 #include "cuda/contour/relax.hpp"
 #include "cuda/contour/selection.hpp"
 #include <algorithm>
+#include <future>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,11 +28,17 @@ class DeviceStages final : public contour::Stages {
 
 public:
   /// threads: of the host. least_run: leaves, or edges, that are made elements of at once, however little room.
-  DeviceStages(Backend& b, int threads, int64_t least_run = int64_t{1} << 16)
-      : b_(b), threads_(threads), selection_(b), maker_(b, least_run) {}
+  /// copy_bytes: of a run of the mesh on its way to the host.
+  DeviceStages(Backend& b, int threads, int64_t least_run = int64_t{1} << 16,
+               int64_t copy_bytes = int64_t{32} << 20)
+      : b_(b), threads_(threads), copy_bytes_(copy_bytes), selection_(b), maker_(b, least_run) {}
 
   void find_surface(const contour::Lattice& lattice) override {
     lattice_ = &lattice;
+    // The host's logarithms, beside the kernels up to the elements.
+    isosurface_ = std::async(std::launch::async, [&lattice, threads = threads_] {
+      return std::make_unique<const improve::Isosurface>(lattice.grid(), threads);
+    });
     b_.plan(40 * static_cast<int64_t>(lattice.grid().value.size())); // with as many surface cells as usual
     selection_.find_surface(lattice);
   }
@@ -51,8 +59,8 @@ public:
     b_.plan(most_beside(elements_.tet.size(), elements_.position.size(), elements_.tri.size()));
   }
   void relax() override {
-    const improve::Isosurface surface(lattice_->grid(), threads_);
-    TeamMover<Backend> mover(b_, surface);
+    const std::unique_ptr<const improve::Isosurface> surface = isosurface_.get();
+    TeamMover<Backend> mover(b_, *surface);
     const int64_t known = complex_->view.vertices();
     auto lattice_class = b_.template array<uint8_t>(known);
     b_.for_n("lattice classes", known, contour::detail::LatticeClasses{complex_->view, lattice_class.data()},
@@ -66,7 +74,7 @@ public:
     return regions_->component;
   }
   TetMesh assemble(contour::Options::Meshed meshed) override {
-    DeviceMesh<Backend> mesh(b_);
+    DeviceMesh<Backend> mesh(b_, threads_, copy_bytes_);
     contour::detail::assemble(b_, elements_.view(), regions_->region.data(), regions_->region.size(),
                               contour::detail::wanted(meshed), mesh);
     return mesh.on_host();
@@ -131,7 +139,9 @@ private:
 
   Backend& b_;
   int threads_;
+  int64_t copy_bytes_;
   const contour::Lattice* lattice_ = nullptr;
+  std::future<std::unique_ptr<const improve::Isosurface>> isosurface_;
   Selection<Backend> selection_;
   ElementMaker<Backend> maker_;
   Array<uint32_t> slot_;

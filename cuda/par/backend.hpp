@@ -7,6 +7,7 @@
 //   Array<T> upload(pointer, n)
 //   void download(array, n, pointer)   returns when the elements are there
 //   Pending<T> fetch(Array<T>)         starts a download beside the work that follows; get() waits for it
+//   Pending<T> fetch(pointer, n)       of an array that its owner keeps until get()
 //   for_n(name, n, item, work)         item(i) for i in [0, n), each call independent of the others
 //   for_teams(name, n, item, work)     item(i, team, shared): Item::team_size threads work on i together
 //   T scan(name, pointer, n)           count[i] → sum of count[0..i), in place; slot n, one more, gets the total

@@ -73,16 +73,16 @@ public:
   template <class T>
   class Pending {
   public:
-    Pending(DeviceBackend& owner, Array<T> from)
-        : n_(from.size()), done_(detail::make_event(cudaEventDisableTiming)),
+    Pending(DeviceBackend& owner, const T* from, int64_t n, Array<T> own)
+        : n_(n), done_(detail::make_event(cudaEventDisableTiming)),
           to_(owner.locked_, static_cast<size_t>(n_) * sizeof(T)) {
       void* const to = to_.data();
       check(cudaEventRecord(done_.get(), owner.work_.get()), "an event");
       check(cudaStreamWaitEvent(owner.copy_.get(), done_.get()), "an event");
-      owner.copy_timed(to, from.data(), static_cast<size_t>(n_) * sizeof(T), cudaMemcpyDeviceToHost,
-                       owner.copy_.get(), "copies to the host");
+      owner.copy_timed(to, from, static_cast<size_t>(n_) * sizeof(T), cudaMemcpyDeviceToHost, owner.copy_.get(),
+                       "copies to the host");
       check(cudaEventRecord(done_.get(), owner.copy_.get()), "an event");
-      from_ = std::move(from);
+      own_ = std::move(own);
     }
     Pending(Pending&&) noexcept = default;
     Pending& operator=(Pending&&) = delete;
@@ -92,7 +92,7 @@ public:
     }
     const T* get() {
       check(cudaEventSynchronize(done_.get()), "copying to the host");
-      from_ = {};
+      own_ = {};
       return static_cast<const T*>(to_.data());
     }
     int64_t size() const { return n_; }
@@ -101,7 +101,7 @@ public:
     int64_t n_;
     detail::Event done_;
     detail::Locked to_;
-    Array<T> from_;
+    Array<T> own_;
   };
 
   template <class T>
@@ -132,7 +132,13 @@ public:
   }
   template <class T>
   Pending<T> fetch(Array<T> from) {
-    return Pending<T>(*this, std::move(from));
+    const T* const data = from.data();
+    const int64_t n = from.size();
+    return Pending<T>(*this, data, n, std::move(from));
+  }
+  template <class T>
+  Pending<T> fetch(const T* from, int64_t n) {
+    return Pending<T>(*this, from, n, {});
   }
 
   template <class Item>

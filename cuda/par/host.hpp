@@ -23,12 +23,14 @@ public:
   template <class T>
   class Pending {
   public:
-    explicit Pending(Array<T> a) : array_(std::move(a)) {}
-    const T* get() { return array_.data(); }
-    int64_t size() const { return array_.size(); }
+    Pending(const T* from, int64_t n, Array<T> own) : from_(from), n_(n), own_(std::move(own)) {}
+    const T* get() { return from_; }
+    int64_t size() const { return n_; }
 
   private:
-    Array<T> array_;
+    const T* from_;
+    int64_t n_;
+    Array<T> own_;
   };
 
   template <class T>
@@ -53,7 +55,13 @@ public:
   }
   template <class T>
   Pending<T> fetch(Array<T> from) {
-    return Pending<T>(std::move(from));
+    const T* const data = from.data();
+    const int64_t n = from.size();
+    return {data, n, std::move(from)};
+  }
+  template <class T>
+  Pending<T> fetch(const T* from, int64_t n) {
+    return {from, n, {}};
   }
 
   template <class Item>

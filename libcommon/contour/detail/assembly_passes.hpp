@@ -26,7 +26,7 @@ auto number_points(Launcher& m, const Tet* tet, int64_t tets, const ElementsView
 }
 
 /// Mesh: makes room and says where: tets(n), regions(n), points(n), tris(n), boundaries(n); it may have a faster
-/// number_points(tet, tets, elements).
+/// number_points(tet, tets, elements), and a renumber_tets(renumber) that calls renumber(begin, end) run by run.
 template <class Launcher, class Mesh>
 void assemble(Launcher& m, const ElementsView& e, const uint8_t* region, int64_t complex_vertices, Wanted wanted,
               Mesh& mesh) {
@@ -43,7 +43,13 @@ void assemble(Launcher& m, const ElementsView& e, const uint8_t* region, int64_t
     else
       return number_points(m, tet, tets, e, mesh);
   }();
-  m.for_n("renumber", tets, Renumber{number.data(), tet}, {double(tets) * 36});
+  const auto renumber = [&](int64_t begin, int64_t end) {
+    m.for_n("renumber", end - begin, Renumber{number.data(), tet + begin}, {double(end - begin) * 36});
+  };
+  if constexpr (requires { mesh.renumber_tets(renumber); })
+    mesh.renumber_tets(renumber);
+  else
+    renumber(0, tets);
   const auto kept = gather<int64_t>(m, "triangles", e.tris, GatherTriangles{e, region, wanted});
   m.for_n("place triangles", kept.n,
           PlaceTriangles{e, kept.data(), number.data(), mesh.tris(kept.n), mesh.boundaries(kept.n)},

@@ -31,7 +31,7 @@ bool same(const A& device, const B& host) {
 /// Each stage by both; what differs is counted.
 class Both final : public contour::Stages {
 public:
-  Both(cuda::HostBackend& backend, int threads) : host_(threads), device_(backend, threads, 2000) {}
+  Both(cuda::HostBackend& backend, int threads) : host_(threads), device_(backend, threads, 2000, 5000) {}
   void find_surface(const contour::Lattice& lattice) override {
     host_.find_surface(lattice);
     device_.find_surface(lattice);

@@ -1,0 +1,61 @@
+// run_copy.hpp — arrays on their way to the host in runs: a run is copied while the next one is made.
+#pragma once
+#include "cuda/par/backend.hpp"
+#include "par/par.hpp"
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <optional>
+
+namespace molmesh::cuda {
+
+/// The page-locked memory in use is two runs, however long the arrays: locking as much as is copied costs as much
+/// as the copy.
+template <class Backend>
+class RunCopy {
+public:
+  /// threads: of the host, from page-locked memory on. run_bytes: of a run.
+  RunCopy(Backend& b, int threads, int64_t run_bytes) : b_(b), threads_(threads), run_bytes_(run_bytes) {}
+
+  /// to[0, n) will be from[0, n). make(begin, end) starts what writes from[begin, end) last. Both arrays stay until
+  /// finish().
+  template <class T, class Make>
+  void send(const T* from, int64_t n, T* to, Make&& make) {
+    const int64_t run = std::max<int64_t>(run_bytes_ / static_cast<int64_t>(sizeof(T)), 1);
+    for (int64_t begin = 0; begin < n; begin += run) {
+      const int64_t end = std::min(n, begin + run);
+      make(begin, end);
+      Pending next = b_.fetch(reinterpret_cast<const std::byte*>(from + begin),
+                              (end - begin) * static_cast<int64_t>(sizeof(T)));
+      finish(); // the run before, while this one is on its way
+      last_.emplace(std::move(next));
+      to_ = reinterpret_cast<std::byte*>(to + begin);
+    }
+  }
+  template <class T>
+  void send(const T* from, int64_t n, T* to) {
+    send(from, n, to, [](int64_t, int64_t) {});
+  }
+  /// Returns when all that was sent is there.
+  void finish() {
+    if (!last_)
+      return;
+    constexpr int64_t piece = int64_t{1} << 20;
+    const std::byte* const from = last_->get();
+    const int64_t bytes = last_->size();
+    par::for_n((bytes + piece - 1) / piece, threads_, 1, [&](int64_t i) {
+      std::memcpy(to_ + i * piece, from + i * piece, static_cast<size_t>(std::min(piece, bytes - i * piece)));
+    });
+    last_.reset();
+  }
+
+private:
+  using Pending = typename Backend::template Pending<std::byte>;
+  Backend& b_;
+  int threads_;
+  int64_t run_bytes_;
+  std::optional<Pending> last_;
+  std::byte* to_ = nullptr;
+};
+
+} // namespace molmesh::cuda
