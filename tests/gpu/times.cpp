@@ -3,7 +3,7 @@
 #include "peaks.hpp"
 #include <algorithm>
 #include <cstdio>
-#include <limits>
+#include <optional>
 
 namespace molmesh::gpu {
 namespace {
@@ -24,9 +24,9 @@ struct Times {
   cuda::DeviceReport device; ///< of the last run
 };
 
-/// Runs fewer times than asked where one takes minutes.
+/// Runs fewer times than asked where one takes minutes. peaks: none where there is no card to compare with.
 template <class Run>
-Times time_stage(const char* stage, const char* mode, int repeats, const Peaks& peaks, Run run) {
+Times time_stage(const char* stage, const char* mode, int repeats, const std::optional<Peaks>& peaks, Run run) {
   std::vector<double> wall;
   std::vector<std::vector<double>> kernel;
   Timed t;
@@ -43,27 +43,30 @@ Times time_stage(const char* stage, const char* mode, int repeats, const Peaks& 
   for (size_t k = 0; k < t.device.kernels.size(); ++k) {
     const bool is_copy = t.device.kernels[k].name.rfind("copies", 0) == 0;
     (is_copy ? times.copies : times.kernels) += median(kernel[k]);
-    floor += is_copy ? 0 : floor_of(t.device.kernels[k], peaks);
+    floor += is_copy || !peaks ? 0 : floor_of(t.device.kernels[k], *peaks);
   }
   std::printf("%-8s %-5s %10.4f s", stage, mode, times.wall);
   if (t.device.kernels.empty()) {
     std::printf("\n");
     return times;
   }
-  std::printf(
-      "   kernels %.4f s, %.1f times their floor, copies %.4f s, at most %.1f MiB on the device, %zu runs\n",
-      times.kernels, times.kernels / floor, times.copies, double(t.device.most_used.own) / 1048576, wall.size());
+  std::printf("   kernels %.4f s, ", times.kernels);
+  if (peaks)
+    std::printf("%.1f times their floor, ", times.kernels / floor);
+  std::printf("copies %.4f s, at most %.1f MiB on the device, %zu runs\n", times.copies,
+              double(t.device.most_used.own) / 1048576, wall.size());
   if (!t.device.note.empty())
     std::printf("         %s\n", t.device.note.c_str());
   for (size_t k = 0; k < t.device.kernels.size(); ++k) {
     const cuda::KernelTime& n = t.device.kernels[k];
     const double s = median(kernel[k]);
-    std::printf(
-        "    %-28s %6lld launches %11lld items %9.3f ms %9.2f MB  %5.1f %% of the bandwidth  %5.1f %% of the "
-        "multiply-adds\n",
-        n.name.c_str(), static_cast<long long>(n.launches), static_cast<long long>(n.items), 1e3 * s,
-        1e-6 * n.work.bytes, 100 * n.work.bytes / s / peaks.bytes,
-        100 * n.work.multiply_adds / s / (n.work.in_double ? peaks.in_double : peaks.single));
+    std::printf("    %-28s %6lld launches %11lld items %9.3f ms %9.2f MB", n.name.c_str(),
+                static_cast<long long>(n.launches), static_cast<long long>(n.items), 1e3 * s, 1e-6 * n.work.bytes);
+    if (peaks)
+      std::printf("  %5.1f %% of the bandwidth  %5.1f %% of the multiply-adds",
+                  100 * n.work.bytes / s / peaks->bytes,
+                  100 * n.work.multiply_adds / s / (n.work.in_double ? peaks->in_double : peaks->single));
+    std::printf("\n");
   }
   std::fflush(stdout);
   return times;
@@ -79,7 +82,7 @@ void tell_sweeps(const Times& t) {
       seconds += k.name == name ? k.seconds : 0;
     points += k.name == "propose moves" ? k.items : 0;
   }
-  std::printf("         sweeps: %.1f M point updates/s\n", 1e-6 * double(points) / seconds);
+  std::printf("         sweeps: %.2f M point updates/s\n", 1e-6 * double(points) / seconds);
 }
 
 } // namespace
@@ -87,10 +90,12 @@ void tell_sweeps(const Times& t) {
 void time_all(const Hierarchy& h, const density::Options& o, int repeats, const How& device, const How& reference) {
   const bool on_device = device.by == By::device;
   const char* const name = on_device ? "cuda" : "as it";
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  const Peaks peaks = on_device ? measure_peaks() : Peaks{unknown, unknown, unknown};
-  std::printf("peaks, measured: %.0f GB/s copied, %.1f T multiply-adds/s in single, %.1f in double precision\n",
-              1e-9 * peaks.bytes, 1e-12 * peaks.single, 1e-12 * peaks.in_double);
+  std::optional<Peaks> peaks;
+  if (on_device) {
+    peaks = measure_peaks();
+    std::printf("peaks, measured: %.0f GB/s copied, %.1f T multiply-adds/s in single, %.1f in double precision\n",
+                1e-9 * peaks->bytes, 1e-12 * peaks->single, 1e-12 * peaks->in_double);
+  }
   BlockGrid grid;
   TetMesh mesh;
   contour::Options c;
