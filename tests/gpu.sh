@@ -1,18 +1,22 @@
 #!/usr/bin/env bash
 # gpu.sh — the cuda mode on a real GPU: parity of all stages, memory errors, times. Needs an NVIDIA GPU and the CUDA
 # toolkit, nothing else; or a folder made before, elsewhere.
-#   tests/gpu.sh [-d DIR] [-b BIN] [-s SPACING | -g POINTS] [-m MODEL] [-n REPEATS] [-H] [FILE…]
+#   tests/gpu.sh [-d DIR] [-b BIN] [-s SPACING | -g POINTS] [-m MODEL] [-n REPEATS] [-l STAGE] [-t THREADS] [-T] [-H]
+#     [FILE…]
 #   tests/gpu.sh -c DIR [-b BIN] [-m MODEL] [FILE…]
+#   tests/gpu.sh -L
 # FILE: a .hier, or a structure (MODEL of it: first, all, a number) where there are programs. BIN: a folder with
 # pdb2hier, hier2density, density2tet and tetsmooth: then the table of the three modes of the whole programs too.
 # -c: what can be carried, and no more: the driver, the programs and the shared libraries that they need, the
-# hierarchies of the FILEs. -d: nothing is built; without FILEs those of the folder. -H: no GPU, the device's
-# algorithms on the host's threads. Exit status: 0 all held, 1 something did not, 6 no GPU.
+# hierarchies of the FILEs. -d: nothing is built; without FILEs those of the folder. -l: the last stage: density, mesh
+# or improve. -t: threads of the host that the device is compared with. -T: times only, no parity. -H: no GPU, the
+# device's algorithms on the host's threads. -L: lists what is compiled. Exit status: 0 all held, 1 something did not,
+# 6 no GPU.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
-compile='' dir='' bin='' spacing=1 points='' model=first repeats=5 host=''
-while getopts c:d:b:s:g:m:n:H o; do
+compile='' dir='' bin='' spacing=1 points='' model=first repeats=5 host='' last=improve threads=$(nproc) parity=yes
+while getopts c:d:b:s:g:m:n:l:t:THL o; do
   case $o in
   c) compile=$OPTARG ;;
   d) dir=$OPTARG ;;
@@ -21,24 +25,31 @@ while getopts c:d:b:s:g:m:n:H o; do
   g) points=$OPTARG ;;
   m) model=$OPTARG ;;
   n) repeats=$OPTARG ;;
+  l) last=$OPTARG ;;
+  t) threads=$OPTARG ;;
+  T) parity='' ;;
   H) host=host ;;
+  L) list=yes ;;
   *) exit 2 ;;
   esac
 done
 shift $((OPTIND - 1))
 PATH=$PATH:/usr/local/cuda/bin
 status=0
+case $last in density | mesh | improve) ;; *) echo "gpu.sh: -l: expected density, mesh or improve" >&2; exit 2 ;; esac
 failed() { status=1; echo "gpu.sh: FAILED: $*"; }
 
+sources() { # of the driver. What needs Highway, nanoflann or METIS is not used by it.
+  (cd "$root" && ls cuda/*/*.cu cuda/*/*.cpp libcommon/{par,molecule,density,contour,contour/detail,improve,mesh}/*.cpp \
+    formats/hier/{hier_reader,text}.cpp tests/gpu/*.cpp tests/gpu/*.cu 2>/dev/null |
+    grep -vE 'density/[a-z]*_kernel.cpp|cluster_tree.cpp|partition.cpp|carry.cpp')
+}
+
 build() { # build DRIVER FLAGS: cuda/ and libcommon/ with nvcc and the standard library alone
-  local out=$1 objects work jobs=0 f name flags
+  local out=$1 work jobs=0 f name flags
   work=$(dirname "$out")/objects
   mkdir -p "$work"
-  # What needs Highway, nanoflann, METIS or CLI11 is not used here.
-  objects=$(cd "$root" && ls cuda/*/*.cu cuda/*/*.cpp libcommon/{par,molecule,density,contour,contour/detail,improve,mesh}/*.cpp \
-    formats/hier/{hier_reader,text}.cpp tests/gpu/*.cpp tests/gpu/*.cu 2>/dev/null |
-    grep -vE 'block_kernel.cpp|cluster_tree.cpp|partition.cpp|carry.cpp')
-  for f in $objects; do
+  for f in $(sources); do
     name=$work/${f//\//_}.o
     if [ "$name" -nt "$root/$f" ] && [ -z "$(find "$root"/{cuda,libcommon,formats/hier,tests/gpu} -name '*.h*' -newer "$name" -print -quit)" ]; then
       continue
@@ -86,10 +97,14 @@ carry() { # carry DIR FILE…: programs, libraries and hierarchies beside the dr
   done
 }
 
+if [ -n "${list:-}" ]; then
+  sources
+  exit
+fi
 if [ -n "$compile" ]; then
   command -v nvcc >/dev/null || { echo "gpu.sh: no nvcc here"; exit 1; }
   mkdir -p "$compile"
-  build "$compile/molmesh_gpu" "${ARCH:--gencode arch=compute_75,code=sm_75 -gencode arch=compute_90,code=[sm_90,compute_90]}" &&
+  build "$compile/molmesh_gpu" "${ARCH:--gencode arch=compute_75,code=[sm_75,compute_75] -gencode arch=compute_90,code=[sm_90,compute_90]}" &&
     carry "$compile" "$@" && echo "gpu.sh: made $compile: $(cd "$compile" && ls -d molmesh_gpu bin/* *.hier 2>/dev/null | tr '\n' ' ')"
   exit
 fi
@@ -114,6 +129,7 @@ else
   command -v nvcc >/dev/null || { echo "gpu.sh: no nvcc here and no -d DIR"; exit 1; }
   build "$driver" "${ARCH:--arch=native}" || { echo "gpu.sh: the driver was not built"; exit 1; }
 fi
+export CUDA_MODULE_LOADING=EAGER # a kernel's first launch is no slower than the next
 held() {
   "$@"
   case $? in
@@ -123,9 +139,9 @@ held() {
   esac
 }
 
-echo "== parity, random small cases"
-held "$driver" $host small ${host:+6}
-if [ -z "$host" ]; then
+[ -z "$parity" ] || echo "== parity, random small cases"
+[ -z "$parity" ] || held "$driver" $host small ${host:+6}
+if [ -z "$host" ] && [ -n "$parity" ]; then
   echo "== compute-sanitizer, some of them"
   if command -v compute-sanitizer >/dev/null; then
     for tool in memcheck racecheck initcheck synccheck; do
@@ -143,10 +159,14 @@ fi
 
 chain() { # chain MODE RUN HIER: the three programs, their reports in $work
   local grid=(--spacing "$spacing")
+  local how=(-q --mode "$1")
   [ -z "$points" ] || grid=(--grid "$points")
-  "$bin/hier2density" -q --mode "$1" "${grid[@]}" "$3" -o "$work/g.vdb" --report "$work/1.$1.$2" &&
-    "$bin/density2tet" -q --mode "$1" --region both "$work/g.vdb" -o "$work/m.vtu" --report "$work/2.$1.$2" &&
-    "$bin/tetsmooth" -q --mode "$1" --density "$work/g.vdb" "$work/m.vtu" -o "$work/s.vtu" --report "$work/3.$1.$2"
+  [ "$1" != omp ] || how+=(-t "$threads")
+  "$bin/hier2density" "${how[@]}" "${grid[@]}" "$3" -o "$work/g.vdb" --report "$work/1.$1.$2" || return
+  [ "$last" != density ] || return 0
+  "$bin/density2tet" "${how[@]}" --region both "$work/g.vdb" -o "$work/m.vtu" --report "$work/2.$1.$2" || return
+  [ "$last" != mesh ] || return 0
+  "$bin/tetsmooth" "${how[@]}" --density "$work/g.vdb" "$work/m.vtu" -o "$work/s.vtu" --report "$work/3.$1.$2"
 }
 
 table() { # table MODES: medians of what chain left, a row a phase, a column a mode; then kernels and copies
@@ -196,10 +216,10 @@ grid=$spacing grid_name="$spacing Å" modes='seq omp cuda'
 for file in "$@"; do
   hier=$(hierarchy "$file" "$work") || { failed "$file"; continue; }
   at="$(basename "$file"), $grid_name"
-  echo "== $at: parity"
-  held "$driver" $host parity "$hier" "$grid"
+  [ -z "$parity" ] || echo "== $at: parity"
+  [ -z "$parity" ] || held "$driver" $host parity "$hier" "$grid" "$last"
   echo "== $at: times, medians of $repeats"
-  held "$driver" $host time "$hier" "$grid" "$repeats"
+  held "$driver" $host time "$hier" "$grid" "$last" "$repeats" "$threads"
   [ -n "$bin" ] || continue
   echo "== $at: whole programs, medians of $repeats"
   rm -f "$work"/[123].*
@@ -209,5 +229,6 @@ for file in "$@"; do
     done
   done
   table "$modes"
+  grep -H '"active_points"' "$work"/1.*.0 | sed 's,.*/1\.\([a-z]*\)\.0:,\1,' # the host's own search beside the device's
 done
 exit $status

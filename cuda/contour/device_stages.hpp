@@ -36,8 +36,8 @@ public:
   void find_surface(const contour::Lattice& lattice) override {
     lattice_ = &lattice;
     // The host's logarithms, beside the kernels up to the elements.
-    isosurface_ = std::async(std::launch::async, [&lattice, threads = threads_] {
-      return std::make_unique<const improve::Isosurface>(lattice.grid(), threads);
+    isosurface_ = std::async(std::launch::async, [&grid = lattice.grid(), threads = threads_] {
+      return std::make_unique<const improve::Isosurface>(grid, threads); // the grid outlives stage and lattice
     });
     b_.plan(40 * static_cast<int64_t>(lattice.grid().value.size())); // with as many surface cells as usual
     selection_.find_surface(lattice);

@@ -46,11 +46,9 @@ struct BlockClusters {
   }
 };
 
-/// How many, and the work they are: sets count[i], atoms[i], least[i].
-struct CountClusters {
+/// Sets least[i]: clusters of less effect are dropped.
+struct ChooseLeast {
   BlockClusters in;
-  int64_t* count;
-  uint32_t* atoms;
   float* least;
 
   HD void operator()(int64_t i) const {
@@ -69,26 +67,31 @@ struct CountClusters {
     while (in.drop && k < BlockClusters::thresholds && total[k] * 1.001f > float(in.budget))
       ++k;
     least[i] = in.threshold(k);
-    int64_t n = 0, sum = 0;
-    in.for_each(i, least[i], [&](int32_t c) {
-      ++n;
-      sum += in.f.begin[c + 1] - in.f.begin[c];
-    });
-    count[i] = n;
-    atoms[i] = uint32_t(sum);
   }
 };
 
-/// list[begin[i] …] in ascending order.
-struct FillClusters {
+/// Without a list: begin[i], how many, and atoms[i], the work they are. With one: list[begin[i] …] in ascending
+/// order. One kernel, so that both decide alike however a product and a sum are rounded.
+struct ListClusters {
   BlockClusters in;
-  const int64_t* begin;
   const float* least;
+  int64_t* begin;
+  uint32_t* atoms;
   int32_t* list;
 
   HD void operator()(int64_t i) const {
-    int32_t* to = list + begin[i];
-    in.for_each(i, least[i], [&](int32_t c) { *to++ = c; });
+    int32_t* const to = list ? list + begin[i] : nullptr;
+    int64_t n = 0, sum = 0;
+    in.for_each(i, least[i], [&](int32_t c) {
+      if (to)
+        to[n] = c;
+      ++n;
+      sum += in.f.begin[c + 1] - in.f.begin[c];
+    });
+    if (to)
+      return;
+    begin[i] = n;
+    atoms[i] = uint32_t(sum);
   }
 };
 

@@ -163,11 +163,13 @@ private:
     {
       const Array<uint32_t> work = b_.template array<uint32_t>(n);
       const Array<float> least = b_.template array<float>(n);
-      b_.for_n("count clusters", n, CountClusters{in, begin.data(), work.data(), least.data()}, {double(n) * 24});
+      b_.for_n("choose clusters", n, ChooseLeast{in, least.data()}, {double(n) * 12});
+      ListClusters listed{in, least.data(), begin.data(), work.data(), nullptr};
+      b_.for_n("count clusters", n, listed, {double(n) * 24});
       clusters = b_.scan("scan", begin.data(), n);
-      list = b_.template array<int32_t>(clusters);
-      b_.for_n("list clusters", n, FillClusters{in, begin.data(), least.data(), list.data()},
-               {double(n) * 20 + double(clusters) * 4});
+      list = b_.template array<int32_t>(clusters + 1); // never null
+      listed.list = list.data();
+      b_.for_n("list clusters", n, listed, {double(n) * 20 + double(clusters) * 4});
       const Array<uint32_t> sort_key = b_.template array<uint32_t>(n);
       b_.for_n("estimate work", n, SortKeys{work.data(), sort_key.data(), order.data()}, {double(n) * 12});
       b_.sort_pairs("sort by work", sort_key.data(), order.data(), n);

@@ -10,7 +10,7 @@
 
 namespace molmesh::cuda {
 
-/// Every call of CUDA goes through here: the ordinary one-line error.
+/// Every call of CUDA but those that give back goes through here: the ordinary one-line error.
 inline void check(cudaError_t e, const char* what) {
   if (e != cudaSuccess)
     fail(Status::failed, std::string("GPU: ") + what + ": " + cudaGetErrorString(e));

@@ -1,9 +1,11 @@
 // main.cpp — what tests/gpu.sh runs on a machine with a GPU: parity of all stages, and their times.
-//   molmesh_gpu [host] small [N]                    random small cases, every Nth; all stages against the host
-//   molmesh_gpu [host] parity FILE.hier GRID        one structure, the same
-//   molmesh_gpu [host] time FILE.hier GRID REPEATS  medians, and each kernel's share of the card's peak
-// GRID: the spacing in Å, or nN for N points along the longest axis. host: the device's algorithms on the host's
-// threads, where there is no GPU; its times are no device's.
+//   molmesh_gpu [host] small [N]                     random small cases, every Nth; all stages against the host
+//   molmesh_gpu [host] parity FILE.hier GRID [STAGE] one structure, the same
+//   molmesh_gpu [host] time FILE.hier GRID STAGE REPEATS THREADS
+//                                                    medians, and each kernel's share of the card's peak
+// GRID: the spacing in Å, or nN for N points along the longest axis. STAGE: the last one, density, mesh or improve.
+// THREADS: of the host beside the device. host: the device's algorithms on the host's threads, where there is no
+// GPU; its times are no device's.
 #include "cuda/par/device.hpp"
 #include "error.hpp"
 #include "formats/hier/hier.hpp"
@@ -27,17 +29,29 @@ Hierarchy read(const char* file) {
   return formats::read_hier(in, file);
 }
 
+gpu::Stage stage(const std::string& name) {
+  if (name == "density")
+    return gpu::Stage::density;
+  if (name == "mesh")
+    return gpu::Stage::mesh;
+  if (name != "improve")
+    fail(Status::usage, name + ": expected density, mesh or improve");
+  return gpu::Stage::improve;
+}
+
 int run(int argc, char** argv) {
   gpu::How device{gpu::By::device, par::default_threads()};
-  const gpu::How reference{gpu::By::host, device.threads};
+  gpu::How reference{gpu::By::host, device.threads};
   if (argc > 1 && std::strcmp(argv[1], "host") == 0) {
     device.by = gpu::By::host_as_device;
     --argc, ++argv;
   }
   const std::string what = argc > 1 ? argv[1] : "";
-  const bool on_file = (what == "parity" && argc == 4) || (what == "time" && argc == 5);
+  const bool on_file = (what == "parity" && (argc == 4 || argc == 5)) || (what == "time" && argc == 7);
   if (!on_file && !(what == "small" && argc <= 3))
-    fail(Status::usage, "expected [host] and small [N], parity FILE GRID or time FILE GRID REPEATS");
+    fail(Status::usage,
+         "expected [host] and small [N], parity FILE GRID [STAGE] or time FILE GRID STAGE REPEATS THREADS");
+  const gpu::Stage last = on_file && argc > 4 ? stage(argv[4]) : gpu::Stage::improve;
   std::printf("%s\n", device.by == gpu::By::device ? cuda::device_name().c_str() : "the host, as a device");
   density::Options o;
   if (on_file && argv[3][0] == 'n')
@@ -49,9 +63,11 @@ int run(int argc, char** argv) {
   if (what == "small")
     parity.small(argc == 3 ? std::max(1, std::stoi(argv[2])) : 1);
   else if (const Hierarchy h = read(argv[2]); what == "parity")
-    parity.slabs(argv[2], h, o, false), parity.structure(argv[2], h, o, true);
-  else
-    gpu::time_all(h, o, std::stoi(argv[4]), device, reference);
+    parity.slabs(argv[2], h, o, false), parity.structure(argv[2], h, o, last);
+  else {
+    reference.threads = std::max(1, std::stoi(argv[6]));
+    gpu::time_all(h, o, last, std::stoi(argv[5]), device, reference);
+  }
   return parity.failures() > 0;
 }
 

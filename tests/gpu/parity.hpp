@@ -10,8 +10,8 @@ public:
   Parity(const How& device, const How& reference) : device_(device), reference_(reference) {}
   /// Every so many of the cases.
   void small(int step);
-  /// Every stage from the host's result of the stage before.
-  void structure(const std::string& name, const Hierarchy& h, const density::Options& o, bool all_stages);
+  /// The stages up to `last`, each from the host's result of the one before.
+  void structure(const std::string& name, const Hierarchy& h, const density::Options& o, Stage last);
   /// Of the density, with a third of the memory; not must_fit: unless not one block's slab fits.
   void slabs(const std::string& name, const Hierarchy& h, const density::Options& o, bool must_fit);
   int failures() const { return failures_; }

@@ -9,6 +9,7 @@
 
 namespace molmesh::gpu {
 
+enum class Stage { density, mesh, improve };
 enum class By {
   host,
   device,

@@ -3,6 +3,7 @@
 #include "peaks.hpp"
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <optional>
 
 namespace molmesh::gpu {
@@ -87,7 +88,8 @@ void tell_sweeps(const Times& t) {
 
 } // namespace
 
-void time_all(const Hierarchy& h, const density::Options& o, int repeats, const How& device, const How& reference) {
+void time_all(const Hierarchy& h, const density::Options& o, Stage last, int repeats, const How& device,
+              const How& reference) {
   const bool on_device = device.by == By::device;
   const char* const name = on_device ? "cuda" : "as it";
   std::optional<Peaks> peaks;
@@ -97,26 +99,42 @@ void time_all(const Hierarchy& h, const density::Options& o, int repeats, const 
                 1e-9 * peaks->bytes, 1e-12 * peaks->single, 1e-12 * peaks->in_double);
   }
   BlockGrid grid;
-  TetMesh mesh;
-  contour::Options c;
-  c.meshed = contour::Options::both;
   time_stage("density", name, repeats, peaks, [&](Timed& t) { grid = run_density(h, o, device, t); });
-  for (const double adapt : {0.0, contour::default_adapt(grid.frame.spacing)}) {
-    c.adapt = adapt;
+  if (last == Stage::density)
+    return;
+  TetMesh mesh;
+  const auto time_mesh = [&](double adapt) {
     std::printf("--adapt %g\n", adapt);
-    const How one{By::host, 1};
-    time_stage("mesh", "seq", repeats, peaks, [&](Timed& t) { mesh = run_contour(grid, c, one, t); });
-    time_stage("mesh", "omp", repeats, peaks, [&](Timed& t) { mesh = run_contour(grid, c, reference, t); });
-    const Times t =
-        time_stage("mesh", name, repeats, peaks, [&](Timed& at) { mesh = run_contour(grid, c, device, at); });
+    contour::Options c;
+    c.meshed = contour::Options::both;
+    c.adapt = adapt;
+    const auto by = [&](const char* mode, const How& how) -> std::optional<Times> {
+      try {
+        return time_stage("mesh", mode, repeats, peaks, [&](Timed& t) {
+          mesh = {}; // large ones do not fit twice
+          mesh = run_contour(grid, c, how, t);
+        });
+      } catch (const std::exception& e) {
+        std::printf("mesh     %-5s not made: %s\n", mode, e.what());
+        return std::nullopt;
+      }
+    };
+    by("seq", {By::host, 1});
+    by("omp", reference);
+    const std::optional<Times> t = by(name, device);
+    if (!t)
+      return;
     const double tets = 1e-6 * double(mesh.tet.size());
     std::printf(
         "         %zu tetrahedra, %zu points; %d threads of the host; M tetrahedra/s: %.1f by kernels, %.1f "
         "with copies, %.1f in all\n",
-        mesh.tet.size(), mesh.point.size(), reference.threads, tets / t.kernels, tets / (t.kernels + t.copies),
-        tets / t.wall);
-  }
-  tell_sweeps(time_stage("improve", name, 1, peaks, [&](Timed& t) { run_improve(mesh, grid, device, t); }));
+        mesh.tet.size(), mesh.point.size(), reference.threads, tets / t->kernels, tets / (t->kernels + t->copies),
+        tets / t->wall);
+  };
+  time_mesh(0);
+  time_mesh(contour::default_adapt(grid.frame.spacing));
+  if (last == Stage::improve && !mesh.tet.empty())
+    tell_sweeps(time_stage("improve", name, repeats, peaks, [&](Timed& t) { run_improve(mesh, grid, device, t); }));
 }
 
 } // namespace molmesh::gpu
