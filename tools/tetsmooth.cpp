@@ -101,10 +101,9 @@ Status run_tool(const Options& o, cli::Run& run) {
   improve::Result result;
   try {
     const auto phase = [&](const std::string& p) { run.phase(p); };
-    const BlockGrid* const density = grid ? &*grid : nullptr;
     cuda::DeviceReport device;
-    result = o.on_device() ? cuda::improve_mesh(mesh, density, options, phase, device)
-                           : improve::improve(mesh, density, options, phase);
+    result = o.on_device() ? cuda::improve_mesh(mesh, grid ? &*grid : nullptr, options, phase, device)
+                           : improve::improve(mesh, grid ? &*grid : nullptr, options, phase);
     if (o.on_device())
       run.counts["device"] = cuda::json(device);
   } catch (const Error& e) {
