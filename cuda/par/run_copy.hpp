@@ -1,11 +1,11 @@
 // run_copy.hpp — arrays on their way to the host in runs: a run is copied while the next one is made.
 #pragma once
 #include "cuda/par/backend.hpp"
-#include "par/par.hpp"
+#include "cuda/par/copy_bytes.hpp"
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
-#include <optional>
+#include <memory>
+#include <utility>
 
 namespace molmesh::cuda {
 
@@ -28,7 +28,7 @@ public:
       Pending next = b_.fetch(reinterpret_cast<const std::byte*>(from + begin),
                               (end - begin) * static_cast<int64_t>(sizeof(T)));
       finish(); // the run before, while this one is on its way
-      last_.emplace(std::move(next));
+      last_ = std::make_unique<Pending>(std::move(next));
       to_ = reinterpret_cast<std::byte*>(to + begin);
     }
   }
@@ -40,12 +40,7 @@ public:
   void finish() {
     if (!last_)
       return;
-    constexpr int64_t piece = int64_t{1} << 20;
-    const std::byte* const from = last_->get();
-    const int64_t bytes = last_->size();
-    par::for_n((bytes + piece - 1) / piece, threads_, 1, [&](int64_t i) {
-      std::memcpy(to_ + i * piece, from + i * piece, static_cast<size_t>(std::min(piece, bytes - i * piece)));
-    });
+    copy_bytes(last_->get(), last_->size(), to_, threads_);
     last_.reset();
   }
 
@@ -54,7 +49,7 @@ private:
   Backend& b_;
   int threads_;
   int64_t run_bytes_;
-  std::optional<Pending> last_;
+  std::unique_ptr<Pending> last_;
   std::byte* to_ = nullptr;
 };
 
