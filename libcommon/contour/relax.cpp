@@ -19,17 +19,6 @@ using detail::at;
 using detail::Fate;
 namespace {
 
-using Judged = std::vector<improve::EightElements>;
-
-void put(Judged& to, size_t k, size_t corner, Vec3d x) {
-  improve::EightElements& e = to[k / 8];
-  e.x[corner][k % 8] = x.x, e.y[corner][k % 8] = x.y, e.z[corner][k % 8] = x.z;
-}
-Vec3d got(const Judged& from, size_t k, size_t corner) {
-  const improve::EightElements& e = from[k / 8];
-  return {e.x[corner][k % 8], e.y[corner][k % 8], e.z[corner][k % 8]};
-}
-
 /// Of detail::move_vertex; keeps its memory from star to star.
 class Star {
 public:
@@ -38,7 +27,7 @@ public:
     vertex_ = r.vertex[candidate];
     element_ = r.element + r.first[candidate];
     elements_ = at(r.first[candidate + 1] - r.first[candidate]);
-    corner_.resize((elements_ + 7) / 8);
+    eights_.resize((elements_ + 7) / 8);
     moving_.resize(elements_);
     const Vec3d x = r.e.position[vertex_];
     spokes_.clear(x);
@@ -56,7 +45,7 @@ public:
       size_t moving = 0;
       for (size_t i = 0; i < 4; ++i) {
         p[i] = r.e.position[t[i]];
-        put(corner_, k, i, p[i]);
+        eights_[k / 8].set(k % 8, i, p[i]);
         length_ += norm(p[i] - x);
         if (t[i] == vertex_)
           moving = i;
@@ -69,17 +58,18 @@ public:
   double length() const { return length_; }
   improve::Spokes& spokes() { return spokes_; }
   bool take(Vec3d x, float worst) {
-    quality_.resize(8 * corner_.size());
+    quality_.resize(8 * eights_.size());
     for (size_t k = 0; k < elements_; ++k)
-      put(corner_, k, moving_[k], x);
-    for (size_t g = 0; g < corner_.size(); ++g) {
+      eights_[k / 8].set(k % 8, moving_[k], x);
+    for (size_t g = 0; g < eights_.size(); ++g) {
       float q[8];
-      improve::qualities(corner_[g], q);
+      improve::qualities(eights_[g], q);
       for (size_t k = 8 * g; k < elements_ && k < 8 * g + 8; ++k) {
         if (q[k % 8] <= worst)
           return false;
+        const improve::EightElements& e = eights_[g];
         if (q[k % 8] < improve::surely_positive &&
-            orient3d(got(corner_, k, 0), got(corner_, k, 1), got(corner_, k, 2), got(corner_, k, 3)) <= 0)
+            orient3d(e.corner(k % 8, 0), e.corner(k % 8, 1), e.corner(k % 8, 2), e.corner(k % 8, 3)) <= 0)
           return false;
         quality_[k] = q[k % 8];
       }
@@ -98,7 +88,7 @@ private:
   double length_ = 0;
   improve::Spokes spokes_;
   std::vector<Tet> tet_;
-  Judged corner_;
+  std::vector<improve::EightElements> eights_;
   std::vector<size_t> moving_;
   std::vector<float> quality_;
 };
@@ -109,30 +99,19 @@ struct JudgeChunk {
   detail::Qualities all;
   void operator()(int64_t c) const {
     const ElementsView& e = all.e;
-    improve::EightElements some{};
-    std::array<int64_t, 8> tet{};
+    std::array<int64_t, size_t(chunk)> others;
     size_t n = 0;
-    const auto judge = [&] {
-      float q[8];
-      improve::qualities(some, q);
-      for (size_t l = 0; l < n; ++l)
-        all.quality[tet[l]] = q[l];
-      n = 0;
-    };
-    for (int64_t t = c * chunk, end = std::min(e.tets, t + chunk); t < end; ++t) {
-      if (all.of_lattice(e.tet[t])) {
+    for (int64_t t = c * chunk, end = std::min(e.tets, t + chunk); t < end; ++t)
+      if (all.of_lattice(e.tet[t]))
         all.quality[t] = 1;
-        continue;
-      }
-      for (size_t i = 0; i < 4; ++i) {
-        const Vec3d& x = e.position[e.tet[t][i]];
-        some.x[i][n] = x.x, some.y[i][n] = x.y, some.z[i][n] = x.z;
-      }
-      tet[n++] = t;
-      if (n == 8)
-        judge();
-    }
-    judge();
+      else
+        others[n++] = t;
+    improve::judge_each(
+        n, [&](size_t k, size_t i) { return e.position[e.tet[others[k]][i]]; },
+        [&](size_t k, float q) {
+          all.quality[others[k]] = q;
+          return true;
+        });
   }
 };
 

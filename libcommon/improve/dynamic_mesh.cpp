@@ -3,6 +3,7 @@
 #include "error.hpp"
 #include "geom/predicates.hpp" // exact sign of the volumes that come in
 #include "improve/kinds.hpp"
+#include "improve/quality_kernel.hpp"
 #include "mesh/group.hpp"
 #include "par/par.hpp"
 #include <algorithm>
@@ -177,15 +178,22 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   m.touched.assign(m.point.size(), 0);
   m.element.resize(mesh.tet.size());
   FirstFault fault;
-  par::for_n(static_cast<int64_t>(mesh.tet.size()), threads, [&](int64_t e) {
-    Element& el = m.element[size_t(e)];
-    el.v = mesh.tet[size_t(e)];
-    el.region = mesh.region[size_t(e)];
-    el.q = m.quality(el.v);
-    const auto p = [&](size_t i) { return m.point[size_t(el.v[i])]; };
-    if (el.q < 1e-6f && orient3d(p(0), p(1), p(2), p(3)) <= 0)
-      fault.found(e, [&] { return name("tetrahedron", e) + " has no positive volume"; });
-    el.q = std::max(el.q, 0.f);
+  constexpr int64_t chunk = 4096;
+  const auto tets = static_cast<int64_t>(mesh.tet.size());
+  par::for_n((tets + chunk - 1) / chunk, threads, 1, [&](int64_t c) {
+    const auto first = static_cast<size_t>(c * chunk), n = static_cast<size_t>(std::min(chunk, tets - c * chunk));
+    const auto corner = [&](size_t k, size_t i) { return m.point[size_t(mesh.tet[first + k][i])]; };
+    judge_each(n, corner, [&](size_t k, float q) {
+      Element& e = m.element[first + k];
+      e.v = mesh.tet[first + k];
+      e.region = mesh.region[first + k];
+      e.q = std::max(q, 0.f);
+      if (q < 1e-6f && orient3d(corner(k, 0), corner(k, 1), corner(k, 2), corner(k, 3)) <= 0)
+        fault.found(static_cast<int64_t>(first + k), [&] {
+          return name("tetrahedron", static_cast<int64_t>(first + k)) + " has no positive volume";
+        });
+      return true;
+    });
   });
   fault.fail_if_any();
   for (size_t e = 0; e < mesh.tet.size(); ++e)

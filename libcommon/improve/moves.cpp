@@ -128,25 +128,15 @@ void Editor::gather(const std::vector<int32_t>& star, int32_t v, double& length,
 // v is at its new place: takes it when every element of the star is above.
 bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above, float allowed) {
   now_.clear();
-  constexpr size_t lanes = 8;
-  for (size_t first = 0; first < elements.size(); first += lanes) {
-    EightElements eight;
-    float q[lanes];
-    for (size_t l = 0; l < lanes; ++l)
-      for (size_t k = 0; k < 4; ++k) {
-        const auto& w = m_.element[size_t(elements[std::min(first + l, elements.size() - 1)])].v;
-        const Vec3d p = m_.point[size_t(w[k])];
-        eight.x[k][l] = p.x, eight.y[k][l] = p.y, eight.z[k][l] = p.z;
-      }
-    qualities(eight, q);
-    for (size_t i = first; i < std::min(first + lanes, elements.size()); ++i) {
-      const Element& e = m_.element[size_t(elements[i])];
-      now_.push_back({e.v, e.region, q[i - first], {}});
-      if (!is_above(now_.back(), above)) {
-        m_.point[size_t(v)] = from;
-        return false;
-      }
-    }
+  const auto corner = [&](size_t k, size_t i) { return m_.point[size_t(m_.element[size_t(elements[k])].v[i])]; };
+  const auto keep = [&](size_t k, float q) {
+    const Element& e = m_.element[size_t(elements[k])];
+    now_.push_back({e.v, e.region, q, {}});
+    return is_above(now_.back(), above);
+  };
+  if (!judge_each(elements.size(), corner, keep)) {
+    m_.point[size_t(v)] = from;
+    return false;
   }
   rim_.clear();
   rim_face_.clear();

@@ -1,4 +1,4 @@
-// open_table.hpp — 64-bit keys to small numbers, by open addressing; entries stay.
+// open_table.hpp — 64-bit keys to small numbers, by open addressing; emptied at once by a clock.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -9,12 +9,20 @@ namespace molmesh::improve {
 
 class OpenTable {
 public:
+  /// O(1): no key is known; the memory stays.
+  void clear() {
+    used_ = 0;
+    if (++clock_ == 0) { // no slot may look filled after 2^32 times
+      std::fill(slot_.begin(), slot_.end(), Slot{});
+      clock_ = 1;
+    }
+  }
   /// The key's number; null when it was never asked for with [].
   const int32_t* find(uint64_t key) const {
     if (slot_.empty())
       return nullptr;
     const Slot& s = slot_[place(key)];
-    return s.used ? &s.number : nullptr;
+    return is_used(s) ? &s.number : nullptr;
   }
   /// -1 at first. Valid until the next call.
   int32_t& operator[](uint64_t key) {
@@ -22,12 +30,12 @@ public:
       std::vector<Slot> old(std::max<size_t>(64, 4 * slot_.size()));
       old.swap(slot_);
       for (const Slot& s : old)
-        if (s.used)
+        if (is_used(s))
           slot_[place(s.key)] = s;
     }
     Slot& s = slot_[place(key)];
-    if (!s.used) {
-      s = {key, -1, true};
+    if (!is_used(s)) {
+      s = {key, -1, clock_};
       ++used_;
     }
     return s.number;
@@ -36,7 +44,7 @@ public:
   template <class F>
   void for_each_key(F&& f) const {
     for (const Slot& s : slot_)
-      if (s.used)
+      if (is_used(s))
         f(s.key);
   }
 
@@ -44,18 +52,20 @@ private:
   struct Slot {
     uint64_t key = 0;
     int32_t number = -1;
-    bool used = false;
+    uint32_t clock = 0; ///< when it was filled
   };
+  bool is_used(const Slot& s) const { return s.clock == clock_; }
   /// Where the key is or would go.
   size_t place(uint64_t key) const {
     const size_t mask = slot_.size() - 1;
     size_t i = size_t((key ^ key >> 29) * 0xBF58476D1CE4E5B9u >> 7) & mask;
-    while (slot_[i].used && slot_[i].key != key)
+    while (is_used(slot_[i]) && slot_[i].key != key)
       i = (i + 1) & mask;
     return i;
   }
   std::vector<Slot> slot_; ///< a power of two
   size_t used_ = 0;
+  uint32_t clock_ = 1;
 };
 
 } // namespace molmesh::improve

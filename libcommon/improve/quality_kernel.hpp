@@ -1,14 +1,41 @@
 // quality_kernel.hpp — tet_quality of eight elements, vectorized for the best instruction set of this machine.
 #pragma once
+#include "geom/vec.hpp"
+#include <algorithm>
+#include <cstddef>
 
 namespace molmesh::improve {
 
 /// Corner i of eight elements at [i][0 … 7].
 struct alignas(64) EightElements {
   double x[4][8], y[4][8], z[4][8];
+
+  void set(size_t element, size_t corner, Vec3d p) {
+    x[corner][element] = p.x, y[corner][element] = p.y, z[corner][element] = p.z;
+  }
+  Vec3d corner(size_t element, size_t i) const { return {x[i][element], y[i][element], z[i][element]}; }
 };
 
 /// As tet_quality, to the last bit.
 void qualities(const EightElements& e, float (&quality)[8]);
+
+/// visit(k, quality) for the elements k in [0, n), ascending, until it says false; false then. corner(k, i): a
+/// place.
+template <class Corner, class Visit>
+bool judge_each(size_t n, Corner&& corner, Visit&& visit) {
+  EightElements eight{};
+  for (size_t first = 0; first < n; first += 8) {
+    const size_t end = std::min(first + 8, n);
+    for (size_t k = first; k < end; ++k)
+      for (size_t i = 0; i < 4; ++i)
+        eight.set(k - first, i, corner(k, i));
+    float quality[8];
+    qualities(eight, quality);
+    for (size_t k = first; k < end; ++k)
+      if (!visit(k, quality[k - first]))
+        return false;
+  }
+  return true;
+}
 
 } // namespace molmesh::improve

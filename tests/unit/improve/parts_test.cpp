@@ -110,7 +110,7 @@ TEST_CASE("eight elements are judged as one is, to the last bit") {
     for (size_t l = 0; l < 8; ++l)
       for (size_t i = 0; i < 4; ++i) {
         p[l][i] = n % 10 == 0 && i == 3 ? 0.5 * (p[l][0] + p[l][1]) : random_point(); // some are flat
-        eight.x[i][l] = p[l][i].x, eight.y[i][l] = p[l][i].y, eight.z[i][l] = p[l][i].z;
+        eight.set(l, i, p[l][i]);
       }
     float q[8];
     improve::qualities(eight, q);
