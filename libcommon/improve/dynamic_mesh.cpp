@@ -172,11 +172,16 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   require_size(static_cast<int64_t>(mesh.tet.size()), static_cast<int64_t>(mesh.tri.size()),
                static_cast<int64_t>(mesh.point.size()));
   DynamicMesh m;
-  m.point = mesh.point;
+  const auto with_room = [](auto& v, size_t n) { // what it will grow by, untouched till then: no second copy
+    v.reserve(n + n / 8);
+    v.resize(n);
+  };
+  with_room(m.point, mesh.point.size());
+  std::copy(mesh.point.begin(), mesh.point.end(), m.point.begin());
   m.vertex.resize(m.point.size());
   m.incident.assign(m.point.size(), -1);
   m.touched.assign(m.point.size(), 0);
-  m.element.resize(mesh.tet.size());
+  with_room(m.element, mesh.tet.size());
   FirstFault fault;
   constexpr int64_t chunk = 4096;
   const auto tets = static_cast<int64_t>(mesh.tet.size());

@@ -106,4 +106,28 @@ double chord_offset(const DynamicMesh& m, const Isosurface& surface, int threads
   return f.area > 0 ? std::clamp(now + f.missing / f.area, -most, most) - now : 0;
 }
 
+double mean_surface_edge(const DynamicMesh& m, int threads) {
+  struct Triangles {
+    int64_t n = 0;
+    double area = 0;
+  };
+  const auto sum = par::reduce(
+      static_cast<int64_t>(m.element.size()), threads, Triangles{},
+      [&](int64_t t) {
+        Triangles own;
+        const Element& e = m.element[size_t(t)];
+        for (size_t f = 0; f < 4 && e.alive(); ++f)
+          if (m.counts_here(e, f) && m.labels[e.label[f]].curved()) {
+            const auto v = outward_triangle(e.v, f);
+            own.area += norm(tri_normal(m.point[size_t(v[0])], m.point[size_t(v[1])], m.point[size_t(v[2])])) / 2;
+            ++own.n;
+          }
+        return own;
+      },
+      [](Triangles a, Triangles b) {
+        return Triangles{a.n + b.n, a.area + b.area};
+      });
+  return sum.n > 0 ? std::sqrt(4 / std::sqrt(3.) * sum.area / double(sum.n)) : 0;
+}
+
 } // namespace molmesh::improve

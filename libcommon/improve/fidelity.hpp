@@ -23,4 +23,7 @@ Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int t
 /// are now) to make up for that, at most 0.0175 spacings in all (I8 allows 0.02).
 double chord_offset(const DynamicMesh& m, const Isosurface& surface, int threads);
 
+/// Of an equilateral triangle as large as those of the curved surfaces are on average (Å); 0 where there is none.
+double mean_surface_edge(const DynamicMesh& m, int threads);
+
 } // namespace molmesh::improve

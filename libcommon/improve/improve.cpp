@@ -72,7 +72,8 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   else
     input_surface = std::make_unique<ReferenceSurface>(mesh, curved_triangles(m, mesh));
   const Target* target = density ? static_cast<const Target*>(isosurface.get()) : input_surface.get();
-  Schedule schedule(m, target, 32 * target->spacing(), options.threads);
+  const double h = target->spacing(), edge = mean_surface_edge(m, options.threads); // 4 h and more in merged cells
+  Schedule schedule(m, target, std::clamp(21 * edge, 32 * h, 256 * h), options.threads);
   const float goal =
       static_cast<float>(std::max(angle_quality(options.min_dihedral), angle_quality(options.max_dihedral)));
 
