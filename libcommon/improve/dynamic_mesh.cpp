@@ -116,18 +116,17 @@ std::vector<uint8_t> set_labels(DynamicMesh& m, const TetMesh& mesh, std::vector
   return label;
 }
 
-bool is_border(const DynamicMesh& m, const Element& e, size_t face) {
-  return e.n[face] < 0 || m.element[size_t(e.n[face])].region != e.region;
-}
-
-void check_labels(const DynamicMesh& m, int threads) {
+void check_labels(const DynamicMesh& m, const TetMesh& mesh, int threads) {
+  const auto is_border = [&](const Element& e, size_t face) { // the input's regions lie closer together
+    return e.n[face] < 0 || mesh.region[size_t(e.n[face])] != e.region;
+  };
   FirstFault fault;
   par::for_n(static_cast<int64_t>(m.element.size()), threads, [&](int64_t e) {
     const Element& el = m.element[size_t(e)];
     for (size_t i = 0; i < 4; ++i)
-      if (is_border(m, el, i) != (el.label[i] != 0))
+      if (is_border(el, i) != (el.label[i] != 0))
         fault.found(4 * e + int64_t(i), [&] {
-          return name("tetrahedron", e) + (is_border(m, el, i)
+          return name("tetrahedron", e) + (is_border(el, i)
                                                ? " has a face between regions or on the outside without a triangle"
                                                : " has a triangle inside its region");
         });
@@ -207,7 +206,7 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   std::vector<int64_t> first;
   const std::vector<uint8_t> label = set_labels(m, mesh, first);
   link(m, mesh, label, threads);
-  check_labels(m, threads);
+  check_labels(m, mesh, threads);
   set_directions(m, mesh, first);
   set_kinds(m, mesh, label, sharp);
   return m;
