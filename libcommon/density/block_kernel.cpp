@@ -83,14 +83,15 @@ HWY_INLINE void accumulate(const T* x, const T* yz, int32_t n, Power power, T sc
   });
 }
 
-/// sum += S^½, the rows being S's. Exact: they are S/4's. The least keeps 0 from the reciprocal root.
-template <bool exact>
-HWY_INLINE void accumulate_roots(const float* x, const float* yz, int32_t n, float* sum) {
+/// sum += S^½, the rows being S's; fresh: sum = start + S^½. Exact: they are S/4's. The least keeps 0 from the
+/// reciprocal root.
+template <bool exact, bool fresh>
+HWY_INLINE void accumulate_roots(const float* x, const float* yz, int32_t n, float start, float* sum) {
   for_sums(x, yz, n, 1e-36f, [&](int32_t i, int32_t v, V t) {
     float* const to = sum + 64 * i + v;
     const V r = hn::ApproximateReciprocalSqrt(t), y = exact ? hn::Mul(t, r) : t,
             factor = exact ? hn::NegMulAdd(y, r, hn::Set(f, 3.0f)) : r;
-    hn::StoreU(hn::MulAdd(y, factor, hn::LoadU(f, to)), f, to);
+    hn::StoreU(hn::MulAdd(y, factor, fresh ? hn::Set(f, start) : hn::LoadU(f, to)), f, to);
   });
 }
 
@@ -109,17 +110,24 @@ HWY_INLINE void add_unit(const UnitsOf<T>& u, const BlockRows<T>& rows, size_t s
     accumulate<direct>(x, yz, atoms, Any<T>{p}, scale, sum);
 }
 
-HWY_INLINE void add_folded_root(const BlockUnits& u, const BlockRows<float>& rows, size_t s, float* sum) {
+template <bool fresh>
+HWY_INLINE void add_folded_root(const BlockUnits& u, const BlockRows<float>& rows, size_t s, float start,
+                                float* sum) {
   const auto row = static_cast<size_t>(u.begin[s]);
   const int32_t atoms = u.begin[s + 1] - u.begin[s];
   const float *const x = &rows.x[8 * row], *const yz = &rows.yz[64 * row];
-  u.root[s] > 0 ? accumulate_roots<true>(x, yz, atoms, sum) : accumulate_roots<false>(x, yz, atoms, sum);
+  u.root[s] > 0 ? accumulate_roots<true, fresh>(x, yz, atoms, start, sum)
+                : accumulate_roots<false, fresh>(x, yz, atoms, start, sum);
+}
+
+HWY_INLINE bool is_folded_root(const BlockUnits& u, size_t s) {
+  return u.folded && u.exponent[s] == 0.5f;
 }
 
 void add_units_simd(const BlockUnits& u, const BlockRows<float>& rows, int32_t first, int32_t last, float* sum) {
   for (auto s = static_cast<size_t>(first); s < static_cast<size_t>(last); ++s)
-    if (u.folded && u.exponent[s] == 0.5f)
-      add_folded_root(u, rows, s, sum);
+    if (is_folded_root(u, s))
+      add_folded_root<false>(u, rows, s, 0, sum);
     else
       u.direct ? add_unit<true>(u, rows, s, sum) : add_unit<false>(u, rows, s, sum);
 }
@@ -128,6 +136,23 @@ void add_exact_units_simd(const ExactUnits& u, const BlockRows<double>& rows, in
                           double* sum) {
   for (auto s = static_cast<size_t>(first); s < static_cast<size_t>(last); ++s)
     add_unit<false>(u, rows, s, sum);
+}
+
+template <class T>
+HWY_INLINE void fill(T start, T* sum) {
+  constexpr Tag<T> d{};
+  for (int32_t i = 0; i < 512; i += lanes_of<T>)
+    hn::StoreU(hn::Set(d, start), d, sum + i);
+}
+
+void sum_units_simd(const BlockUnits& u, const BlockRows<float>& rows, float start, float* sum) {
+  const bool root = u.n > 0 && is_folded_root(u, 0);
+  root ? add_folded_root<true>(u, rows, 0, start, sum) : fill(start, sum);
+  add_units_simd(u, rows, root, u.n, sum);
+}
+void sum_exact_units_simd(const ExactUnits& u, const BlockRows<double>& rows, double start, double* sum) {
+  fill(start, sum);
+  add_exact_units_simd(u, rows, 0, u.n, sum);
 }
 
 template <class T>
@@ -166,6 +191,8 @@ namespace molmesh::density {
 
 HWY_EXPORT(add_units_simd);
 HWY_EXPORT(add_exact_units_simd);
+HWY_EXPORT(sum_units_simd);
+HWY_EXPORT(sum_exact_units_simd);
 HWY_EXPORT(raise_group_simd);
 HWY_EXPORT(raise_exact_group_simd);
 HWY_EXPORT(rough_root_error_simd);
@@ -176,6 +203,12 @@ void add_units(const BlockUnits& units, const BlockRows<float>& rows, int32_t fi
 }
 void add_units(const ExactUnits& units, const BlockRows<double>& rows, int32_t first, int32_t last, double* sum) {
   HWY_DYNAMIC_DISPATCH(add_exact_units_simd)(units, rows, first, last, sum);
+}
+void sum_units(const BlockUnits& units, const BlockRows<float>& rows, float start, float* sum) {
+  HWY_DYNAMIC_DISPATCH(sum_units_simd)(units, rows, start, sum);
+}
+void sum_units(const ExactUnits& units, const BlockRows<double>& rows, double start, double* sum) {
+  HWY_DYNAMIC_DISPATCH(sum_exact_units_simd)(units, rows, start, sum);
 }
 void raise_group(float p, float* from, float* to) {
   HWY_DYNAMIC_DISPATCH(raise_group_simd)(p, from, to);

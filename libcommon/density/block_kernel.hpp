@@ -10,6 +10,10 @@ namespace molmesh::density {
 void add_units(const BlockUnits& units, const BlockRows<float>& rows, int32_t first, int32_t last, float* sum);
 void add_units(const ExactUnits& units, const BlockRows<double>& rows, int32_t first, int32_t last, double* sum);
 
+/// sum[512] = start + S^P of all units.
+void sum_units(const BlockUnits& units, const BlockRows<float>& rows, float start, float* sum);
+void sum_units(const ExactUnits& units, const BlockRows<double>& rows, double start, double* sum);
+
 /// to[512] += from^p, from = 0. Zero stays zero.
 void raise_group(float p, float* from, float* to);
 void raise_group(double p, double* from, double* to);

@@ -46,10 +46,10 @@ void Evaluator::sum(const Field& f, const Selection& s, const Units& u, const Bl
   rows.yz.resize(std::max(rows.yz.size(), 64 * n));
   rows.scale.resize(std::max(rows.scale.size(), static_cast<size_t>(s.units) + 16));
   make_rows(u, shape, rows);
+  if (f.plain_above)
+    return sum_units(u, rows, static_cast<T>(s.added), out);
   std::fill_n(out, points, static_cast<T>(s.added));
   OpenGroups groups(f);
-  if (groups.levels() == 1)
-    return add_units(u, rows, 0, u.n, out);
   scratch.level.assign(groups.levels() * points, 0);
   const auto sum_of = [&](size_t l) { return l < groups.levels() ? &scratch.level[l * points] : out; };
   const auto close = [&](size_t l, int64_t g) {

@@ -198,6 +198,7 @@ CellRange NodeSearch::cells_of(Vec3i corner) const {
 /// Active points of a node among its neighbors, packed.
 void NodeSearch::finish(NodeState& s, const NodeBits* const* below, const NodeBits* const* above,
                         Workspace& w) const {
+  fetch_values(s);
   band_points(below, above, cells_of(s.corner), w.rows);
   words_from_rows(w.rows, w.active);
   words_from_rows(*above[13], w.above);
@@ -236,11 +237,12 @@ void NodeSearch::finish(NodeState& s, const NodeBits* const* below, const NodeBi
       n = keep_active(value, w.stored.word[b], active);
     }
     w.counts.active_points += n;
-    BandBlock& to = s.band.emplace_back();
+    BandBlock to;
     to.corner = 8 * (s.corner + block_at(b));
     std::copy_n(active, 8, to.active.begin());
     std::copy_n(w.above.word[b], 8, to.above.begin());
     to.value = value;
+    s.band.push_back(to);
   }
 }
 

@@ -45,6 +45,10 @@ struct SlabState {
 /// Bit 2·axis + (upper side): not every point of that face is below the band.
 unsigned open_faces(const NodeState& s);
 
+/// Asks for the values of a node, which have left the processor's cache since they were packed, mostly one block's
+/// after another's.
+void fetch_values(const NodeState& s);
+
 /// A node of a slab among its neighbors: below[27] and above[27] as band_points() wants them. False when all are on
 /// one side. before, after: the next slabs.
 bool sides_around(const SlabState& before, const SlabState& slab, const SlabState& after, const NodeState& s,

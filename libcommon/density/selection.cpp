@@ -123,7 +123,7 @@ bool Selection::take_atoms() {
   }
   if (u.atom_x.size() < atom_room) {
     u.atom_slot.resize(2 * atom_room);
-    for (Floats* v : {&u.atom_x, &u.atom_y, &u.atom_z, &u.atom_constant})
+    for (Floats* v : {&u.atom_x, &u.atom_y, &u.atom_z, &u.atom_constant, &u.log2_atom})
       v->resize(2 * atom_room);
   }
   if (u.folded && f_.plain_above) // where units add so little together that their roots need few digits

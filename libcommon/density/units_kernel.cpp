@@ -27,6 +27,7 @@ struct TermsAt {
 /// The atom of each unit with the largest term in the middle: of T its term is 1 everywhere (field.md §4).
 void find_centers(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
                   const TermsAt& middle, BlockUnits& to) {
+  float* log2_atom = to.log2_atom.data();
   for (int32_t u = 0; u < n; ++u) {
     const auto s = static_cast<size_t>(u), at = static_cast<size_t>(list[u]);
     const int32_t begin = from.begin[at], clusters = from.begin[at + 1] - begin;
@@ -35,13 +36,15 @@ void find_centers(const LocalClusters& node, const NearUnits& from, const int32_
     auto where = hn::Zero(I());
     for_atoms(cluster, clusters, [&](size_t a) {
       const V term = middle(node, a);
+      hn::StoreU(term, f, log2_atom);
+      log2_atom += lanes;
       const auto more = hn::Gt(term, largest);
       largest = hn::IfThenElse(more, term, largest);
       where = hn::IfThenElse(hn::RebindMask(I(), more), hn::Set(I(), static_cast<int32_t>(a)), where);
     });
     const V log2_largest = hn::MaxOfLanes(f, largest);
-    const intptr_t lane = hn::FindFirstTrue(f, hn::Eq(largest, log2_largest));
-    size_t first = static_cast<size_t>(lane);
+    const size_t lane = hn::FindKnownFirstTrue(f, hn::Eq(largest, log2_largest));
+    size_t first = lane;
     if (clusters > 1 || lanes < 16) {
       HWY_ALIGN int32_t at_lane[lanes];
       hn::Store(where, I(), at_lane);
@@ -66,6 +69,7 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
   const V sx = hn::Set(f, 2 * decay * b.half[0] / 3.5f), sy = hn::Set(f, 2 * decay * b.half[1] / 3.5f),
           sz = hn::Set(f, 2 * decay * b.half[2] / 3.5f), least = hn::Set(f, log2_least);
   V widest = hn::Zero(f), lost = widest;
+  const float* log2_atom = to.log2_atom.data();
   size_t kept = 0;
   for (int32_t u = 0; u < n; ++u) {
     const auto s = static_cast<size_t>(u), at = static_cast<size_t>(list[u]);
@@ -96,7 +100,8 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
       return hn::Mul(t, absolute ? hn::NegMulAdd(hn::Set(f, bend), t, up) : up);
     };
     for_atoms(from.cluster.data() + from.begin[at], from.begin[at + 1] - from.begin[at], [&](size_t a) {
-      const V log2_term = middle(node, a), weight = hn::Sub(log2_term, log2_largest);
+      const V log2_term = hn::LoadU(f, log2_atom), weight = hn::Sub(log2_term, log2_largest);
+      log2_atom += lanes;
       V x = hn::Mul(hn::Sub(hn::LoadU(f, &node.atom_x[a]), middle.x), sx),
         y = hn::Mul(hn::Sub(hn::LoadU(f, &node.atom_y[a]), middle.y), sy),
         z = hn::Mul(hn::Sub(hn::LoadU(f, &node.atom_z[a]), middle.z), sz);

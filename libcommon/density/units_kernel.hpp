@@ -25,6 +25,7 @@ struct BlockUnits : UnitsOf<float> {
   float dropped = 0;   ///< bound on what ΣS^P loses with the atoms that are dropped, when that was asked for
   Floats root;         ///< 2 where a root must be exact: T is S/4 then; 0 where few digits will do
   Floats log2_factor;  ///< of T in S
+  Floats log2_atom;    ///< of all atoms of the units, dropped or not: log2 of their terms in the middle
   /// Slots of the node's clusters: of each unit's c, and, when not direct, of the atoms.
   std::vector<int32_t> center_slot, atom_slot;
 };
