@@ -18,11 +18,11 @@ void describe(CLI::App& app, Options& o) {
 }
 
 Status run(const Options& o, cli::Run& r) {
-  o.resolved_threads(); // refuses a mode that is not there
+  const int threads = o.resolved_threads();
   cli::InputFile in(o.input);
   cli::OutputFile out(o.output);
   r.phase("read");
-  const BlockGrid grid = formats::read_vdb(in.stream(), in.name());
+  const BlockGrid grid = formats::read_vdb(in.stream(), in.name(), threads);
   r.counts["grid_points"] = {grid.frame.points.x, grid.frame.points.y, grid.frame.points.z};
   r.phase("write");
   (o.format == "dx" ? formats::write_dx : formats::write_ccp4)(out.stream(), grid, in.name());

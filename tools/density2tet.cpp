@@ -89,7 +89,7 @@ Status run_tool(const Options& o, cli::Run& run) {
 
   run.phase("read");
   cli::InputFile input(o.input);
-  const BlockGrid grid = formats::read_vdb(input.stream(), input.name());
+  const BlockGrid grid = formats::read_vdb(input.stream(), input.name(), options.threads);
   contour::Summary summary;
   TetMesh mesh;
   try {

@@ -115,7 +115,7 @@ Status run(const Options& o, cli::Run& r) {
   band.info.creator = cli::creator(r.tool);
   report(r, band, counts);
   r.phase("write");
-  formats::write_vdb(out.stream(), band);
+  formats::write_vdb(out.stream(), band, o.resolved_threads());
   out.commit();
   return Status::good;
 }

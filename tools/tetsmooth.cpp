@@ -82,7 +82,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   std::optional<BlockGrid> grid;
   if (!o.density.empty()) {
     cli::InputFile file(o.density);
-    grid = formats::read_vdb(file.stream(), file.name());
+    grid = formats::read_vdb(file.stream(), file.name(), threads);
   }
   std::optional<Hierarchy> hierarchy;
   if (!o.hier.empty()) {

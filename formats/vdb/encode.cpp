@@ -271,8 +271,7 @@ void write_leaf(Bytes& out, const LeafView& leaf, float inside_value) {
 /// corner(b) of n leaves, active(b): its mask, with_leaf(b, f): f(LeafView).
 template <class Corner, class Active, class WithLeaf>
 void write(std::ostream& out, const GridFrame& frame, const FieldInfo& info, const std::vector<Vec3i>& inside,
-           int64_t n, Corner&& corner, Active&& active, WithLeaf&& with_leaf) {
-  const int threads = par::default_threads();
+           int64_t n, int threads, Corner&& corner, Active&& active, WithLeaf&& with_leaf) {
   const auto inside_value = static_cast<float>(info.inside_value);
   std::vector<Entry> entry;
   entry.reserve(static_cast<size_t>(n) + inside.size());
@@ -312,19 +311,19 @@ void write(std::ostream& out, const GridFrame& frame, const FieldInfo& info, con
 
 } // namespace
 
-void write_vdb(std::ostream& out, const density::Band& band) {
+void write_vdb(std::ostream& out, const density::Band& band, int threads) {
   const auto block = [&](int64_t b) -> const density::BandBlock& { return band.block[static_cast<size_t>(b)]; };
   write(
-      out, band.frame, band.info, band.inside, static_cast<int64_t>(band.block.size()),
+      out, band.frame, band.info, band.inside, static_cast<int64_t>(band.block.size()), threads,
       [&](int64_t b) { return block(b).corner; }, [&](int64_t b) { return block(b).active.data(); },
       [&](int64_t b, auto&& use) {
         use({block(b).active.data(), block(b).above.data(), block(b).value});
       });
 }
 
-void write_vdb(std::ostream& out, const BlockGrid& grid) {
+void write_vdb(std::ostream& out, const BlockGrid& grid, int threads) {
   write(
-      out, grid.frame, grid.info, grid.inside, static_cast<int64_t>(grid.corner.size()),
+      out, grid.frame, grid.info, grid.inside, static_cast<int64_t>(grid.corner.size()), threads,
       [&](int64_t b) { return grid.corner[static_cast<size_t>(b)]; },
       [&](int64_t b) { return &grid.active[8 * static_cast<size_t>(b)]; },
       [&](int64_t b, auto&& use) {

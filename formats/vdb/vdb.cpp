@@ -27,7 +27,8 @@ constexpr const char* type_name<Vec3i> = "vec3i";
 /// R1 to R4 and R9 are in decode.cpp.
 class Reader {
 public:
-  Reader(const vdb::FloatGrid& in, const std::string& file) : in_(in), file_(file) {}
+  Reader(const vdb::FloatGrid& in, const std::string& file, int threads)
+      : in_(in), file_(file), threads_(threads) {}
   BlockGrid read();
 
 private:
@@ -46,6 +47,7 @@ private:
 
   const vdb::FloatGrid& in_;
   const std::string& file_;
+  const int threads_;
   BlockGrid grid_;
   float inside_value_ = 0;
 };
@@ -145,8 +147,7 @@ void Reader::check_slots(size_t b) const {
 
 void Reader::read_leaves() {
   std::vector<vdb::Leaf> leaf = in_.leaf;
-  const int threads = par::default_threads();
-  par::sort(leaf, threads, [](const vdb::Leaf& a, const vdb::Leaf& b) { return a.corner < b.corner; });
+  par::sort(leaf, threads_, [](const vdb::Leaf& a, const vdb::Leaf& b) { return a.corner < b.corner; });
   const auto same = [](const vdb::Leaf& a, const vdb::Leaf& b) { return a.corner == b.corner; };
   if (std::adjacent_find(leaf.begin(), leaf.end(), same) != leaf.end())
     refuse("R3: a leaf occurs twice");
@@ -154,7 +155,7 @@ void Reader::read_leaves() {
   grid_.corner.resize(n);
   grid_.value.resize(512 * n);
   grid_.active.resize(8 * n);
-  par::for_n(static_cast<int64_t>(n), threads, 256, [&](int64_t i) {
+  par::for_n(static_cast<int64_t>(n), threads_, 256, [&](int64_t i) {
     const auto b = static_cast<size_t>(i);
     grid_.corner[b] = leaf[b].corner;
     vdb::decode_leaf(in_, leaf[b], file_, &grid_.value[512 * b], &grid_.active[8 * b]);
@@ -189,7 +190,7 @@ void Reader::read_tiles() {
       for (int32_t y = 0; y < t.edge; y += 8)
         for (int32_t z = 0; z < t.edge; z += 8)
           grid_.inside.push_back(t.corner + Vec3i{x, y, z});
-  par::sort(grid_.inside, par::default_threads());
+  par::sort(grid_.inside, threads_);
   if (std::adjacent_find(grid_.inside.begin(), grid_.inside.end()) != grid_.inside.end())
     refuse("R3: an inside tile occurs twice");
 }
@@ -214,10 +215,10 @@ std::string slurp(std::istream& in, const std::string& file) {
 
 } // namespace
 
-BlockGrid read_vdb(std::istream& in, const std::string& file) {
+BlockGrid read_vdb(std::istream& in, const std::string& file, int threads) {
   const std::string bytes = slurp(in, file);
   const vdb::FloatGrid decoded = vdb::decode(bytes, "density", file);
-  return Reader(decoded, file).read();
+  return Reader(decoded, file, threads).read();
 }
 
 } // namespace molmesh::formats

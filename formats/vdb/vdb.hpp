@@ -8,9 +8,9 @@
 namespace molmesh::formats {
 
 /// Throws Error(bad_input) when the stream is no OpenVDB file, or has no grid `density` of molmesh_profile 1.
-BlockGrid read_vdb(std::istream& in, const std::string& file);
+BlockGrid read_vdb(std::istream& in, const std::string& file, int threads = 1);
 /// Contents depend on the grid alone; OpenVDB adds a fresh UUID to the bytes.
-void write_vdb(std::ostream& out, const BlockGrid& grid);
-void write_vdb(std::ostream& out, const density::Band& band);
+void write_vdb(std::ostream& out, const BlockGrid& grid, int threads = 1);
+void write_vdb(std::ostream& out, const density::Band& band, int threads = 1);
 
 } // namespace molmesh::formats
