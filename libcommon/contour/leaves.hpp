@@ -27,7 +27,7 @@ struct RefineOptions {
 
 /// A node of the octree has children where its surface cells may not be one (more than one sheet, further than
 /// `adapt` from the mean plane, or of another topology), where the surface passes close to a face with children
-/// behind, where it reaches beyond the lattice, and for balance.
+/// behind, where it reaches beyond the lattice, and for balance: see octree.hpp.
 LeafList select_leaves(const Lattice& lattice, const Surface& surface, const RefineOptions& options, int threads);
 
 } // namespace molmesh::contour

@@ -1,5 +1,5 @@
-// octree.hpp — a strongly balanced linear octree over the lattice: leaves along the Z-order curve.
-// Section 4.1 of Liao et al. 2013. Neighbours across faces, edges and corners differ by one level at most.
+// octree.hpp — a balanced linear octree over the lattice: leaves along the Z-order curve.
+// Section 4.1 of Liao et al. 2013. Neighbours across faces differ by one level at most, those across edges by two.
 #pragma once
 #include "density/large_array.hpp"
 #include "geom/bits.hpp"
@@ -39,6 +39,19 @@ struct OctreeView {
   /// Whether the fine cell of Morton code k, reached from the domain, lies before its end along the axis.
   HD bool before_end(uint64_t k, int axis) const {
     return (k & morton_axis(axis)) < morton_spread(static_cast<uint32_t>(cells[axis])) << axis;
+  }
+  /// Moves k, the lower corner of a leaf as far as this axis goes, to the cell beyond the leaf's lower or upper
+  /// side; false where there is none.
+  HD bool beyond(uint64_t& k, int of_level, int axis, bool upper) const {
+    if (!upper && (k & morton_axis(axis)) == 0)
+      return false;
+    k = upper ? morton_after(k, axis, of_level) : morton_before(k, axis);
+    return !upper || before_end(k, axis);
+  }
+  /// The first leaf across face 2 · axis + upper, -1 at a wall. Where it is smaller, so are all along the face.
+  HD int32_t neighbour(int32_t leaf, int face) const {
+    uint64_t k = key[leaf];
+    return beyond(k, level[leaf], face / 2, face % 2) ? find_key(k) : -1;
   }
   /// The leaf that holds fine cell p, or -1 beyond the domain.
   HD int32_t find(Vec3i p) const {

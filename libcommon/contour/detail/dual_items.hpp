@@ -58,24 +58,35 @@ private:
     return moved;
   }
 
-  /// Where elements are best: near the cell's middle and off its faces, behind which there may be smaller cells. A
-  /// little beyond the fine surface where that is curved: chords then lie on both sides of it.
+  /// Where elements are best: near the cell's middle and off its faces. A little beyond the fine surface where that
+  /// is curved: chords then lie on both sides of it.
   HD Vec3d merged_dual(int32_t leaf) const {
-    constexpr double to_middle = 0.6, beyond = 1.5, off_faces = 0.3; // the last in fine spacings
-    const int32_t extent = c.tree.extent(leaf);
+    constexpr double to_middle = 0.6, beyond = 1.5;
+    constexpr int most_rounds = 4;
     const Vec3d low = lower(leaf), size = upper(leaf) - low;
-    const double least = off_faces / extent;
     Vec3d x = mean_crossing(leaf);
     x += to_middle * (low + 0.5 * size - x);
     const Vec3d further = beyond * bulge(leaf);
-    for (int round = 0; round < 2; ++round) {
+    for (int round = 0; round < most_rounds; ++round) { // to where the surface is off the faces
       x = onto_surface(leaf, x) + further;
-      for (int a = 0; a < 3; ++a) {
-        const double share = (x[a] - low[a]) / size[a];
-        x[a] = low[a] + size[a] * (share < least ? least : share > 1 - least ? 1 - least : share);
-      }
+      for (int a = 0; a < 3; ++a)
+        x[a] = low[a] + size[a] * off_faces(leaf, a, (x[a] - low[a]) / size[a]);
     }
     return x;
+  }
+
+  /// A share of the leaf's edge along an axis, off the leaf's faces: further where smaller cells are behind, whose
+  /// faces would be seen aslant.
+  HD double off_faces(int32_t leaf, int axis, double share) const {
+    constexpr double off_smaller = 0.25, off_any = 0.3; // in the leaf's edge, in fine spacings
+    const bool upper = share > 0.5;
+    const double from_face = upper ? 1 - share : share;
+    double least = off_any / c.tree.extent(leaf);
+    if (least < off_smaller && from_face < off_smaller)
+      if (const int32_t other = c.tree.neighbour(leaf, 2 * axis + upper);
+          other >= 0 && c.tree.level[other] < c.tree.level[leaf])
+        least = off_smaller;
+    return from_face >= least ? share : upper ? 1 - least : least;
   }
 
   /// From the mean of the leaf's fine surface onto it.

@@ -19,7 +19,7 @@ public:
     int32_t other[6];
     smaller_ = 0;
     for (int f = 0; f < 6; ++f) {
-      other[f] = neighbour(leaf, f);
+      other[f] = c_.tree.neighbour(leaf, f);
       smaller_ |= unsigned(other[f] >= 0 && c_.tree.level[other[f]] < level) << f;
     }
     for (int f = 0; f < 6; ++f) {
@@ -35,19 +35,6 @@ public:
   }
 
 private:
-  HD int32_t neighbour(int32_t leaf, int f) const {
-    uint64_t k = c_.tree.key[leaf];
-    return beyond(k, c_.tree.level[leaf], f / 2, f % 2) ? c_.tree.find_key(k) : -1;
-  }
-  /// Moves k, the lower corner of a leaf as far as this axis goes, to the cell beyond the leaf's lower or upper
-  /// side; false where there is none.
-  HD bool beyond(uint64_t& k, int level, int axis, bool upper) const {
-    if (!upper && (k & morton_axis(axis)) == 0)
-      return false;
-    k = upper ? morton_after(k, axis, level) : morton_before(k, axis);
-    return !upper || c_.tree.before_end(k, axis);
-  }
-
   /// The vertex in the middle of the leaf's edge from corner a to b, or -1 when no cell round the edge is smaller.
   HD int32_t middle_vertex(int32_t leaf, int a, int b) const {
     const int level = c_.tree.level[leaf];
@@ -55,14 +42,15 @@ private:
       return -1;
     const int axis = (a ^ b) == 1 ? 0 : (a ^ b) == 2 ? 1 : 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
     const bool upper_u = a >> u & 1, upper_v = a >> v & 1;
-    // Neighbours across a face are one level smaller all along it; so is one across the edge.
+    // Neighbours across a face are one level smaller all along it; so is one across the edge, by which the leaf
+    // owns a face: the one beyond that face, its neighbour too, is no smaller than the leaf.
     const bool across_u = smaller_ >> (2 * u + upper_u) & 1,
                across_v = !across_u && smaller_ >> (2 * v + upper_v) & 1;
     const bool diagonal = !across_u && !across_v;
     uint64_t k = c_.tree.key[leaf] | uint64_t{1} << (3 * (level - 1) + axis); // the cell after the middle
-    if ((across_u || diagonal) && !beyond(k, level, u, upper_u))
+    if ((across_u || diagonal) && !c_.tree.beyond(k, level, u, upper_u))
       return -1;
-    if ((across_v || diagonal) && !beyond(k, level, v, upper_v))
+    if ((across_v || diagonal) && !c_.tree.beyond(k, level, v, upper_v))
       return -1;
     if (across_u && upper_v)
       k = morton_before(morton_after(k, v, level), v);

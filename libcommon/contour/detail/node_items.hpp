@@ -112,8 +112,9 @@ struct Sheet {
 /// volume (Ju et al. 2002, the paper's reference 22).
 struct MergeNodes {
   /// Of the surface's middle from a face with smaller cells behind, in the node's edge length: seen from nearer,
-  /// those cells' faces are aslant, and their elements flat.
-  static constexpr double least_margin = 0.15;
+  /// those cells' faces are aslant, and their elements flat, or the dual vertex that keeps off them is off the
+  /// surface. Nodes of two fine spacings are nearer to it.
+  static constexpr double least_margin = 0.15, least_margin_of_two = 0.1;
 
   LatticeView l;
   const SurfaceSample* sample;
@@ -175,11 +176,11 @@ private:
     return true;
   }
   HD static uint8_t near_faces(Vec3d middle, Vec3i corner, int32_t extent) {
+    const double margin = extent == 2 ? least_margin_of_two : least_margin;
     uint8_t faces = 0;
     for (int a = 0; a < 3; ++a) {
       const double share = (middle[a] - corner[a]) / extent;
-      faces =
-          static_cast<uint8_t>(faces | (share < least_margin) << 2 * a | (share > 1 - least_margin) << (2 * a + 1));
+      faces = static_cast<uint8_t>(faces | (share < margin) << 2 * a | (share > 1 - margin) << (2 * a + 1));
     }
     return faces;
   }

@@ -59,7 +59,7 @@ struct NodeLayer {
   }
 };
 
-/// For balance: the parents of the nodes of block i and of all their neighbours, as nodes a level up.
+/// For balance: the parents of the nodes of block i and of those across their faces, as nodes a level up.
 struct ParentsOfNeighbours {
   NodeSet refined;
   Vec3i parents; ///< of that level, per axis
@@ -72,18 +72,11 @@ struct ParentsOfNeighbours {
       if (siblings == 0)
         continue;
       const int at = 1 + (j & 1) + 4 * (1 + (j >> 1 & 1)) + 16 * (1 + (j >> 2));
-      for (int n = 0; n < 27; ++n) {
-        const int x = n % 3 - 1, y = n / 3 % 3 - 1, z = n / 9 - 1;
-        const uint32_t beside = (x < 0   ? 0x55
-                                 : x > 0 ? 0xAA
-                                         : 0xFF) &
-                                (y < 0   ? 0x33
-                                 : y > 0 ? 0xCC
-                                         : 0xFF) &
-                                (z < 0   ? 0x0F
-                                 : z > 0 ? 0xF0
-                                         : 0xFF);
-        region |= uint64_t{(siblings & beside) != 0} << (at + x + 4 * y + 16 * z);
+      region |= uint64_t{1} << at;
+      for (int a = 0; a < 3; ++a) {
+        const uint32_t lower = a == 0 ? 0x55 : a == 1 ? 0x33 : 0x0F;
+        region |= uint64_t{(siblings & lower) != 0} << (at - (1 << 2 * a));
+        region |= uint64_t{(siblings & ~lower) != 0} << (at + (1 << 2 * a));
       }
     }
     const Vec3i block = {low.x >> 2, low.y >> 2, low.z >> 2}; // the region lies in eight blocks
