@@ -45,7 +45,7 @@ public:
     const Rings rings = join(more, ends, view.grid_vertices);
     make(MakeRings<true>{vertices(view, rings), rings.link.data(), rings.first.data()}, rings.edges,
          view.vertices(), none, nullptr, flag.data());
-    return contour::detail::gather<int32_t>(b_, "spoiled", view.vertices(), contour::detail::Flagged{flag.data()});
+    return contour::detail::flagged(b_, "spoiled", view.vertices(), flag.data());
   }
   int64_t runs() const { return runs_; }
 

@@ -40,8 +40,7 @@ public:
   }
   /// What has moved, and the qualities of the elements there; they count as never tried.
   void give_back(improve::DynamicMesh& m) {
-    const auto moved =
-        contour::detail::gather<int32_t>(b_, "moved points", points, contour::detail::Flagged{has_moved.data()});
+    const auto moved = contour::detail::flagged(b_, "moved points", points, has_moved.data());
     const Array<Vec3d> place = b_.template array<Vec3d>(moved.n);
     b_.for_n("moved points", moved.n,
              Gather<Vec3d>{point.data(), reinterpret_cast<const uint32_t*>(moved.data()), place.data()},

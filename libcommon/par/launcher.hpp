@@ -35,13 +35,16 @@ public:
   void download(const Array<T>& from, int64_t n, T* to) {
     std::copy_n(from.data(), n, to);
   }
+  /// Loops of fewer pieces run on one thread: on cores shared with others every loop that all threads join may wait
+  /// a time slice for the last of them, and many loops are short.
+  static constexpr int64_t least_pieces = 8;
   /// item(i) for i in [0, n), each independent of the others; Item::grain at a time where it has one.
   template <class Item>
   void for_n(const char*, int64_t n, const Item& item, const Work& = {}) {
     int64_t grain = 256;
     if constexpr (requires { Item::grain; })
       grain = Item::grain;
-    par::for_n(n, threads_, grain, item);
+    par::for_n(n, threads_for(n, grain), grain, item);
   }
   /// count[i] → sum of count[0..i), in place; slot n, one more, gets the total.
   template <class T>
@@ -67,6 +70,7 @@ public:
   Array<T> gather(int64_t n, const Item& item) {
     constexpr int64_t grain = 4096;
     const int64_t chunks = (n + grain - 1) / grain;
+    const int threads = threads_for(n, grain);
     const auto each = [&](int64_t c, auto&& f) {
       for (int64_t i = c * grain, end = std::min(n, i + grain); i < end; ++i)
         f(i);
@@ -75,7 +79,7 @@ public:
     const auto start_of = [&](int64_t c) -> int64_t& { return start[static_cast<size_t>(c)]; };
     if constexpr (requires { Item::most; }) {
       std::vector<std::vector<T>> part(static_cast<size_t>(chunks));
-      par::for_n(chunks, threads_, 1, [&](int64_t c) {
+      par::for_n(chunks, threads, 1, [&](int64_t c) {
         thread_local std::vector<T> found;
         found.resize(static_cast<size_t>(grain * Item::most));
         int64_t count = 0;
@@ -84,7 +88,7 @@ public:
         start_of(c) = count;
       });
       Array<T> out(static_cast<size_t>(exclusive_scan(start)));
-      par::for_n(chunks, threads_, 1, [&](int64_t c) {
+      par::for_n(chunks, threads, 1, [&](int64_t c) {
         std::copy(part[static_cast<size_t>(c)].begin(), part[static_cast<size_t>(c)].end(),
                   out.begin() + start_of(c));
       });
@@ -92,7 +96,7 @@ public:
     } else {
       static_assert(grain % 64 == 0); // no two chunks share a word
       std::vector<uint64_t> any(static_cast<size_t>((n + 63) / 64));
-      par::for_n(chunks, threads_, 1, [&](int64_t c) {
+      par::for_n(chunks, threads, 1, [&](int64_t c) {
         int64_t count = 0;
         each(c, [&](int64_t i) {
           const int64_t here = item(i, static_cast<T*>(nullptr));
@@ -102,7 +106,7 @@ public:
         start_of(c) = count;
       });
       Array<T> out(static_cast<size_t>(exclusive_scan(start)));
-      par::for_n(chunks, threads_, 1, [&](int64_t c) {
+      par::for_n(chunks, threads, 1, [&](int64_t c) {
         T* to = out.data() + start_of(c);
         each(c, [&](int64_t i) {
           if (any[static_cast<size_t>(i >> 6)] >> (i & 63) & 1)
@@ -122,6 +126,8 @@ public:
   int threads() const { return threads_; }
 
 private:
+  int threads_for(int64_t n, int64_t grain) const { return n < least_pieces * grain ? 1 : threads_; }
+
   int threads_;
 };
 

@@ -52,16 +52,37 @@ List<Launcher, T> gather(Launcher& m, const char* name, int64_t n, const Item& i
   return out;
 }
 
-/// Places of raised flags.
+/// Places of raised flags, those of run i.
 struct Flagged {
-  static constexpr int64_t most = 1;
-  const uint8_t* flag;
+  static constexpr int64_t run = 64, most = run;
+  const uint8_t* flag; ///< 0 or 1
+  int64_t n;
   HD int64_t operator()(int64_t i, int32_t* out) const {
-    if (flag[i] && out)
-      *out = static_cast<int32_t>(i);
-    return flag[i];
+    int64_t raised = 0;
+    const int64_t end = n < (i + 1) * run ? n : (i + 1) * run;
+    for (int64_t k = i * run; k < end; ++k) {
+      if (k % 8 == 0 && k + 8 <= end && none(flag + k)) {
+        k += 7;
+        continue;
+      }
+      if (flag[k] && out)
+        out[raised] = static_cast<int32_t>(k);
+      raised += flag[k];
+    }
+    return raised;
+  }
+
+private:
+  HD static bool none(const uint8_t* eight) {
+    uint64_t word;
+    __builtin_memcpy(&word, eight, 8);
+    return word == 0;
   }
 };
+template <class Launcher>
+List<Launcher, int32_t> flagged(Launcher& m, const char* name, int64_t n, const uint8_t* flag) {
+  return gather<int32_t>(m, name, (n + Flagged::run - 1) / Flagged::run, Flagged{flag, n});
+}
 
 template <class Key>
 struct CountKeyed {

@@ -39,7 +39,7 @@ public:
       if (candidates == 0)
         break;
       for (int round = 0; round < most_rounds; ++round) {
-        const auto active = gather<int32_t>(m_, "active", candidates, Flagged{r_.wakes});
+        const auto active = flagged(m_, "active", candidates, r_.wakes);
         if (active.n == 0)
           break;
         move_some(active, round, distance);
@@ -59,7 +59,7 @@ private:
     m_.for_n("want vertices", e.tets,
              WantVertices{e, r_.bound, r_.quality, r_.goal, surface_moves_, const_cast<uint8_t*>(wanted.data())},
              {double(e.tets) * 4});
-    vertex_ = gather<int32_t>(m_, "candidates", e.positions, Flagged{wanted.data()});
+    vertex_ = flagged(m_, "candidates", e.positions, wanted.data());
     const int64_t n = vertex_.n;
     if (n == 0)
       return 0;

@@ -1,8 +1,12 @@
 // par_test.cpp — same results at any number of threads.
+#include "par/launcher.hpp"
 #include "par/par.hpp"
+#include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <random>
 #include <stdexcept>
+#include <thread>
 
 using namespace molmesh;
 
@@ -88,4 +92,25 @@ TEST_CASE("place_by is a stable sort that leaves out negative keys") {
         CHECK(placed == expected);
       }
     }
+}
+
+namespace {
+
+struct WhoRuns {
+  static constexpr int64_t grain = 4;
+  std::atomic<int>* elsewhere;
+  std::thread::id caller = std::this_thread::get_id();
+  void operator()(int64_t) const {
+    *elsewhere += std::this_thread::get_id() != caller;
+    std::this_thread::sleep_for(std::chrono::microseconds(200)); // long enough for others to take part
+  }
+};
+
+} // namespace
+
+TEST_CASE("a launcher's short loops run on the calling thread") {
+  par::Launcher launcher(4);
+  std::atomic<int> elsewhere = 0;
+  launcher.for_n("short", WhoRuns::grain * par::Launcher::least_pieces - 1, WhoRuns{&elsewhere});
+  CHECK(elsewhere == 0);
 }
