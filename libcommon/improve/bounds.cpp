@@ -37,6 +37,12 @@ bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) cons
     // The distance to first order means nothing where the gradient vanishes, and that is where points must leave.
     if (target_ && guard_.lift > 0)
       return norm(x - from) <= guard_.lift * target_->spacing();
+    if (target_ && loose) {
+      double distance;
+      Vec3d normal;
+      return norm(x - from) <= reach && target_->probe(x, distance, normal) &&
+             std::abs(distance + target_->offset()) <= 0.018 * target_->spacing();
+    }
     return target_ && target_->project(x, reach);
   case Kind::sliding:
     for (int a = 0; a < 3; ++a)

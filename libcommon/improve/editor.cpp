@@ -15,6 +15,7 @@ Counts& Counts::operator+=(const Counts& o) {
   contractions += o.contractions;
   splits += o.splits;
   hand_overs += o.hand_overs;
+  nestings += o.nestings;
   return *this;
 }
 

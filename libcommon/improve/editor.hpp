@@ -24,10 +24,10 @@ namespace molmesh::improve {
 /// Operations done.
 struct Counts {
   int64_t moves = 0, edge_removals = 0, surface_flips = 0, face_swaps = 0, contractions = 0, splits = 0,
-          hand_overs = 0;
+          hand_overs = 0, nestings = 0;
   Counts& operator+=(const Counts& o);
   int64_t total() const {
-    return moves + edge_removals + surface_flips + face_swaps + contractions + splits + hand_overs;
+    return moves + edge_removals + surface_flips + face_swaps + contractions + splits + hand_overs + nestings;
   }
 };
 
@@ -104,6 +104,9 @@ public:
   /// Gives the elements on one side of a surface vertex that is off the target to the other side: the surface then
   /// runs past it. No element changes its shape but for a vertex that comes to lie on the surface.
   bool hand_over(int32_t v);
+  /// The closed surface of few triangles that v is on shrinks to what the target has there, in shells that get
+  /// smaller by about `ratio`.
+  bool nest(int32_t v, double ratio);
   /// Whether the face is a surface triangle, counted from this side, that does not keep the guard.
   bool bent(int32_t e, size_t face) const;
   /// Of a surface vertex: how far off the target, in units of a fiftieth of a spacing (what I8 allows).
@@ -111,6 +114,9 @@ public:
   /// Moves a surface vertex onto the target, all the way or part of it; no element falls under `floor`;
   /// floor ≥ 1: to less than half its quality.
   bool settle(int32_t v, float floor);
+  /// Moves a surface vertex towards the nearest place on the target that it finds, as far as no element falls
+  /// under `floor`.
+  bool approach(int32_t v, float floor);
 
   /// Slots that new elements may come to lie in.
   const std::vector<int32_t>& reserve() const { return room_.element; }
@@ -130,6 +136,7 @@ public:
   bool worst_first = true;
   bool straighten = false; ///< operations are to make the surface fit
   bool bold = false;       ///< operations may bend the surface
+  bool loose = false;      ///< surface vertices move anywhere near enough to the target, not on it alone
   float yield = 1;  ///< contractions may lower the worst element to this share where the deficit falls by a tenth
   int32_t time = 1; ///< what operations write to DynamicMesh::touched
 
@@ -188,6 +195,19 @@ private:
     Fit before;         ///< of the triangles at the vertex
   };
   bool find_side(int32_t v, Side& side) const;
+  /// A closed surface of few triangles, elements around it, and the shell that these show to the others.
+  struct Piece {
+    std::vector<int32_t> vertex, element;      ///< of the surface; inside the shell, ascending
+    std::vector<std::array<int32_t, 3>> shell; ///< seen from outside
+    int32_t region = 0;                        ///< between surface and shell
+    bool hole = false;                         ///< in the molecule
+    Vec3d centre;
+    bool has(int32_t v) const { return std::find(vertex.begin(), vertex.end(), v) != vertex.end(); }
+    bool has(const std::array<int32_t, 3>& t) const { return has(t[0]) && has(t[1]) && has(t[2]); }
+  };
+  bool find_piece(int32_t v, Piece& piece);
+  bool fit_piece(const Piece& piece, Vec3d& to, double& scale) const;
+  bool find_shell(Piece& piece, Vec3d c);
   bool place_on_target(Vec3d& x, double length, const Fit& before, float above);
   bool search(const Vertex& k, Vec3d& x, float& best, float aim, double length, const Fit& before, float above);
   bool take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above, float allowed);

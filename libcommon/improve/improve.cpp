@@ -46,8 +46,9 @@ constexpr size_t straighten_first = 1, straighten_last = 4;
 constexpr double straighten_share = 0.1;
 const Guard straight{40, 0.24, 0.5, 0};
 
-// Points off the isosurface come back where that can be mended; every repetition has other parts.
-constexpr int recoveries = 4;
+// Points off the isosurface come back where that can be mended; every repetition has other parts, and none of them
+// where none is left.
+constexpr int recoveries = 8;
 
 } // namespace
 
@@ -129,6 +130,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     Pass pass;
     pass.goal = goal;
     pass.effort = 1;
+    pass.worst_first = repeat % 2 == 0;
     pass.cell = 0.5; // what goes wrong is taken back: parts are small
     pass.guard = released;
     result.counts += schedule.recover(pass);

@@ -1,6 +1,7 @@
 // isosurface.cpp — log G of the active points.
 #include "improve/isosurface.hpp"
 #include "par/par.hpp"
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,38 @@ Isosurface::Isosurface(const BlockGrid& grid, int threads)
                                                    : std::numeric_limits<float>::quiet_NaN();
     }
   });
+}
+
+bool Isosurface::pocket(Vec3d p, bool hole, Vec3d& inside) const {
+  constexpr size_t most = 4;
+  Vec3d u;
+  Vec3i c;
+  if (!view().locate(p, u, c))
+    return false;
+  const auto is_inside = [&](Vec3i g) { // the piece
+    const int64_t b = index_.find(g);
+    return b >= 0 && std::isfinite(log_[size_t(512 * b + slot(g))]) &&
+           (log_[size_t(512 * b + slot(g))] > 0) != hole;
+  };
+  double nearest = 1.7; // spacings
+  bool found = false;
+  for (int k = 0; k < 64; ++k) {
+    const Vec3i g = c + Vec3i{k / 16 - 1, k / 4 % 4 - 1, k % 4 - 1};
+    const double distance = norm(to_double(g) - u);
+    if (distance >= nearest || !is_inside(g))
+      continue;
+    std::vector<Vec3i> piece{g};
+    for (size_t i = 0; i < piece.size() && piece.size() <= most; ++i)
+      for (int a = 0; a < 6; ++a) {
+        Vec3i beside = piece[i];
+        beside[a / 2] += a % 2 ? 1 : -1;
+        if (is_inside(beside) && std::find(piece.begin(), piece.end(), beside) == piece.end())
+          piece.push_back(beside);
+      }
+    if (piece.size() <= most)
+      nearest = distance, inside = frame_.position(g), found = true;
+  }
+  return found;
 }
 
 } // namespace molmesh::improve

@@ -14,6 +14,8 @@ public:
   Isosurface(const BlockGrid& grid, int threads);
   bool project(Vec3d& p, double reach) const override { return view().project(p, reach); }
   bool probe(Vec3d p, double& distance, Vec3d& normal) const override { return view().probe(p, distance, normal); }
+  /// Of up to four grid points next to each other, with all around them on the other side.
+  bool pocket(Vec3d p, bool hole, Vec3d& inside) const override;
   double spacing() const override { return frame_.spacing; }
   /// As IsosurfaceView::evaluate.
   bool evaluate(Vec3d p, double& f, Vec3d& gradient) const { return view().evaluate(p, f, gradient); }

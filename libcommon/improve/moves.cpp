@@ -41,7 +41,7 @@ float Editor::worth(Vec3d x, float above) {
 bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double length, const Fit& before,
                     float above) {
   Vec3d basis[3];
-  const int dimensions = basis_of(k, target_, guard_.lift > 0, x, basis);
+  const int dimensions = basis_of(k, target_, guard_.lift > 0 || loose, x, basis);
   if (dimensions == 0)
     return false;
   const Vec3d from = x;

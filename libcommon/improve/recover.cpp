@@ -2,39 +2,42 @@
 // after.
 #include "improve/choose.hpp"
 #include "improve/element_pass.hpp"
+#include "improve/faults.hpp"
 #include "improve/schedule.hpp"
-#include "improve/vertex_numbers.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 
 namespace molmesh::improve {
 namespace {
 
-constexpr float floor_share = 0.01f; // of the goal: what a step towards the target may leave for the mending
-
 constexpr size_t most_points = 64;
 
-// What is wrong in a part.
-struct Faults {
-  int64_t off = 0, bent = 0, below = 0;
-  float worst = 2;
+// How far a trial goes. Bold ones come second, for the points that are left.
+struct Daring {
+  float floor;      ///< share of the goal: what a step towards the target may leave for the mending
+  bool loose;       ///< Editor::loose, while mending
+  int64_t for_bent; ///< triangles that may be bent for a point that comes back
 };
+constexpr Daring careful{0.01f, false, 0}, bold{1e-5f, true, 2};
 
 class Recovery {
 public:
   Recovery(Editor& editor, DynamicMesh& m, std::vector<int32_t> slots, const Pass& pass, int32_t time)
-      : editor_(editor), m_(m), slots_(std::move(slots)), pass_(pass), time_(time) {}
+      : editor_(editor), m_(m), slots_(std::move(slots)), pass_(pass), time_(time),
+        faults_(editor, m_, slots_, pass.goal) {}
 
   void run() {
-    const std::vector<int32_t> points = points_off();
-    if (points.size() > most_points)
-      return; // more than was let go here and there: that is what the rounds are for
-    if (points.size() > 1 && attempt(editor_.save(inner()), faults(), [&] { return all_at_once(points); }) &&
-        points_off().empty())
-      return;
-    for (const int32_t v : points)
-      if (m_.incident[size_t(v)] >= 0 && editor_.off(v) > 1)
-        bring_back(v);
+    for (const Daring& daring : {careful, bold}) {
+      daring_ = daring;
+      const std::vector<int32_t> points = faults_.points_off();
+      if (points.empty() || points.size() > most_points)
+        return; // more than was let go here and there: that is what the rounds are for
+      if (points.size() > 1)
+        all_back(points);
+      for (const int32_t v : faults_.points_off())
+        if (is_off(v))
+          bring_back(v);
+    }
   }
 
 private:
@@ -45,47 +48,7 @@ private:
         all.push_back(t);
     return all;
   }
-  std::vector<int32_t> points_off() {
-    surface_points_.clear();
-    for (const int32_t t : slots_)
-      if (const Element& e = m_.element[size_t(t)]; e.alive())
-        for (const int32_t v : e.v)
-          if (m_.vertex[size_t(v)].kind == Kind::surface)
-            surface_points_(v);
-    std::vector<int32_t> off;
-    for (const int32_t v : surface_points_.met())
-      if (editor_.off(v) > 1)
-        off.push_back(v);
-    std::sort(off.begin(), off.end());
-    return off;
-  }
-  void count_bad(Faults& f) const {
-    for (const int32_t t : slots_)
-      if (const Element& e = m_.element[size_t(t)]; e.alive()) {
-        f.worst = std::min(f.worst, e.q);
-        f.below += e.q < 0.94f * pass_.goal;
-      }
-  }
-  void count_misfits(Faults& f) {
-    f.off = static_cast<int64_t>(points_off().size());
-    for (const int32_t t : slots_)
-      for (size_t i = 0; i < 4 && m_.element[size_t(t)].alive(); ++i)
-        f.bent += editor_.bent(t, i);
-  }
-  Faults faults() {
-    Faults f;
-    count_bad(f);
-    count_misfits(f);
-    return f;
-  }
-  bool better_than(const Faults& before) {
-    Faults now;
-    count_bad(now);
-    if (now.below > before.below || (now.below > 0 && now.worst < before.worst))
-      return false;
-    count_misfits(now);
-    return now.off < before.off && now.bent <= before.bent;
-  }
+  bool is_off(int32_t v) const { return m_.incident[size_t(v)] >= 0 && editor_.off(v) > 1; }
 
   void flatten() {
     for (int sweep = 0; sweep < 3 && !editor_.changed.empty(); ++sweep) {
@@ -98,11 +61,12 @@ private:
     }
   }
   void mend() {
-    editor_.straighten = false;
+    editor_.straighten = editor_.bold = false;
+    editor_.loose = daring_.loose;
     editor_.goal = pass_.goal;
     for (int k = 0; k < 6; ++k) {
       Pass pass = pass_;
-      pass.worst_first = k % 2 == 0;
+      pass.worst_first = (k % 2 == 0) == pass_.worst_first;
       editor_.worst_first = pass.worst_first;
       std::vector<int32_t> list;
       for (const int32_t t : slots_)
@@ -124,20 +88,24 @@ private:
     }
   }
 
+  void set_out() {
+    editor_.straighten = true;
+    editor_.bold = editor_.loose = false;
+    editor_.goal = daring_.floor * pass_.goal;
+  }
+
   // True when the operation leaves the part better, once it is mended; nothing has changed otherwise.
   template <class Operation>
   bool attempt(const Snapshot& snapshot, const Faults& before, Operation&& operation) {
-    editor_.straighten = true;
-    editor_.goal = floor_share * pass_.goal;
     editor_.time = time_;
+    set_out();
     editor_.bold = true;
     editor_.changed.clear();
-    const bool done = operation();
-    editor_.bold = false;
-    if (done) {
+    if (operation()) {
+      set_out();
       flatten();
       mend();
-      if (better_than(before))
+      if (faults_.better_than(before, daring_.for_bent))
         return true;
     }
     editor_.restore(snapshot);
@@ -145,12 +113,31 @@ private:
   }
 
   // A cavity smaller than the grid is off with all its points.
-  bool all_at_once(const std::vector<int32_t>& points) {
+  void all_back(const std::vector<int32_t>& points) {
+    attempt(editor_.save(inner()), faults_(), [&] {
+      if (daring_.loose)
+        return step_by_step(points, 0.1f);
+      bool done = false;
+      for (int sweep = 0; sweep < 4; ++sweep)
+        for (const int32_t v : points)
+          if (is_off(v))
+            done |= editor_.smooth(v);
+      return done;
+    });
+  }
+
+  // A part of the way at a time; what is around is mended in between. floor: share of the goal.
+  bool step_by_step(const std::vector<int32_t>& points, float floor) {
     bool done = false;
-    for (int sweep = 0; sweep < 4; ++sweep)
+    for (int step = 0; step < 12; ++step) {
+      bool moved = false;
       for (const int32_t v : points)
-        if (m_.incident[size_t(v)] >= 0 && editor_.off(v) > 1)
-          done |= editor_.smooth(v);
+        moved |= is_off(v) && editor_.approach(v, floor * pass_.goal);
+      if (!moved)
+        break;
+      done = true;
+      mend();
+    }
     return done;
   }
 
@@ -174,11 +161,18 @@ private:
   }
   void bring_back(int32_t v) {
     const Snapshot snapshot = editor_.save(inner());
-    const Faults before = faults();
+    const Faults before = faults_();
     if (attempt(snapshot, before, [&] { return editor_.smooth(v); }) ||
         attempt(snapshot, before, [&] { return editor_.hand_over(v); }) ||
         attempt(snapshot, before, [&] { return cut_off(v); }))
       return;
+    if (daring_.loose)
+      for (const float floor : {0.1f, 0.01f})
+        if (attempt(snapshot, before, [&] { return step_by_step({v}, floor); }))
+          return;
+    for (const double ratio : {0.5, 0.35, 0.65})
+      if (attempt(snapshot, before, [&] { return editor_.nest(v, ratio); }))
+        return;
     std::vector<std::array<int32_t, 3>> edges; // neighbour on the surface, element, 4 i + j
     for (const auto& [t, e] : snapshot.element)
       if (const int i = e.find(v); i >= 0)
@@ -200,7 +194,8 @@ private:
   const std::vector<int32_t> slots_; ///< all that elements of this part may be in
   const Pass& pass_;
   const int32_t time_;
-  VertexNumbers surface_points_;
+  FaultCount faults_;
+  Daring daring_ = careful;
 };
 
 } // namespace

@@ -14,6 +14,9 @@ public:
   /// Signed distance of p (Å, positive outside) to first order and the unit normal, pointing out. False when not
   /// known.
   virtual bool probe(Vec3d p, double& distance, Vec3d& normal) const = 0;
+  /// A point in the nearest closed piece of the surface that is hardly larger than the grid's cells, of holes in
+  /// what is inside, or of what is not a hole. False where none is near.
+  virtual bool pocket(Vec3d /*p*/, bool /*hole*/, Vec3d& /*inside*/) const { return false; }
   /// How far outside the surface that is meant points are put (Å).
   virtual double offset() const { return 0; }
   /// Length that distances are measured against: the grid spacing, or the mean edge of the surface (Å).

@@ -1,0 +1,33 @@
+// approach.cpp — a vertex on its way to the target: a step that leaves its elements room to be mended.
+#include "improve/editor.hpp"
+#include <algorithm>
+
+namespace molmesh::improve {
+
+bool Editor::approach(int32_t v, float floor) {
+  if (m_.vertex[size_t(v)].kind != Kind::surface || !target_ || !star(v, star_))
+    return false;
+  const Vec3d from = m_.point[size_t(v)];
+  const double length = mean_edge(star_, v), furthest = 1.5 * length;
+  Vec3d to;
+  double nearest = furthest;
+  for (int k = 0; k < 27; ++k) {
+    const Vec3d d{k / 9 - 1., k / 3 % 3 - 1., k % 3 - 1.};
+    for (double r = 0.05; r < 1.5; r *= 1.5) {
+      Vec3d y = from + r * length / std::max(norm(d), 1.) * d;
+      if (target_->project(y, length) && norm(y - from) < nearest)
+        nearest = norm(y - from), to = y;
+    }
+  }
+  if (!(nearest < furthest))
+    return false;
+  const float above = std::min(floor, worst(star_)) * 0.999999f;
+  for (double step = 1; step > 0.05; step *= 0.7) {
+    m_.point[size_t(v)] = step == 1 ? to : from + step * (to - from);
+    if (take(star_, v, from, above, 1e30f))
+      return true;
+  }
+  return false;
+}
+
+} // namespace molmesh::improve

@@ -1,0 +1,37 @@
+// faults.hpp — what is wrong in a part: points off the target, bent triangles, elements below the goal.
+#pragma once
+#include "improve/editor.hpp"
+#include "improve/vertex_numbers.hpp"
+#include <cstdint>
+#include <vector>
+
+namespace molmesh::improve {
+
+struct Faults {
+  int64_t off = 0, bent = 0, below = 0;
+  float worst = 2; ///< quality
+};
+
+/// Counts them. slots: all that elements of the part may be in.
+class FaultCount {
+public:
+  FaultCount(const Editor& editor, const DynamicMesh& m, const std::vector<int32_t>& slots, float goal)
+      : editor_(editor), m_(m), slots_(slots), goal_(goal) {}
+  Faults operator()();
+  /// Fewer points are off than before, no more elements are below the goal, and the worst of such is no worse; no
+  /// more triangles are bent, or two at most for a point.
+  bool better_than(const Faults& before, int64_t bent_for_a_point);
+  std::vector<int32_t> points_off(); ///< ascending
+
+private:
+  void count_bad(Faults& f) const;
+  void count_misfits(Faults& f);
+
+  const Editor& editor_;
+  const DynamicMesh& m_;
+  const std::vector<int32_t>& slots_;
+  const float goal_;
+  VertexNumbers surface_points_;
+};
+
+} // namespace molmesh::improve

@@ -1,0 +1,114 @@
+// nest_test.cpp — a hole smaller than the grid comes to its size and place; nothing around it is touched.
+#include "improve/improve.hpp"
+#include "improve/schedule.hpp"
+#include "lattice_mesh.hpp"
+#include <catch2/catch.hpp>
+#include <numeric>
+
+using namespace molmesh;
+using namespace molmesh::test;
+
+namespace {
+
+constexpr double h = 0.5;
+constexpr int n = 20;
+const Vec3d middle{5.004, 5.003, 4.998}; // a grid point but for a little
+const Vec3d ball{5.1, 4.96, 5.07};
+
+/// A ball of 5.4 h with a hole of `radius` in it.
+Field ball_with_hole(double radius) {
+  return
+      [radius](Vec3d p) { return std::exp(0.5 * std::min(5.4 * h - norm(p - ball), norm(p - middle) - radius)); };
+}
+
+struct Case {
+  BlockGrid grid;
+  improve::Isosurface surface;
+  TetMesh mesh;
+  explicit Case(double radius, int keep)
+      : grid(lattice_grid(ball_with_hole(radius), {0, 0, 0}, h, n)), surface(grid, 1),
+        mesh(lattice_mesh(ball_with_hole(radius), {0, 0, 0}, h, n, keep)) {}
+};
+
+struct Shape {
+  double volume = 0;
+  int64_t triangles = 0, euler = 0; ///< of the surface
+};
+Shape shape(const TetMesh& mesh) {
+  Shape s;
+  for (const Tet& t : mesh.tet)
+    s.volume += volume6(mesh.point[size_t(t[0])], mesh.point[size_t(t[1])], mesh.point[size_t(t[2])],
+                        mesh.point[size_t(t[3])]) /
+                6;
+  std::set<int32_t> points;
+  std::set<std::pair<int32_t, int32_t>> edges;
+  for (size_t t = 0; t < mesh.tri.size(); ++t)
+    for (size_t i = 0; i < 3 && mesh.boundary[t] == Boundary::surface; ++i) {
+      const int32_t a = mesh.tri[t][i], b = mesh.tri[t][(i + 1) % 3];
+      points.insert(a);
+      edges.insert({std::min(a, b), std::max(a, b)});
+      s.triangles += i == 0;
+    }
+  s.euler = int64_t(points.size()) - int64_t(edges.size()) + s.triangles;
+  return s;
+}
+
+} // namespace
+
+TEST_CASE("all points of a hole smaller than the grid come to lie on it") {
+  const int keep = GENERATE(0, 1);
+  const double radius = GENERATE(0.3, 0.1, 0.03) * h;
+  Case c(radius, keep);
+  const improve::Result result = improve::improve(c.mesh, &c.grid, {});
+  CHECK(result.fidelity.points_off == 0);
+  CHECK(result.after.min >= 25);
+  CHECK(result.after.max <= 140);
+  CHECK(shape(c.mesh).euler == 4);
+  CHECK_NOTHROW(improve::build(c.mesh, 180, 1));
+}
+
+TEST_CASE("shells fill what they are put into, and the surface keeps its triangles") {
+  const int keep = GENERATE(0, 1);
+  Case c(0.05 * h, keep);
+  improve::DynamicMesh m = improve::build(c.mesh, 180, 1);
+  const size_t points = m.point.size(), elements = m.element.size(), more = 4000;
+  // The hole is four times as large as what it stands for.
+  improve::PartRoom room{0, std::vector<int32_t>(more), std::vector<int32_t>(more)};
+  std::iota(room.element.begin(), room.element.end(), int32_t(elements));
+  std::iota(room.vertex.begin(), room.vertex.end(), int32_t(points));
+  m.element.resize(elements + more);
+  m.point.resize(points + more);
+  m.vertex.resize(points + more);
+  m.incident.resize(points + more, -1);
+  m.touched.resize(points + more);
+  improve::Parts parts;
+  parts.owner.resize(m.point.size());
+  std::vector<uint32_t> stamp(m.element.size());
+  improve::Editor editor(m, &c.surface, nullptr, parts, stamp, room, {44, 0.24, 1, 0});
+  int32_t in_hole = -1;
+  for (size_t v = 0; v < points; ++v)
+    if (m.vertex[v].kind == improve::Kind::surface && norm(m.point[v] - middle) < 2 * h)
+      in_hole = static_cast<int32_t>(v);
+  REQUIRE(in_hole >= 0);
+  for (size_t v = 0; v < points; ++v)
+    if (m.vertex[v].kind == improve::Kind::surface && norm(m.point[v] - middle) < 2 * h)
+      m.point[v] = middle + 4. * (m.point[v] - middle);
+  const Shape before = shape(improve::extract(m));
+  const double hole_before = improve::measure_fidelity(m, c.surface, 1).volume;
+  REQUIRE(editor.off(in_hole) > 1);
+  REQUIRE(editor.nest(in_hole, 0.5));
+  CHECK(editor.counts.nestings == 1);
+  CHECK(editor.off(in_hole) <= 1);
+  const TetMesh now = improve::extract(m);
+  const Shape after = shape(now);
+  CHECK(after.triangles == before.triangles);
+  CHECK(after.euler == before.euler);
+  CHECK(now.tet.size() > elements);
+  CHECK_NOTHROW(improve::build(now, 180, 1)); // no element overlaps its neighbour, all are positive
+  // Of both regions together the volume stays; the molecule gains what the hole loses.
+  const double gained = improve::measure_fidelity(m, c.surface, 1).volume - hole_before;
+  CHECK(gained > 0);
+  CHECK(after.volume - before.volume == Approx(keep == 0 ? 0 : gained).margin(1e-9));
+  for (const int32_t v : room.vertex)
+    REQUIRE(m.incident[size_t(v)] < 0);
+}
