@@ -1,5 +1,6 @@
 // bounds.cpp — what surface triangles and vertices are bound to: the target, and not to cross another sheet.
-#include "geom/intersect.hpp" // exact test of two triangles
+#include "geom/intersect.hpp"  // exact test of two triangles
+#include "geom/predicates.hpp" // on which side of a triangle a point lies
 #include "improve/editor.hpp"
 #include <algorithm>
 #include <cmath>
@@ -130,6 +131,21 @@ bool Editor::rim_crosses(bool stamped_go) {
       if (parts_.at(m_.point[size_t(v)]) != room_.part)
         return true;
     const SheetTriangle now = sheet_triangle(m_.point, t, -1);
+    // Triangles of a hole with four of them share edges, all with all: turned inside out none crosses another.
+    std::array<int32_t, 3> apex{-1, -1, -1}; // of the triangle across the edge opposite t[k]
+    const auto meet = [&](const std::array<int32_t, 3>& o) {
+      const auto third = [](const auto& a, const auto& b) { // of a, when the two others are b's
+        int k = -1, more = 0;
+        for (int n = 0; n < 3; ++n)
+          if (std::find(b.begin(), b.end(), a[size_t(n)]) == b.end())
+            k = n, ++more;
+        return more == 1 ? k : -1;
+      };
+      if (const int k = third(t, o); k >= 0)
+        apex[size_t(k)] = o[size_t(third(o, t))];
+    };
+    for (const auto& o : rim_)
+      meet(o);
     for (size_t j = 0; j < i; ++j)
       if (!now.of_one_sheet(sheet_triangle(m_.point, rim_[j], -1), true) && triangles_cross(m_.point, t, rim_[j]))
         return true;
@@ -139,18 +155,23 @@ bool Editor::rim_crosses(bool stamped_go) {
       const auto owner = [&](size_t k) { return parts_.owner[size_t(other.v[k])]; };
       if (owner(0) != room_.part && owner(0) == owner(1) && owner(0) == owner(2))
         return false;
+      if (stamped_go && stamp_[size_t(other.face / 4)] == clock_)
+        return false;
+      meet(other.v);
       bool beside = false;
       for (const int32_t v : other.v)
         beside |= v == t[0] || v == t[1] || v == t[2];
       if (now.of_one_sheet(other, beside))
-        return false;
-      if (stamped_go && stamp_[size_t(other.face / 4)] == clock_)
         return false;
       return triangles_cross(m_.point, t, other.v);
     };
     if (changed_sheets_.any(now, crosses) || sheets_->any(now, [&](const SheetTriangle& other) {
           return !changed_sheets_.knows(other.face) && crosses(other);
         }))
+      return true;
+    const auto p = [&](int32_t v) { return m_.point[size_t(v)]; };
+    if (apex[0] >= 0 && apex[0] == apex[1] && apex[0] == apex[2] &&
+        !(orient3d(p(t[0]), p(t[1]), p(t[2]), p(apex[0])) > 0))
       return true;
   }
   return false;

@@ -67,6 +67,28 @@ TEST_CASE("all points of a hole smaller than the grid come to lie on it") {
   CHECK_NOTHROW(improve::build(c.mesh, 180, 1));
 }
 
+TEST_CASE("a hole much larger than what it stands for shrinks among good elements") {
+  const int keep = GENERATE(0, 1);
+  Case large(0.6 * h, keep), small(0.02 * h, keep);
+  improve::improve(large.mesh, &large.grid, {});
+  improve::DynamicMesh m = improve::build(large.mesh, 180, 1);
+  REQUIRE(improve::measure_fidelity(m, small.surface, 1).points_off > 3);
+  improve::Schedule schedule(m, &small.surface, 32 * h, 1);
+  improve::Pass pass;
+  pass.goal = static_cast<float>(improve::angle_quality(26));
+  pass.effort = 1;
+  pass.cell = GENERATE(0.6, 1.);
+  pass.guard = {44, 0.24, 1, 0};
+  improve::Counts counts;
+  for (int k = 0; k < 4; ++k)
+    counts += schedule.recover(pass);
+  CHECK(improve::measure_fidelity(m, small.surface, 1).points_off == 0);
+  CHECK(counts.nestings > 0);
+  CHECK(schedule.below(static_cast<float>(improve::angle_quality(25))) == 0);
+  CHECK(shape(improve::extract(m)).euler == 4);
+  CHECK_NOTHROW(improve::build(improve::extract(m), 180, 1));
+}
+
 TEST_CASE("shells fill what they are put into, and the surface keeps its triangles") {
   const int keep = GENERATE(0, 1);
   Case c(0.05 * h, keep);

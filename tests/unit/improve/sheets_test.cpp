@@ -1,5 +1,6 @@
 // sheets_test.cpp — where a mesh ends: the triangles known, and surfaces that must not cross themselves.
 #include "geom/tet_measures.hpp"
+#include "improve/improve.hpp"
 #include "improve/schedule.hpp"
 #include "improve/sheets.hpp"
 #include "lattice_mesh.hpp"
@@ -165,4 +166,58 @@ TEST_CASE("two sheets in different parts that move towards each other in one pas
       first = moved;
     CHECK(moved.point == first.point);
   }
+}
+
+namespace {
+
+// Draws the one vertex that begins there.
+struct Draw : improve::Target {
+  Vec3d from, to;
+  bool project(Vec3d& p, double) const override {
+    const bool it = p == from;
+    p = to;
+    return it;
+  }
+  bool probe(Vec3d p, double& distance, Vec3d& normal) const override {
+    distance = norm(p - to);
+    normal = (p - to) / distance;
+    return true;
+  }
+  double spacing() const override { return 0.5; }
+};
+
+} // namespace
+
+TEST_CASE("a hole of four triangles is not turned inside out, though none of them crosses another") {
+  const Field ball = [](Vec3d p) { return std::exp(-0.8 * (norm2(p - Vec3d{4.9, 5.05, 5.1}) - 2.4 * 2.4)); };
+  TetMesh full = lattice_mesh(ball, {0, 0, 0}, 0.5, 20, 1);
+  const BlockGrid grid = lattice_grid(ball, {0, 0, 0}, 0.5, 20);
+  improve::improve(full, &grid, {}); // of a lattice, elements in a row block the way
+  const improve::DynamicMesh inner = improve::build(full, 180, 1);
+  int moved = 0;
+  size_t tried = 0;
+  for (size_t t = 0; t < full.tet.size() && tried < 100; ++t) {
+    const Tet v = full.tet[t];
+    if (std::any_of(v.begin(), v.end(),
+                    [&](int32_t w) { return inner.vertex[size_t(w)].kind != improve::Kind::interior; }))
+      continue;
+    ++tried;
+    TetMesh mesh = full;
+    mesh.tet.erase(mesh.tet.begin() + std::ptrdiff_t(t));
+    mesh.region.pop_back();
+    for (size_t f = 0; f < 4; ++f) {
+      const auto out = improve::outward_triangle(v, f);
+      mesh.tri.push_back({out[0], out[2], out[1]});
+      mesh.boundary.push_back(Boundary::surface);
+    }
+    improve::DynamicMesh m = improve::build(mesh, 180, 1);
+    const auto p = [&](size_t k) { return m.point[size_t(v[k])]; };
+    Draw target; // a little through the face on the other side
+    target.from = p(tried % 4);
+    target.to = target.from + 1.02 * 4. / 3 * ((p(0) + p(1) + p(2) + p(3)) / 4. - target.from);
+    improve::Schedule schedule(m, &target, 100, 1);
+    moved += schedule.settle(1e-4f, {180, 1e3, 9, 0}).moves == 1;
+    CHECK(tet_volume(p(0), p(1), p(2), p(3)) > 0);
+  }
+  CHECK(moved > 10);
 }
