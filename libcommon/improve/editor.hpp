@@ -14,6 +14,7 @@
 #include "improve/sheets.hpp"
 #include "improve/spokes.hpp"
 #include "improve/target.hpp"
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
