@@ -4,7 +4,7 @@
 #include "geom/predicates.hpp" // exact sign of the volumes that come in
 #include "improve/kinds.hpp"
 #include "improve/quality_kernel.hpp"
-#include "mesh/group.hpp"
+#include "mesh/sorted_triangle.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <map>
@@ -14,27 +14,8 @@
 namespace molmesh::improve {
 namespace {
 
-struct Sorted {
-  std::array<int32_t, 3> v;
-  bool odd; ///< sorting took an odd permutation
-};
-Sorted sorted(int32_t a, int32_t b, int32_t c) {
-  bool odd = false;
-  if (a > b)
-    std::swap(a, b), odd = !odd;
-  if (b > c)
-    std::swap(b, c), odd = !odd;
-  if (a > b)
-    std::swap(a, b), odd = !odd;
-  return {{a, b, c}, odd};
-}
-Sorted sorted_face(const TetMesh& mesh, int64_t slot) {
-  const Tri f = outward_triangle(mesh.tet[size_t(slot / 4)], size_t(slot % 4));
-  return sorted(f[0], f[1], f[2]);
-}
-Sorted sorted_triangle(const TetMesh& mesh, int64_t t) {
-  const Tri& f = mesh.tri[size_t(t)];
-  return sorted(f[0], f[1], f[2]);
+Tri face_at(const TetMesh& mesh, int64_t slot) {
+  return outward_triangle(mesh.tet[size_t(slot / 4)], size_t(slot % 4));
 }
 
 std::string name(const char* what, int64_t i) {
@@ -65,14 +46,14 @@ private:
 void link(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, int threads) {
   const auto faces = static_cast<int64_t>(4 * mesh.tet.size()), triangles = static_cast<int64_t>(mesh.tri.size());
   const auto key = [&](int64_t i) {
-    const auto v = i < faces ? sorted_face(mesh, i).v : sorted_triangle(mesh, i - faces).v;
-    return GroupKey{v[0], uint64_t(uint32_t(v[1])) << 32 | uint32_t(v[2])};
+    return triangle_key(i < faces ? face_at(mesh, i) : mesh.tri[size_t(i - faces)]);
   };
   FirstFault fault;
   for_each_group(
       faces + triangles, static_cast<int64_t>(mesh.point.size()), threads, key, [&](const uint32_t* item, int n) {
         const auto sides = static_cast<int>(std::lower_bound(item, item + n, faces) - item);
-        if (sides == 2 && sorted_face(mesh, item[0]).odd == sorted_face(mesh, item[1]).odd)
+        if (sides == 2 &&
+            sorted_triangle(face_at(mesh, item[0])).odd == sorted_triangle(face_at(mesh, item[1])).odd)
           fault.found(item[0], [&] {
             return name("tetrahedron", item[0] / 4) + " overlaps " + name("tetrahedron", item[1] / 4) +
                    ", expected one on each side of a face";
@@ -136,16 +117,16 @@ void check_labels(const DynamicMesh& m, const TetMesh& mesh, int threads) {
 
 // Which way the first triangle of each label points. Needs an element at each vertex.
 void set_directions(DynamicMesh& m, const TetMesh& mesh, const std::vector<int64_t>& first) {
-  std::vector<Sorted> wanted(1);
+  std::vector<SortedTriangle> wanted(1);
   for (size_t l = 1; l < first.size(); ++l)
-    wanted.push_back(sorted_triangle(mesh, first[l]));
+    wanted.push_back(sorted_triangle(mesh.tri[size_t(first[l])]));
   for (size_t e = 0; e < m.element.size(); ++e)
     for (size_t i = 0; i < 4; ++i) {
       const Element& el = m.element[e];
       const uint8_t l = el.label[i];
       if (!m.counts_here(el, i))
         continue;
-      const Sorted s = sorted_face(mesh, 4 * int64_t(e) + int64_t(i));
+      const SortedTriangle s = sorted_triangle(face_at(mesh, 4 * int64_t(e) + int64_t(i)));
       if (s.v == wanted[l].v)
         m.labels[l].reversed = s.odd != wanted[l].odd;
     }

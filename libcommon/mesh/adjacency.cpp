@@ -1,23 +1,13 @@
 // adjacency.cpp — faces are grouped by their three points.
 #include "mesh/adjacency.hpp"
-#include "mesh/group.hpp"
-#include <utility>
+#include "mesh/sorted_triangle.hpp"
 
 namespace molmesh {
 
 std::vector<int32_t> face_neighbors(const TetMesh& m, int threads) {
   const auto faces = static_cast<int64_t>(4 * m.tet.size());
   std::vector<int32_t> across(static_cast<size_t>(faces), no_face);
-  const auto key = [&](int64_t face) {
-    auto [a, b, c] = face_points(m, face);
-    if (a > b)
-      std::swap(a, b);
-    if (b > c)
-      std::swap(b, c);
-    if (a > b)
-      std::swap(a, b);
-    return GroupKey{a, uint64_t(uint32_t(b)) << 32 | uint32_t(c)};
-  };
+  const auto key = [&](int64_t face) { return triangle_key(face_points(m, face)); };
   for_each_group(faces, static_cast<int64_t>(m.point.size()), threads, key, [&](const uint32_t* face, int n) {
     if (n == 2) {
       across[face[0]] = static_cast<int32_t>(face[1]);

@@ -10,6 +10,7 @@ namespace molmesh {
 struct GroupKey {
   int32_t lead; ///< in [0, leads), spread evenly
   uint64_t rest;
+  bool operator==(const GroupKey&) const = default;
 };
 
 /// visit(items, n) once for every set of n equal keys among key(0) … key(count - 1), count < 2^32; `items` points

@@ -57,31 +57,33 @@ Graph dual_graph(const TetMesh& m, int threads, std::vector<int32_t> across) {
   par::for_n(n, threads, [&](int64_t k) { g.cluster[size_t(tet_at(k))] = static_cast<int32_t>(k / size); });
   if (across.empty())
     across = face_neighbors(m, threads);
-  // visit(neighbour, faces), ascending
-  const auto neighbors = [&](int64_t node, auto&& visit) {
+  // A node's neighbours, ascending, one for every face, then -1: in place of its tetrahedra's own.
+  const auto place = [&](int64_t node, size_t i) -> int32_t& {
+    return across[size_t(4 * tet_at(node * size + int64_t(i) / 4)) + i % 4];
+  };
+  const auto slots = [&](int64_t node) { return size_t(4 * (std::min(n, (node + 1) * size) - node * size)); };
+  par::for_n(nodes, threads, [&](int64_t node) {
     std::array<int32_t, 4 * cluster_size> near;
     size_t count = 0;
-    for (int64_t k = node * size; k < std::min(n, (node + 1) * size); ++k)
-      for (int64_t f = 4 * tet_at(k); f < 4 * tet_at(k) + 4; ++f)
-        if (const int32_t other = across[size_t(f)]; other >= 0 && g.cluster[size_t(other / 4)] != node)
-          near[count++] = g.cluster[size_t(other / 4)];
+    for (size_t i = 0; i < slots(node); ++i)
+      if (const int32_t other = place(node, i); other >= 0 && g.cluster[size_t(other / 4)] != node)
+        near[count++] = g.cluster[size_t(other / 4)];
     std::sort(near.begin(), near.begin() + count);
-    for (size_t i = 0, j; i < count; i = j) {
-      for (j = i; j < count && near[j] == near[i];)
-        ++j;
-      visit(near[i], static_cast<idx_t>(j - i));
-    }
-  };
-  par::for_n(nodes, threads, [&](int64_t c) {
-    g.node_weight[size_t(c)] = static_cast<idx_t>(std::min(n, (c + 1) * size) - c * size);
-    neighbors(c, [&](int32_t, idx_t) { ++g.begin[size_t(c)]; });
+    for (size_t i = 0; i < slots(node); ++i)
+      place(node, i) = i < count ? near[i] : -1;
+    g.begin[size_t(node)] = static_cast<idx_t>(std::unique(near.begin(), near.begin() + count) - near.begin());
+    g.node_weight[size_t(node)] = static_cast<idx_t>(slots(node) / 4);
   });
   const auto edges = size_t(par::exclusive_scan(g.begin));
   g.neighbor.resize(edges);
   g.edge_weight.resize(edges);
-  par::for_n(nodes, threads, [&](int64_t c) {
-    auto at = size_t(g.begin[size_t(c)]);
-    neighbors(c, [&](int32_t other, idx_t faces) { g.neighbor[at] = other, g.edge_weight[at++] = faces; });
+  par::for_n(nodes, threads, [&](int64_t node) {
+    auto at = size_t(g.begin[size_t(node)]) - 1;
+    for (size_t i = 0; i < slots(node) && place(node, i) >= 0; ++i) {
+      if (i == 0 || place(node, i) != place(node, i - 1))
+        g.neighbor[++at] = place(node, i);
+      ++g.edge_weight[at];
+    }
   });
   return g;
 }

@@ -1,7 +1,7 @@
 // triangle_match.cpp — faces and triangles grouped by their three points.
 #include "mesh/triangle_match.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/group.hpp"
+#include "mesh/sorted_triangle.hpp"
 
 namespace molmesh {
 
@@ -19,12 +19,7 @@ TriangleMatch match_triangles(const TetMesh& m, const std::vector<int32_t>& acro
   r.kind.assign(static_cast<size_t>(n + tris), TriangleMatch::good);
   r.one_sided.assign(static_cast<size_t>(tris), 0);
   for_each_group(
-      n + tris, static_cast<int64_t>(m.point.size()), threads,
-      [&](int64_t i) {
-        Tri t = corners(i);
-        std::sort(t.begin(), t.end());
-        return GroupKey{t[0], uint64_t(uint32_t(t[1])) << 32 | uint32_t(t[2])};
-      },
+      n + tris, static_cast<int64_t>(m.point.size()), threads, [&](int64_t i) { return triangle_key(corners(i)); },
       [&](const uint32_t* item, int size) { // a face first, if there is one
         if (item[0] >= n) {
           for (int i = 0; i < size; ++i)
