@@ -126,11 +126,12 @@ bool Selection::take_atoms() {
     for (Floats* v : {&u.atom_x, &u.atom_y, &u.atom_z, &u.atom_constant, &u.log2_atom})
       v->resize(2 * atom_room);
   }
-  if (u.folded && f_.plain_above) // where units add so little together that their roots need few digits
-    choose_roots(effect_.data(), kept_.data(), n,
-                 static_cast<float>(budget_.roots) / (rough_root_error_ * static_cast<float>(n)), u.root.data());
-  else
-    std::fill_n(u.root.begin(), n, 2.0f);
+  // Where units add so little together that their roots need few digits.
+  const float rough = u.folded && f_.plain_above
+                          ? static_cast<float>(budget_.roots) / (rough_root_error_ * static_cast<float>(n))
+                          : -1;
+  for (size_t i = 0; i < static_cast<size_t>(n); ++i)
+    u.root[i] = effect_[static_cast<size_t>(kept_[i])] <= rough ? 0.0f : 2.0f;
   const auto take = [&](bool absolute) {
     return take_units(local_, near_, kept_.data(), n, box, static_cast<float>(log2e * f_.decay),
                       absolute ? log2_upper_ : nullptr,

@@ -3,6 +3,7 @@
 #pragma once
 #include "density/block_kernel.hpp"
 #include "density/field.hpp"
+#include "density/middles_kernel.hpp"
 #include <span>
 #include <vector>
 

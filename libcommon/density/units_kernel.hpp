@@ -36,24 +36,11 @@ using ExactUnits = UnitsOf<double>;
 /// Largest change of a logarithm over a block that leaves single precision far from overflow.
 constexpr float log2_range = 115;
 
-/// root[u] = 0 where effect[list[u]] is at most `most`, else 2. list and root hold n + 16.
-void choose_roots(const float* effect, const int32_t* list, int32_t n, float most, float* root);
-
 /// The n units `list` of `from`, into arrays that hold enough, without atoms that do not matter: all that are
 /// dropped change ΣS^P by at most `within`, or, without log2_upper (bounds on the sums of all units of `from` over
 /// the block), the sum of each unit by that part of it. to.direct is the caller's wish. False when single precision
 /// does not hold.
 bool take_units(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
                 const LocalBox& block, float decay, const float* log2_upper, float within, BlockUnits& to);
-
-/// log2 S in the middle of the block, and the mean of the atoms' positions weighted with their terms there, Å.
-struct UnitMiddles {
-  Floats log2_sum, x, y, z; ///< [n + 16]
-};
-void unit_middles(const BlockUnits& units, const LocalBox& block, float decay, UnitMiddles& to);
-
-/// Σ S^P at the block's middle from such sums and means, and its gradient, Å⁻¹. Arrays hold n + 16.
-void sum_of_powers(int32_t n, const float* exponent, const float* log2_sum, const float* x, const float* y,
-                   const float* z, const LocalBox& block, float decay, float* value, float* gradient);
 
 } // namespace molmesh::density
