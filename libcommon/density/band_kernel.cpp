@@ -84,20 +84,24 @@ struct Plane {
 };
 
 /// nodes[9]: the 3 × 3 nodes that the plane passes, by (y, z).
-HWY_INLINE void make_plane(const NodeBits* const* nodes, int32_t x, Plane& p) {
-  const auto join = [](uint64_t lo, uint64_t mid, uint64_t hi) { return mid << 1 | lo >> 31 | (hi & 1) << 33; };
-  const auto edge = [&](int32_t dy, int32_t y) {
-    return join(nodes[3 * dy]->row[x][y], nodes[3 * dy + 1]->row[x][y], nodes[3 * dy + 2]->row[x][y]);
+HWY_INLINE void make_plane(const FacedBits* const* nodes, int32_t x, Plane& p) {
+  const auto edge = [&](int32_t dy) {
+    const auto row = [&](int32_t n) { return uint64_t{nodes[3 * dy + n]->y_face[dy == 0][x]}; };
+    return row(1) << 1 | row(0) >> 31 | (row(2) & 1) << 33;
   };
   constexpr hn::Rebind<uint32_t, U> half{};
+  alignas(64) static constexpr uint64_t bit[8] = {1, 2, 4, 8, 16, 32, 64, 128};
+  const auto rows = hn::Load(u, bit);
   for (int32_t y = 0; y < 32; y += lanes) {
-    const auto row = [&](int32_t n) { return hn::PromoteTo(u, hn::LoadU(half, &nodes[n]->row[x][y])); };
-    const auto lo = hn::ShiftRight<31>(row(3)), mid = hn::ShiftLeft<1>(row(4)),
-               hi = hn::ShiftLeft<33>(hn::And(row(5), hn::Set(u, uint64_t{1})));
-    hn::StoreU(hn::Or(mid, hn::Or(lo, hi)), u, p.row + 1 + y);
+    const auto at = [&](uint32_t column, uint64_t to) {
+      return hn::IfThenElseZero(hn::TestBit(hn::Set(u, column >> y), rows), hn::Set(u, to));
+    };
+    const auto mid = hn::ShiftLeft<1>(hn::PromoteTo(u, hn::LoadU(half, &nodes[4]->row[x][y])));
+    hn::StoreU(hn::Or(mid, hn::Or(at(nodes[3]->z_face[1][x], 1), at(nodes[5]->z_face[0][x], uint64_t{1} << 33))), u,
+               p.row + 1 + y);
   }
-  p.row[0] = edge(0, 31);
-  p.row[33] = edge(2, 0);
+  p.row[0] = edge(0);
+  p.row[33] = edge(2);
 }
 
 /// The same without the nodes around: what lies beyond the node's own points is what `beyond` has at the nearest of
@@ -169,7 +173,7 @@ HWY_INLINE void corners_of_band_cells(MakePlane&& plane, const CellRange& cells,
     }
 }
 
-void band_points_simd(const NodeBits* const* below, const NodeBits* const* above, const CellRange& cells,
+void band_points_simd(const FacedBits* const* below, const FacedBits* const* above, const CellRange& cells,
                       NodeBits& active) {
   corners_of_band_cells(
       [&](int32_t x, bool lower, Plane& p) {
@@ -205,7 +209,24 @@ void rows_from_words(const NodeWords& words, NodeBits& rows) {
 void words_from_rows(const NodeBits& rows, NodeWords& words) {
   HWY_DYNAMIC_DISPATCH(words_from_rows_simd)(rows, words);
 }
-void band_points(const NodeBits* const* below, const NodeBits* const* above, const CellRange& cells,
+void faced_from_words(const NodeWords& words, FacedBits& to) {
+  rows_from_words(words, to);
+  // The lowest bits of a word's bytes.
+  const auto column = [](uint64_t v) { return (v & ~uint64_t{0} / 255) * 0x0102040810204080 >> 56; };
+  for (int x = 0; x < node_edge; ++x) {
+    uint64_t low = 0, high = 0;
+    for (int by = 0; by < node_blocks; ++by) {
+      const uint64_t(*const row)[8] = &words.word[16 * (x >> 3) + 4 * by];
+      low |= column(row[0][x & 7]) << 8 * by;
+      high |= column(row[node_blocks - 1][x & 7] >> 7) << 8 * by;
+    }
+    to.z_face[0][x] = static_cast<uint32_t>(low);
+    to.z_face[1][x] = static_cast<uint32_t>(high);
+    to.y_face[0][x] = to.row[x][0];
+    to.y_face[1][x] = to.row[x][node_edge - 1];
+  }
+}
+void band_points(const FacedBits* const* below, const FacedBits* const* above, const CellRange& cells,
                  NodeBits& active) {
   HWY_DYNAMIC_DISPATCH(band_points_simd)(below, above, cells, active);
 }

@@ -13,9 +13,15 @@ struct NodeBits {
   uint32_t row[node_edge][node_edge];
 };
 
+/// The same set, with what its neighbors need of it by itself: they would read a line of memory for every row.
+struct FacedBits : NodeBits {
+  uint32_t y_face[2][node_edge]; ///< rows at y = 0 and y = 31, by x
+  uint32_t z_face[2][node_edge]; ///< points at z = 0 and z = 31, by x: bit y
+};
+
 /// The points of a node that are below the band and those that are above.
 struct Sides {
-  NodeBits below, above;
+  FacedBits below, above;
 };
 
 /// The same set by blocks: bit 8·j + k of word [block][i].
@@ -24,6 +30,8 @@ struct NodeWords {
 };
 
 void rows_from_words(const NodeWords& words, NodeBits& rows);
+/// With faces.
+void faced_from_words(const NodeWords& words, FacedBits& to);
 void words_from_rows(const NodeBits& rows, NodeWords& words);
 
 /// Cells of a node and of the layer of cells before it: cell (i, j, k) lies between points i and i + 1, and so on;
@@ -34,7 +42,7 @@ struct CellRange {
 
 /// Corners of band cells in a node: of cells whose corners are neither all below nor all above the band. below and
 /// above: the sets of the 27 nodes around it, in order of (x, y, z), the node itself the 14th.
-void band_points(const NodeBits* const* below, const NodeBits* const* above, const CellRange& cells,
+void band_points(const FacedBits* const* below, const FacedBits* const* above, const CellRange& cells,
                  NodeBits& active);
 
 /// The same as far as the node knows it alone. What lies beyond its own points counts as `beyond` has it at the

@@ -117,8 +117,8 @@ void NodeSearch::settle(NodeState& s, Workspace& w) const {
         std::fill_n(above->word[b], 8, every_block);
       }
   s.sides = w.spares.sides();
-  rows_from_words(w.below, s.sides->below);
-  rows_from_words(w.above, s.sides->above);
+  faced_from_words(w.below, s.sides->below);
+  faced_from_words(w.above, s.sides->above);
   if (s.known)
     store(s, w);
 }
@@ -196,7 +196,7 @@ CellRange NodeSearch::cells_of(Vec3i corner) const {
 }
 
 /// Active points of a node among its neighbors, packed.
-void NodeSearch::finish(NodeState& s, const NodeBits* const* below, const NodeBits* const* above,
+void NodeSearch::finish(NodeState& s, const FacedBits* const* below, const FacedBits* const* above,
                         Workspace& w) const {
   fetch_values(s);
   band_points(below, above, cells_of(s.corner), w.rows);

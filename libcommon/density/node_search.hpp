@@ -14,7 +14,7 @@ public:
   /// Sides of the node's points, and values where they may be wanted.
   void work_through(const Node& node, NodeState& s, Workspace& w) const;
   /// The node's active points. below, above: of the 27 nodes around, as sides_around() gives them.
-  void finish(NodeState& s, const NodeBits* const* below, const NodeBits* const* above, Workspace& w) const;
+  void finish(NodeState& s, const FacedBits* const* below, const FacedBits* const* above, Workspace& w) const;
 
 private:
   void work_through_block(int b, int octant, Vec3i corner, NodeState& s, Workspace& w) const;

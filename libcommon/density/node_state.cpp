@@ -20,19 +20,12 @@ uint64_t run(uint64_t blocks, int first) {
 unsigned open_faces(const NodeState& s) {
   if (!s.sides)
     return s.inside ? 63 : 0;
-  const NodeBits& below = s.sides->below;
-  uint32_t all[5] = {~0u, ~0u, ~0u, ~0u, ~0u}; // last: both faces of z
-  for (int i = 0; i < node_edge; ++i) {
-    all[0] &= below.row[0][i];
-    all[1] &= below.row[node_edge - 1][i];
-    all[2] &= below.row[i][0];
-    all[3] &= below.row[i][node_edge - 1];
-    for (int j = 0; j < node_edge; ++j)
-      all[4] &= below.row[i][j];
-  }
-  unsigned open = unsigned{!(all[4] & 1)} << 4 | unsigned{!(all[4] >> 31)} << 5;
-  for (unsigned face = 0; face < 4; ++face)
-    open |= unsigned{all[face] != ~0u} << face;
+  const FacedBits& below = s.sides->below;
+  const uint32_t* const face[6] = {below.row[0],    below.row[node_edge - 1], below.y_face[0],
+                                   below.y_face[1], below.z_face[0],          below.z_face[1]};
+  unsigned open = 0;
+  for (unsigned i = 0; i < 6; ++i)
+    open |= unsigned{std::any_of(face[i], face[i] + node_edge, [](uint32_t row) { return row != ~0u; })} << i;
   return open;
 }
 
@@ -48,10 +41,12 @@ void fetch_values(const NodeState& s) {
 }
 
 bool sides_around(const SlabState& before, const SlabState& slab, const SlabState& after, const NodeState& s,
-                  const NodeBits** below, const NodeBits** above) {
+                  const FacedBits** below, const FacedBits** above) {
   static const std::unique_ptr<const Sides> outside = [] {
     auto sides = std::make_unique<Sides>();
     std::fill_n(&sides->below.row[0][0], node_edge * node_edge, ~0u);
+    for (auto* const faces : {sides->below.y_face, sides->below.z_face})
+      std::fill_n(&faces[0][0], 2 * node_edge, ~0u);
     return sides;
   }();
   const SlabState* const slabs[3] = {&before, &slab, &after};
@@ -74,7 +69,7 @@ bool sides_around(const SlabState& before, const SlabState& slab, const SlabStat
       ++at;
     }
   }
-  return mixed || std::any_of(below, below + 27, [&](const NodeBits* b) { return b != below[0]; });
+  return mixed || std::any_of(below, below + 27, [&](const FacedBits* b) { return b != below[0]; });
 }
 
 void add_needed(const SlabState& before, SlabState& slab, const SlabState& after) {

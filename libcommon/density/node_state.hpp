@@ -52,7 +52,7 @@ void fetch_values(const NodeState& s);
 /// A node of a slab among its neighbors: below[27] and above[27] as band_points() wants them. False when all are on
 /// one side. before, after: the next slabs.
 bool sides_around(const SlabState& before, const SlabState& slab, const SlabState& after, const NodeState& s,
-                  const NodeBits** below, const NodeBits** above);
+                  const FacedBits** below, const FacedBits** above);
 
 /// Puts the nodes that any of the slabs needs into the one in the middle.
 void add_needed(const SlabState& before, SlabState& slab, const SlabState& after);

@@ -63,7 +63,7 @@ void Search::find(SlabState& slab, size_t node, Workspace& w) {
 void Search::finish(const SlabState& before, SlabState& slab, const SlabState& after, size_t node,
                     Workspace& w) const {
   NodeState& s = slab.node[node];
-  const NodeBits *below[27], *above[27];
+  const FacedBits *below[27], *above[27];
   s.closed = s.inside;
   if (sides_around(before, slab, after, s, below, above))
     node_.finish(s, below, above, w);

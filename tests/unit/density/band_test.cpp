@@ -1,0 +1,89 @@
+// band_test.cpp — corners of band cells of a node among its neighbors, against the same cell by cell.
+#include "density/band_kernel.hpp"
+#include <array>
+#include <catch2/catch.hpp>
+#include <hwy/targets.h>
+#include <memory>
+#include <random>
+
+using namespace molmesh;
+
+namespace {
+
+/// The 27 nodes around one, both sets of each.
+struct Neighborhood {
+  density::NodeWords below[27], above[27];
+  density::FacedBits below_rows[27], above_rows[27];
+};
+
+/// Whether a set of the 96³ points holds one; node 13 begins at 32.
+bool holds(const density::NodeWords* set, int x, int y, int z) {
+  const auto node = static_cast<size_t>(9 * (x / 32) + 3 * (y / 32) + z / 32);
+  x %= 32, y %= 32, z %= 32;
+  return set[node].word[16 * (x / 8) + 4 * (y / 8) + z / 8][x % 8] >> (8 * (y % 8) + z % 8) & 1;
+}
+
+/// Mostly of one side, so that most cells are no band cells, then thinner and thinner.
+std::unique_ptr<Neighborhood> random_sides(std::mt19937_64& random) {
+  auto n = std::make_unique<Neighborhood>();
+  for (size_t i = 0; i < 27; ++i) {
+    for (int b = 0; b < density::blocks_a_node; ++b)
+      for (int x = 0; x < 8; ++x) {
+        const uint64_t kind = random() % 4, holes = random() & random() & random() & random();
+        n->below[i].word[b][x] = kind == 0 ? ~uint64_t{0} : kind == 1 ? ~holes : kind == 2 ? random() : 0;
+        n->above[i].word[b][x] = ~n->below[i].word[b][x] & ~(random() & random() & random());
+      }
+    density::faced_from_words(n->below[i], n->below_rows[i]);
+    density::faced_from_words(n->above[i], n->above_rows[i]);
+  }
+  return n;
+}
+
+bool is_band_cell(const Neighborhood& n, int x, int y, int z) {
+  bool all_below = true, all_above = true;
+  for (int c = 0; c < 8; ++c) {
+    all_below = all_below && holds(n.below, x + (c >> 2), y + (c >> 1 & 1), z + (c & 1));
+    all_above = all_above && holds(n.above, x + (c >> 2), y + (c >> 1 & 1), z + (c & 1));
+  }
+  return !all_below && !all_above;
+}
+
+} // namespace
+
+TEST_CASE("corners of band cells of a node, whose neighbors give their faces alone") {
+  std::mt19937_64 random(3);
+  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    INFO(hwy::TargetName(target));
+    for (const density::CellRange& cells :
+         {density::CellRange{{-1, -1, -1}, {32, 32, 32}}, {{0, -1, 3}, {31, 32, 20}}}) {
+      const auto n = random_sides(random);
+      const density::FacedBits *below[27], *above[27];
+      for (size_t i = 0; i < 27; ++i) {
+        below[i] = &n->below_rows[i];
+        above[i] = &n->above_rows[i];
+      }
+      auto active = std::make_unique<density::NodeBits>();
+      density::band_points(below, above, cells, *active);
+      int64_t wrong = 0, found = 0;
+      for (int x = 0; x < 32; ++x)
+        for (int y = 0; y < 32; ++y)
+          for (int z = 0; z < 32; ++z) {
+            bool corner = false;
+            for (int c = 0; c < 8; ++c) {
+              const int cell[3] = {x - (c >> 2), y - (c >> 1 & 1), z - (c & 1)};
+              bool in = true;
+              for (int a = 0; a < 3; ++a)
+                in = in && cell[a] >= cells.first[a] && cell[a] < cells.end[a];
+              corner = corner || (in && is_band_cell(*n, 32 + cell[0], 32 + cell[1], 32 + cell[2]));
+            }
+            wrong += corner != (active->row[x][y] >> z & 1);
+            found += corner;
+          }
+      CHECK(wrong == 0);
+      CHECK(found > 1000);
+      CHECK(found < 32 * 32 * 32);
+    }
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}
