@@ -153,7 +153,7 @@ bool Editor::rim_crosses(bool stamped_go) {
       if (!now.box_meets(other, 0))
         return false;
       const auto owner = [&](size_t k) { return parts_.owner[size_t(other.v[k])]; };
-      if (owner(0) != room_.part && owner(0) == owner(1) && owner(0) == owner(2))
+      if (owner(0) >= 0 && owner(0) != room_.part && owner(0) == owner(1) && owner(0) == owner(2))
         return false;
       if (stamped_go && stamp_[size_t(other.face / 4)] == clock_)
         return false;

@@ -11,6 +11,7 @@ namespace molmesh::improve {
 namespace {
 
 constexpr size_t most_points = 64;
+constexpr size_t room_for_shells = 3072; // elements, Editor::nest
 
 // How far a trial goes. Bold ones come second, for the points that are left.
 struct Daring {
@@ -201,24 +202,18 @@ private:
 } // namespace
 
 Counts Schedule::recover(const Pass& pass) {
-  set_parts(passes_++, pass.cell * cell_);
   const int32_t time = ++time_;
   PartRoom none;
   const Editor look(m_, target_, nullptr, parts_, stamp_, none, pass.guard);
-  std::vector<uint8_t> off(m_.point.size());
-  par::for_n(static_cast<int64_t>(off.size()), threads_, [&](int64_t v) {
-    off[size_t(v)] = m_.incident[size_t(v)] >= 0 && look.off(static_cast<int32_t>(v)) > 1;
+  const std::vector<int32_t> points = choose(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
+    return m_.incident[size_t(v)] >= 0 && look.off(static_cast<int32_t>(v)) > 1;
   });
-  std::vector<int32_t> wanted;
-  for (size_t v = 0; v < off.size(); ++v)
-    if (off[v])
-      wanted.push_back(parts_.owner[v]);
-  if (wanted.empty())
+  if (points.empty())
     return {};
-  par::sort_unique(wanted, threads_);
+  set_parts_around(points, passes_++, pass.cell * cell_);
   const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
     const Element& e = m_.element[size_t(t)];
-    return e.alive() && std::binary_search(wanted.begin(), wanted.end(), part_of(e));
+    return e.alive() && part_of(e) >= 0;
   });
   return for_parts(
       items, parts_of(items), pass.guard,
@@ -227,7 +222,7 @@ Counts Schedule::recover(const Pass& pass) {
         slots.insert(slots.end(), editor.reserve().begin(), editor.reserve().end());
         Recovery(editor, m_, std::move(slots), pass, time).run();
       },
-      0.25);
+      0.25, room_for_shells);
 }
 
 } // namespace molmesh::improve

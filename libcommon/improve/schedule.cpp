@@ -59,7 +59,7 @@ int64_t Schedule::below(float goal) const {
       [](int64_t a, int64_t b) { return a + b; });
 }
 
-void Schedule::set_parts(int shift, double cell) {
+void Schedule::set_lattice(int shift, double cell) {
   struct Box {
     Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   };
@@ -84,12 +84,33 @@ void Schedule::set_parts(int shift, double cell) {
   while (cells(0) * cells(1) * cells(2) > most)
     cell *= 2;
   parts_.cell = cell;
+  parts_.box_of.clear();
+  parts_.boxes = 0;
   for (int a = 0; a < 3; ++a)
     parts_.n[size_t(a)] = static_cast<int64_t>(cells(a));
+}
+
+void Schedule::set_parts(int shift, double cell) {
+  set_lattice(shift, cell);
+  find_owners();
+}
+
+void Schedule::find_owners() {
   parts_.owner.resize(m_.point.size());
   par::for_n(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
     parts_.owner[size_t(v)] = m_.incident[size_t(v)] >= 0 ? parts_.at(m_.point[size_t(v)]) : -1;
   });
+}
+
+void Schedule::set_parts_around(const std::vector<int32_t>& points, int shift, double size) {
+  constexpr int32_t reach = 2; // cells: the point stays two fifths of the size from the cube's sides
+  set_lattice(shift, size / (2 * reach + 1));
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Vec3d p = m_.point[size_t(points[shift % 2 == 0 ? i : points.size() - 1 - i])];
+    if (parts_.boxes == 0 || parts_.at(p) < 0)
+      parts_.add_box(p, reach);
+  }
+  find_owners();
 }
 
 int32_t Schedule::part_of(const Element& e) const {
@@ -106,7 +127,7 @@ std::vector<int32_t> Schedule::parts_of(const std::vector<int32_t>& elements) co
 
 // Items of one part, in order, go to one editor with slots of its own.
 Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item,
-                           const Guard& guard, const Work& work, double slots_per_item) {
+                           const Guard& guard, const Work& work, double slots_per_item, size_t slots) {
   struct Job {
     PartRoom room;
     std::vector<int32_t> items;
@@ -127,7 +148,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     jobs[size_t(j)].items.push_back(items[i]);
   }
   for (Job& job : jobs) {
-    const auto elements = 64 + static_cast<size_t>(slots_per_item * double(job.items.size())),
+    const auto elements = slots + static_cast<size_t>(slots_per_item * double(job.items.size())),
                vertices = 16 + elements / 4;
     const auto reserve = [](std::vector<int32_t>& pool, std::vector<int32_t>& room, size_t count, size_t& size) {
       while (room.size() < count && !pool.empty())

@@ -42,10 +42,14 @@ public:
 
 private:
   using Work = std::function<void(Editor&, std::vector<int32_t>&)>;
-  /// slots_per_item: kept for new elements.
+  /// Each part keeps slots_per_item and `slots` more for new elements.
   Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
-                   const Work& work, double slots_per_item = 2);
-  void set_parts(int shift, double cell);
+                   const Work& work, double slots_per_item = 2, size_t slots = 64);
+  void set_lattice(int shift, double cell);
+  void set_parts(int shift, double cell); ///< its cells
+  /// A cube of about that size around each of the points, where there is room for it beside the others' cubes.
+  void set_parts_around(const std::vector<int32_t>& points, int shift, double size);
+  void find_owners();
   int32_t part_of(const Element& e) const; ///< -1: none
   std::vector<int32_t> parts_of(const std::vector<int32_t>& elements) const;
 

@@ -89,6 +89,25 @@ TEST_CASE("a hole much larger than what it stands for shrinks among good element
   CHECK_NOTHROW(improve::build(improve::extract(m), 180, 1));
 }
 
+TEST_CASE("a part has room for the shells of a hole that has grown to several spacings") {
+  const int keep = GENERATE(0, 1);
+  Case large(1.6 * h, keep), small(0.03 * h, keep);
+  improve::improve(large.mesh, &large.grid, {});
+  improve::DynamicMesh m = improve::build(large.mesh, 180, 1);
+  const int64_t off = improve::measure_fidelity(m, small.surface, 1).points_off;
+  CAPTURE(off);
+  REQUIRE(off > 3);
+  improve::Schedule schedule(m, &small.surface, 32 * h, 1);
+  improve::Pass pass;
+  pass.goal = static_cast<float>(improve::angle_quality(26));
+  pass.effort = 1;
+  pass.cell = 1;
+  pass.guard = {44, 0.24, 1, 0};
+  improve::Counts counts = schedule.recover(pass);
+  CHECK(counts.nestings > 0);
+  CHECK(improve::measure_fidelity(m, small.surface, 1).points_off == 0);
+}
+
 TEST_CASE("shells fill what they are put into, and the surface keeps its triangles") {
   const int keep = GENERATE(0, 1);
   Case c(0.05 * h, keep);

@@ -87,6 +87,51 @@ TEST_CASE("points pushed off the isosurface are recovered, no element is the wor
   CHECK_NOTHROW(improve::build(improve::extract(c.m), 180, 1));
 }
 
+TEST_CASE("one pass has room around every point, wherever the lattice of the parts lies") {
+  Case c;
+  improve::Schedule schedule(c.m, &c.surface, 32 * h, 1);
+  improve::Pass pass;
+  pass.goal = static_cast<float>(improve::angle_quality(26));
+  pass.effort = 1;
+  pass.cell = 0.3; // a fifth of the molecule's surface is near a side of a lattice of such cells
+  pass.guard = {44, 0.24, 1, 0};
+  int pushed = 0;
+  for (size_t v = 0; v < c.m.point.size() && pushed < 60; ++v) {
+    double distance;
+    Vec3d normal;
+    if (c.m.incident[v] < 0 || c.m.vertex[v].kind != improve::Kind::surface || v % 7 != 0 ||
+        !c.surface.probe(c.m.point[v], distance, normal))
+      continue;
+    c.m.point[v] += 0.05 * h * normal;
+    for (const int32_t e : c.star(static_cast<int32_t>(v)))
+      c.m.element[size_t(e)].q = c.m.quality(c.m.element[size_t(e)].v);
+    REQUIRE(improve::measure_fidelity(c.m, c.surface, 1).points_off == 1);
+    ++pushed;
+    schedule.recover(pass);
+    REQUIRE(improve::measure_fidelity(c.m, c.surface, 1).points_off == 0);
+  }
+  CHECK(pushed > 20);
+}
+
+TEST_CASE("boxes of cells are parts that do not overlap") {
+  improve::Parts parts;
+  parts.n = {10, 10, 10};
+  parts.low = {-1, -1, -1};
+  parts.cell = 0.5;
+  CHECK(parts.count() == 1000);
+  CHECK(parts.at({-0.9, -0.9, -0.4}) == 1);
+  REQUIRE(parts.add_box({0, 0, 0}, 1));           // cells 1 to 3
+  CHECK_FALSE(parts.add_box({1.3, 0.1, 0.1}, 1)); // 3 to 5
+  REQUIRE(parts.add_box({1.6, 0.1, 0.1}, 1));     // 4 to 6
+  REQUIRE(parts.add_box({9, 9, 9}, 2));           // 7 to 9, and all beyond
+  CHECK(parts.count() == 3);
+  CHECK(parts.at({0.9, -0.4, 0.9}) == 0);
+  CHECK(parts.at({1.1, 0.1, 0.1}) == 1);
+  CHECK(parts.at({2.6, 0.1, 0.1}) == -1);
+  CHECK(parts.at({-0.9, 0.1, 0.1}) == -1);
+  CHECK(parts.at({100, 100, 100}) == 2);
+}
+
 TEST_CASE("what is restored is as it was saved") {
   Case c(GENERATE(0, 1)); // in the inside alone, edges of the surface have no full ring
   const improve::DynamicMesh before = c.m;
