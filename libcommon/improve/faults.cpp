@@ -23,7 +23,7 @@ void FaultCount::count_bad(Faults& f) const {
   for (const int32_t t : slots_)
     if (const Element& e = m_.element[size_t(t)]; e.alive()) {
       f.worst = std::min(f.worst, e.q);
-      f.below += e.q < 0.94f * goal_;
+      f.below += e.q < share * goal_;
     }
 }
 
@@ -47,7 +47,7 @@ bool FaultCount::better_than(const Faults& before, int64_t bent_for_a_point) {
   if (now.below > before.below || (now.below > 0 && now.worst < before.worst))
     return false;
   count_misfits(now);
-  return now.off < before.off && now.bent <= before.bent + bent_for_a_point * (before.off - now.off);
+  return now.fewer_than(before, bent_for_a_point);
 }
 
 } // namespace molmesh::improve

@@ -10,16 +10,21 @@ namespace molmesh::improve {
 struct Faults {
   int64_t off = 0, bent = 0, below = 0;
   float worst = 2; ///< quality
+  /// Fewer points are off than before, and no more triangles bent, or so many at most for a point.
+  bool fewer_than(const Faults& before, int64_t bent_for_a_point) const {
+    return off < before.off && bent <= before.bent + bent_for_a_point * (before.off - off);
+  }
 };
 
 /// Counts them. slots: all that elements of the part may be in.
 class FaultCount {
 public:
+  static constexpr float share = 0.94f; ///< of the goal: elements under it are faults
+
   FaultCount(const Editor& editor, const DynamicMesh& m, const std::vector<int32_t>& slots, float goal)
       : editor_(editor), m_(m), slots_(slots), goal_(goal) {}
   Faults operator()();
-  /// Fewer points are off than before, no more elements are below the goal, and the worst of such is no worse; no
-  /// more triangles are bent, or two at most for a point.
+  /// Faults::fewer_than, no more elements are below the goal, and the worst of such is no worse.
   bool better_than(const Faults& before, int64_t bent_for_a_point);
   std::vector<int32_t> points_off(); ///< ascending
 

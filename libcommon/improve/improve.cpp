@@ -126,14 +126,16 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   }
   if (density && result.rounds == 0) // good enough as it came, and to stay so
     settle(std::min(goal, at_first));
-  for (int repeat = 0; density && repeat < recoveries; ++repeat) {
+  for (int repeat = 0, idle = 0; density && repeat < recoveries && idle < 3; ++repeat) {
     Pass pass;
     pass.goal = goal;
-    pass.effort = 1;
+    pass.effort = idle == 0 ? 1 : 2;
     pass.worst_first = repeat % 2 == 0;
     pass.cell = 0.5; // what goes wrong is taken back: parts are small
     pass.guard = released;
-    result.counts += schedule.recover(pass);
+    const Counts c = schedule.recover(pass);
+    idle = c.total() > 0 ? std::min(idle, 1) : idle + 1;
+    result.counts += c;
   }
   if (density)
     result.fidelity = measure_fidelity(m, *isosurface, options.threads);

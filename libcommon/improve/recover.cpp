@@ -1,17 +1,20 @@
 // recover.cpp — points off the target come back, or leave the surface, where the elements around can be mended
 // after.
 #include "improve/choose.hpp"
-#include "improve/element_pass.hpp"
 #include "improve/faults.hpp"
+#include "improve/mend.hpp"
 #include "improve/schedule.hpp"
 #include "par/par.hpp"
 #include <algorithm>
+#include <utility>
 
 namespace molmesh::improve {
 namespace {
 
 constexpr size_t most_points = 64;
 constexpr size_t room_for_shells = 3072; // elements, Editor::nest
+constexpr size_t most_states = 4;
+constexpr int most_trials = 300;
 
 // How far a trial goes. Bold ones come second, for the points that are left.
 struct Daring {
@@ -25,11 +28,13 @@ class Recovery {
 public:
   Recovery(Editor& editor, DynamicMesh& m, std::vector<int32_t> slots, const Pass& pass, int32_t time)
       : editor_(editor), m_(m), slots_(std::move(slots)), pass_(pass), time_(time),
-        faults_(editor, m_, slots_, pass.goal) {}
+        faults_(editor, m_, slots_, pass.goal), mending_(editor, m_, slots_, pass) {}
 
   void run() {
     for (const Daring& daring : {careful, bold}) {
       daring_ = daring;
+      mending_.floor = daring.floor;
+      mending_.loose = daring.loose;
       const std::vector<int32_t> points = faults_.points_off();
       if (points.empty() || points.size() > most_points)
         return; // more than was let go here and there: that is what the rounds are for
@@ -38,84 +43,71 @@ public:
       for (const int32_t v : faults_.points_off())
         if (is_off(v))
           bring_back(v);
+      if (pass_.effort > 1 && daring.loose)
+        try_harder();
     }
   }
 
 private:
-  std::vector<int32_t> inner() const {
-    std::vector<int32_t> all;
-    for (const int32_t t : slots_)
-      if (m_.element[size_t(t)].alive())
-        all.push_back(t);
-    return all;
-  }
   bool is_off(int32_t v) const { return m_.incident[size_t(v)] >= 0 && editor_.off(v) > 1; }
-
-  void flatten() {
-    for (int sweep = 0; sweep < 3 && !editor_.changed.empty(); ++sweep) {
-      std::vector<int32_t> list;
-      list.swap(editor_.changed);
-      par::sort_unique(list, 1);
-      for (const int32_t t : list)
-        if (m_.element[size_t(t)].alive())
-          straighten_element(editor_, m_, t);
-    }
-  }
-  void mend() {
-    editor_.straighten = editor_.bold = false;
-    editor_.loose = daring_.loose;
-    editor_.goal = pass_.goal;
-    for (int k = 0; k < 6; ++k) {
-      Pass pass = pass_;
-      pass.worst_first = (k % 2 == 0) == pass_.worst_first;
-      editor_.worst_first = pass.worst_first;
-      std::vector<int32_t> list;
-      for (const int32_t t : slots_)
-        if (m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < pass.goal)
-          list.push_back(t);
-      if (list.empty())
-        return;
-      for (int sweep = 0; sweep < 4 && !list.empty(); ++sweep) {
-        sort_worst_first(m_, list);
-        editor_.changed.clear();
-        for (const int32_t t : list)
-          if (m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < pass.goal)
-            improve_element(editor_, m_, t, pass);
-        list.clear();
-        for (const int32_t t : editor_.changed)
-          if (m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < pass.goal)
-            list.push_back(t);
-      }
-    }
-  }
-
-  void set_out() {
-    editor_.straighten = true;
-    editor_.bold = editor_.loose = false;
-    editor_.goal = daring_.floor * pass_.goal;
-  }
 
   // True when the operation leaves the part better, once it is mended; nothing has changed otherwise.
   template <class Operation>
   bool attempt(const Snapshot& snapshot, const Faults& before, Operation&& operation) {
     editor_.time = time_;
-    set_out();
+    mending_.set_out();
     editor_.bold = true;
     editor_.changed.clear();
     if (operation()) {
-      set_out();
-      flatten();
-      mend();
-      if (faults_.better_than(before, daring_.for_bent))
+      mending_.set_out();
+      mending_.flatten();
+      mending_.mend();
+      if (faults_.better_than(before, daring_.for_bent)) {
+        nearly_.clear();
         return true;
+      }
+      if (pass_.effort > 1 && daring_.loose)
+        remember(before);
     }
     editor_.restore(snapshot);
     return false;
   }
 
+  // Puts a state by that lacks some elements' quality alone.
+  void remember(const Faults& before) {
+    const Faults now = faults_();
+    if (!now.fewer_than(before, daring_.for_bent))
+      return;
+    const double lacks = mending_.deficit() + 0.3 * double(now.off);
+    const auto at = std::find_if(nearly_.begin(), nearly_.end(), [&](const auto& n) { return lacks <= n.first; });
+    if (at != nearly_.end() && at->first == lacks)
+      return; // the same, by another way
+    if (at == nearly_.end() && nearly_.size() >= most_states)
+      return;
+    nearly_.emplace(at, lacks, editor_.save(mending_.elements()));
+    if (nearly_.size() > most_states)
+      nearly_.pop_back();
+  }
+
+  // The states put by since the part last changed, best first.
+  void try_harder() {
+    if (nearly_.empty())
+      return;
+    const Snapshot snapshot = editor_.save(mending_.elements());
+    const Faults before = faults_();
+    int trials = most_trials;
+    for (const auto& [lacks, state] : std::exchange(nearly_, {})) {
+      editor_.restore(state);
+      mending_.shake(faults_, before, daring_.for_bent, trials);
+      if (faults_.better_than(before, daring_.for_bent))
+        return;
+    }
+    editor_.restore(snapshot);
+  }
+
   // A cavity smaller than the grid is off with all its points.
   void all_back(const std::vector<int32_t>& points) {
-    attempt(editor_.save(inner()), faults_(), [&] {
+    attempt(editor_.save(mending_.elements()), faults_(), [&] {
       if (daring_.loose)
         return step_by_step(points, 0.1f);
       bool done = false;
@@ -137,7 +129,7 @@ private:
       if (!moved)
         break;
       done = true;
-      mend();
+      mending_.mend();
     }
     return done;
   }
@@ -161,7 +153,7 @@ private:
     return false;
   }
   void bring_back(int32_t v) {
-    const Snapshot snapshot = editor_.save(inner());
+    const Snapshot snapshot = editor_.save(mending_.elements());
     const Faults before = faults_();
     if (attempt(snapshot, before, [&] { return editor_.smooth(v); }) ||
         attempt(snapshot, before, [&] { return editor_.hand_over(v); }) ||
@@ -196,7 +188,9 @@ private:
   const Pass& pass_;
   const int32_t time_;
   FaultCount faults_;
+  Mending mending_;
   Daring daring_ = careful;
+  std::vector<std::pair<double, Snapshot>> nearly_; ///< what it lacks, state; ascending
 };
 
 } // namespace

@@ -175,6 +175,25 @@ TEST_CASE("what is restored is as it was saved") {
           editor.smooth(c.m.element[size_t(e)].v[size_t(i)]);
   REQUIRE(editor.counts.moves > 10);
   REQUIRE(editor.counts.splits + editor.counts.contractions > 10);
+  const improve::Snapshot changed = editor.save([&] {
+    std::vector<int32_t> alive;
+    for (int32_t e = 0; e < size + 1000; ++e)
+      if (c.m.element[size_t(e)].alive() && editor.owned(e))
+        alive.push_back(e);
+    return alive;
+  }());
+  const improve::DynamicMesh then = c.m;
+  const int64_t operations = editor.counts.total();
+  const size_t free_then = room.element.size();
+  editor.restore(snapshot);
+  editor.restore(changed);
+  CHECK(editor.counts.total() == operations);
+  CHECK(room.element.size() == free_then);
+  for (size_t v = 0; v < then.point.size(); ++v)
+    REQUIRE((c.m.incident[v] == then.incident[v] && (then.incident[v] < 0 || c.m.point[v] == then.point[v])));
+  for (size_t e = 0; e < then.element.size(); ++e)
+    REQUIRE((c.m.element[e].v == then.element[e].v && c.m.element[e].n == then.element[e].n &&
+             c.m.element[e].label == then.element[e].label));
   editor.restore(snapshot);
   CHECK(editor.counts.total() == 0);
   CHECK(room.element.size() == 1000);

@@ -1,0 +1,134 @@
+// mend.cpp — sweeps over what is bent or bad in a part, and a search among operations that make it worse at first.
+#include "improve/mend.hpp"
+#include "improve/element_pass.hpp"
+#include "par/par.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace molmesh::improve {
+
+std::vector<int32_t> Mending::elements() const {
+  std::vector<int32_t> all;
+  for (const int32_t t : slots_)
+    if (m_.element[size_t(t)].alive())
+      all.push_back(t);
+  return all;
+}
+
+void Mending::set_out() {
+  editor_.straighten = true;
+  editor_.bold = editor_.loose = false;
+  editor_.goal = floor * pass_.goal;
+}
+
+void Mending::flatten() {
+  for (int sweep = 0; sweep < 3 && !editor_.changed.empty(); ++sweep) {
+    std::vector<int32_t> list;
+    list.swap(editor_.changed);
+    par::sort_unique(list, 1);
+    for (const int32_t t : list)
+      if (m_.element[size_t(t)].alive())
+        straighten_element(editor_, m_, t);
+  }
+}
+
+void Mending::mend(int rounds) {
+  editor_.straighten = editor_.bold = false;
+  editor_.loose = loose;
+  editor_.goal = pass_.goal;
+  for (int k = 0; k < rounds; ++k) {
+    Pass pass = pass_;
+    pass.worst_first = (k % 2 == 0) == pass_.worst_first;
+    editor_.worst_first = pass.worst_first;
+    std::vector<int32_t> list;
+    for (const int32_t t : slots_)
+      if (m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < pass.goal)
+        list.push_back(t);
+    if (list.empty())
+      return;
+    for (int sweep = 0; sweep < 4 && !list.empty(); ++sweep) {
+      sort_worst_first(m_, list);
+      editor_.changed.clear();
+      for (const int32_t t : list)
+        if (m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < pass.goal)
+          improve_element(editor_, m_, t, pass);
+      list.clear();
+      for (const int32_t t : editor_.changed)
+        if (m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < pass.goal)
+          list.push_back(t);
+    }
+  }
+}
+
+double Mending::deficit() const {
+  double sum = 0;
+  for (const int32_t t : slots_)
+    if (const Element& e = m_.element[size_t(t)]; e.alive() && e.q < FaultCount::share * pass_.goal)
+      sum += 1.2 - std::sqrt(e.q / pass_.goal);
+  return sum;
+}
+
+// The worst elements and those beside them.
+std::vector<int32_t> Mending::worst() const {
+  constexpr size_t most = 4;
+  std::vector<int32_t> list;
+  for (const int32_t t : slots_)
+    if (const Element& e = m_.element[size_t(t)]; e.alive() && e.q < FaultCount::share * pass_.goal)
+      list.push_back(t);
+  sort_worst_first(m_, list);
+  list.resize(std::min(list.size(), most));
+  for (size_t i = 0, n = list.size(); i < n; ++i)
+    for (const int32_t t : m_.element[size_t(list[i])].n)
+      if (t >= 0 && editor_.owned(t) && std::find(list.begin(), list.end(), t) == list.end())
+        list.push_back(t);
+  return list;
+}
+
+constexpr int operations = 34;
+
+bool Mending::operate(int32_t t, int k) {
+  constexpr int edge[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+  set_out();
+  editor_.bold = true;
+  editor_.changed.clear();
+  const auto [i, j] = edge[k % 6];
+  switch (k / 6) {
+  case 0:
+    return editor_.remove_edge(t, i, j);
+  case 1:
+    return editor_.split(t, i, j);
+  case 2:
+    return editor_.contract(t, i, j);
+  case 3:
+    return editor_.contract(t, j, i);
+  case 4:
+    return editor_.merge(t, i, j);
+  default:
+    return editor_.swap_face(t, k % 6);
+  }
+}
+
+void Mending::shake(FaultCount& faults, const Faults& before, int64_t bent_for_a_point, int& trials) {
+  const int64_t off = faults().off;
+  double least = deficit();
+  for (bool done = true; done && least > 0;) {
+    done = false;
+    const Snapshot here = editor_.save(elements());
+    for (const int32_t t : worst())
+      for (int k = 0; k < operations && !done && trials > 0; ++k) {
+        if (!operate(t, k))
+          continue;
+        --trials;
+        set_out();
+        flatten();
+        mend(2);
+        if (const double now = deficit(); now < 0.995 * least)
+          if (const Faults f = faults(); f.off <= off && f.fewer_than(before, bent_for_a_point))
+            done = true, least = now;
+        if (!done)
+          editor_.restore(here);
+      }
+  }
+}
+
+} // namespace molmesh::improve

@@ -1,0 +1,43 @@
+// mend.hpp — a part after a trial: its triangles made to fit, its elements brought over the goal.
+#pragma once
+#include "improve/faults.hpp"
+#include "improve/schedule.hpp"
+#include <cstdint>
+#include <vector>
+
+namespace molmesh::improve {
+
+/// Works on the elements in `slots`, all that elements of the part may be in.
+class Mending {
+public:
+  Mending(Editor& editor, DynamicMesh& m, const std::vector<int32_t>& slots, const Pass& pass)
+      : editor_(editor), m_(m), slots_(slots), pass_(pass) {}
+
+  float floor = 0.01f; ///< share of the goal: what an operation that sets out may leave for the mending
+  bool loose = false;  ///< Editor::loose, while mending
+
+  /// From now on operations may flatten elements down to the floor.
+  void set_out();
+  /// What has changed since is made to fit the target.
+  void flatten();
+  void mend(int rounds = 6);
+  /// Of what mending has left below the goal: operations that set out are tried on the worst elements and those
+  /// next to them, each with mending after. What lowers the deficit stays, where no more points are off and no
+  /// more triangles bent than `before` allows; all else is put back. trials: how many more, counted down.
+  void shake(FaultCount& faults, const Faults& before, int64_t bent_for_a_point, int& trials);
+
+  std::vector<int32_t> elements() const;
+  /// 0 where no element is far enough below the goal to count as a fault; more for every one, and for worse ones.
+  double deficit() const;
+
+private:
+  std::vector<int32_t> worst() const;
+  bool operate(int32_t t, int k);
+
+  Editor& editor_;
+  DynamicMesh& m_;
+  const std::vector<int32_t>& slots_;
+  const Pass& pass_;
+};
+
+} // namespace molmesh::improve
