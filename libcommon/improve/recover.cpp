@@ -32,6 +32,8 @@ public:
 
   void run() {
     for (const Daring& daring : {careful, bold}) {
+      if (pass_.effort > 1 && !daring.loose)
+        continue; // in vain the time before
       daring_ = daring;
       mending_.floor = daring.floor;
       mending_.loose = daring.loose;
