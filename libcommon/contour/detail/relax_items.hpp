@@ -67,17 +67,20 @@ struct RaiseBounds {
 struct RelaxView {
   ElementsView e;
   Bounds bound;
-  float* quality;                       ///< [tets]
-  float goal;                           ///< elements below it are bad
-  const int32_t* vertex;                ///< [candidates] ascending
-  const int64_t* first;                 ///< [candidates + 1] into element
-  const int32_t* element;               ///< ascending at each candidate
-  const std::array<int32_t, 4>* corner; ///< [entries of element] its corners' candidates, or -1
-  float* worst;                         ///< [candidates] worst element's quality as the round began
-  uint32_t* turn;                       ///< [candidates]
-  uint8_t* wakes;                       ///< [candidates] looks again in the next round
-  uint8_t* changed;                     ///< [candidates] since `worst` was found an element may have
-  int32_t* moves;                       ///< [candidates] how often it has moved
+  float* quality;           ///< [tets]
+  float goal;               ///< elements below it are bad
+  const int32_t* vertex;    ///< [candidates] ascending
+  const int64_t* first;     ///< [candidates + 1] into element
+  const int32_t* element;   ///< ascending at each candidate
+  const int32_t* neighbour; ///< [3 · entries of element + candidates]
+  float* worst;             ///< [candidates] worst element's quality as the round began
+  uint32_t* turn;           ///< [candidates]
+  uint8_t* wakes;           ///< [candidates] looks again in the next round
+  uint8_t* changed;         ///< [candidates] since `worst` was found an element may have
+  int32_t* moves;           ///< [candidates] how often it has moved
+
+  /// Candidates that share an element with candidate c, some more than once, up to the first -1.
+  HD const int32_t* neighbours(int64_t c) const { return neighbour + 3 * first[c] + c; }
 
   static constexpr uint32_t at_rest = ~uint32_t{0}; ///< of turn: does not want to move
 };
@@ -88,11 +91,18 @@ struct WantVertices {
   const float* quality;
   float goal;
   bool surface_moves;
-  uint8_t* wanted; ///< [vertices]
-  HD void operator()(int64_t t) const {
+  const int32_t* near;   ///< the elements that may be bad; null: all
+  const int32_t* number; ///< [vertices] of the pass before, where there was one
+  uint8_t* wanted;       ///< [vertices]
+  uint8_t* has_new;      ///< raised where one was no candidate before
+  HD void operator()(int64_t i) const {
+    const int64_t t = near ? near[i] : i;
     for (size_t c = 0; quality[t] < goal && c < 4; ++c)
-      if (const int32_t v = e.tet[t][c]; surface_moves || !bound.on_surface(v))
+      if (const int32_t v = e.tet[t][c]; surface_moves || !bound.on_surface(v)) {
         raise(wanted[v]);
+        if (number && number[v] < 0)
+          raise(*has_new);
+      }
   }
 };
 struct NumberCandidates {
@@ -105,7 +115,9 @@ struct NearTets {
   static constexpr int64_t most = 1;
   const Tet* tet;
   const uint8_t* wanted;
-  HD int64_t operator()(int64_t t, int32_t* out) const {
+  const int32_t* among; ///< null: all
+  HD int64_t operator()(int64_t i, int32_t* out) const {
+    const int64_t t = among ? among[i] : i;
     const Tet& v = tet[t];
     if (!(wanted[v[0]] | wanted[v[1]] | wanted[v[2]] | wanted[v[3]]))
       return 0;
@@ -132,13 +144,10 @@ struct CornerCandidate {
 /// In the order of the candidates, then of the elements.
 struct PlaceStars {
   CornerCandidate of;
-  const int32_t* near;
-  int32_t *element, *owner;
-  std::array<int32_t, 4>* corner;
+  int32_t *near_index, *owner;
   HD void operator()(int64_t slot, int64_t i) const {
-    element[slot] = near[i >> 2];
+    near_index[slot] = static_cast<int32_t>(i >> 2);
     owner[slot] = static_cast<int32_t>(of(i));
-    corner[slot] = of.corner[i >> 2];
   }
 };
 struct FirstOfStars {
@@ -147,6 +156,34 @@ struct FirstOfStars {
   HD void operator()(int64_t slot) const {
     if (slot == 0 || owner[slot - 1] != owner[slot])
       first[owner[slot]] = slot;
+  }
+};
+
+/// Of a candidate: its neighbours and its elements.
+struct NameStars {
+  const int64_t* first;
+  const int32_t* near;
+  const std::array<int32_t, 4>* corner; ///< [near elements]
+  int32_t* element;                     ///< places in `near` become elements
+  int32_t* neighbour;                   ///< as RelaxView has it
+  HD void operator()(int64_t c) const {
+    constexpr int32_t kept = 16; // of those named last, which need not be named again
+    int32_t last[kept];
+    for (int32_t& j : last)
+      j = -1;
+    int32_t* const list = neighbour + 3 * first[c] + c;
+    int64_t n = 0;
+    for (int64_t k = first[c]; k < first[c + 1]; ++k) {
+      for (size_t i = 0; i < 4; ++i) { // no branches: there is no telling
+        const int32_t j = corner[element[k]][i];
+        int32_t& known = last[j & (kept - 1)];
+        list[n] = j;
+        n += (j >= 0) & (j != c) & (j != known);
+        known = j >= 0 ? j : known;
+      }
+      element[k] = near[element[k]];
+    }
+    list[n] = -1;
   }
 };
 
@@ -195,12 +232,9 @@ private:
     const uint32_t mine = r.turn[c];
     if (mine == RelaxView::at_rest)
       return false;
-    for (int64_t k = r.first[c]; k < r.first[c + 1]; ++k)
-      for (size_t i = 0; i < 4; ++i) {
-        const int32_t j = r.corner[k][i];
-        if (j >= 0 && (r.turn[j] < mine || (r.turn[j] == mine && j < c)))
-          return false;
-      }
+    for (const int32_t* j = r.neighbours(c); *j >= 0; ++j)
+      if (r.turn[*j] < mine || (r.turn[*j] == mine && *j < c))
+        return false;
     return true;
   }
 };
@@ -218,12 +252,12 @@ struct WakeNeighbours {
     if (fate[i] != Fate::moves)
       return;
     ++r.moves[c];
-    for (int64_t k = r.first[c]; k < r.first[c + 1]; ++k)
-      for (size_t m = 0; m < 4; ++m)
-        if (const int32_t j = r.corner[k][m]; j >= 0) {
-          raise(r.wakes[j]);
-          raise(r.changed[j]);
-        }
+    raise(r.wakes[c]);
+    raise(r.changed[c]);
+    for (const int32_t* j = r.neighbours(c); *j >= 0; ++j) {
+      raise(r.wakes[*j]);
+      raise(r.changed[*j]);
+    }
   }
 };
 

@@ -55,33 +55,44 @@ private:
   /// All vertices of bad elements that may move, and their stars.
   int64_t find_candidates() {
     const ElementsView& e = r_.e;
-    const auto wanted = m_.filled(e.positions, uint8_t{0});
-    m_.for_n("want vertices", e.tets,
-             WantVertices{e, r_.bound, r_.quality, r_.goal, surface_moves_, const_cast<uint8_t*>(wanted.data())},
-             {double(e.tets) * 4});
+    auto wanted = m_.filled(e.positions, uint8_t{0}), has_new = m_.filled(1, uint8_t{1});
+    // What has changed or is bad is at a candidate of the pass before.
+    const bool again = vertex_.n > 0;
+    if (again)
+      has_new = m_.filled(1, uint8_t{0});
+    const int64_t may_be_bad = again ? near_.n : e.tets;
+    m_.for_n("want vertices", may_be_bad,
+             WantVertices{e, r_.bound, r_.quality, r_.goal, surface_moves_, again ? near_.data() : nullptr,
+                          again ? number_.data() : nullptr, wanted.data(), has_new.data()},
+             {double(may_be_bad) * 4});
     vertex_ = flagged(m_, "candidates", e.positions, wanted.data());
     const int64_t n = vertex_.n;
     if (n == 0)
       return 0;
-    auto number = m_.filled(e.positions, int32_t{-1});
-    m_.for_n("number candidates", n, NumberCandidates{vertex_.data(), number.data()}, {double(n) * 8});
-    const Ids near = gather<int32_t>(m_, "near elements", e.tets, NearTets{e.tet, wanted.data()});
-    auto near_corner = m_.template array<std::array<int32_t, 4>>(near.n);
-    m_.for_n("corner candidates", near.n, CornerCandidates{e.tet, near.data(), number.data(), near_corner.data()},
-             {double(near.n) * 52});
-    number = {};
-    const CornerCandidate of{near_corner.data()};
+    number_ = m_.filled(e.positions, int32_t{-1});
+    m_.for_n("number candidates", n, NumberCandidates{vertex_.data(), number_.data()}, {double(n) * 8});
+    uint8_t all;
+    m_.download(has_new, 1, &all);
+    near_ = all ? gather<int32_t>(m_, "near elements", e.tets, NearTets{e.tet, wanted.data(), nullptr})
+                : gather<int32_t>(m_, "near elements", near_.n, NearTets{e.tet, wanted.data(), near_.data()});
+    auto corner = m_.template array<std::array<int32_t, 4>>(near_.n);
+    m_.for_n("corner candidates", near_.n, CornerCandidates{e.tet, near_.data(), number_.data(), corner.data()},
+             {double(near_.n) * 52});
+    const CornerCandidate of{corner.data()};
     Array<int32_t> owner;
     int64_t entries = 0;
-    place_by(m_, "stars", 4 * near.n, n, of, [&](int64_t slots) {
+    place_by(m_, "stars", 4 * near_.n, n, of, [&](int64_t slots) {
       entries = slots;
       element_ = m_.template array<int32_t>(slots);
       owner = m_.template array<int32_t>(slots);
-      corner_ = m_.template array<std::array<int32_t, 4>>(slots);
-      return PlaceStars{of, near.data(), element_.data(), owner.data(), corner_.data()};
+      return PlaceStars{of, element_.data(), owner.data()};
     });
     first_ = m_.filled(n + 1, entries);
     m_.for_n("first of stars", entries, FirstOfStars{owner.data(), first_.data()}, {double(entries) * 4});
+    neighbour_ = m_.template array<int32_t>(3 * entries + n);
+    m_.for_n("name stars", n,
+             NameStars{first_.data(), near_.data(), corner.data(), element_.data(), neighbour_.data()},
+             {double(entries) * 24});
     worst_ = m_.template array<float>(n);
     turn_ = m_.filled(n, RelaxView::at_rest);
     wakes_ = m_.filled(n, uint8_t{1});
@@ -90,7 +101,7 @@ private:
     r_.vertex = vertex_.data();
     r_.first = first_.data();
     r_.element = element_.data();
-    r_.corner = corner_.data();
+    r_.neighbour = neighbour_.data();
     r_.worst = worst_.data();
     r_.turn = turn_.data();
     r_.wakes = wakes_.data();
@@ -115,9 +126,8 @@ private:
   RelaxView r_{};
   Array<float> quality_;
   Array<uint8_t> bound_;
-  Ids vertex_;
-  Array<int32_t> element_, moves_;
-  Array<std::array<int32_t, 4>> corner_;
+  Ids vertex_, near_;
+  Array<int32_t> number_, element_, neighbour_, moves_;
   Array<int64_t> first_;
   Array<float> worst_;
   Array<uint32_t> turn_;
