@@ -2,6 +2,7 @@
 #pragma once
 #include "contour/detail/passes.hpp"
 #include "contour/detail/relax_items.hpp"
+#include "contour/detail/star_items.hpp"
 
 namespace molmesh::contour::detail {
 
