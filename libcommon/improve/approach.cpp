@@ -22,12 +22,7 @@ bool Editor::approach(int32_t v, float floor) {
   if (!(nearest < furthest))
     return false;
   const float above = std::min(floor, worst(star_)) * 0.999999f;
-  for (double step = 1; step > 0.05; step *= 0.7) {
-    m_.point[size_t(v)] = step == 1 ? to : from + step * (to - from);
-    if (take(star_, v, from, above, 1e30f))
-      return true;
-  }
-  return false;
+  return step_to(v, to, 0.7, 0.05, above);
 }
 
 } // namespace molmesh::improve

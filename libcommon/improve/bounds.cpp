@@ -38,12 +38,8 @@ bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) cons
     // The distance to first order means nothing where the gradient vanishes, and that is where points must leave.
     if (target_ && guard_.lift > 0)
       return norm(x - from) <= guard_.lift * target_->spacing();
-    if (target_ && loose) {
-      double distance;
-      Vec3d normal;
-      return norm(x - from) <= reach && target_->probe(x, distance, normal) &&
-             std::abs(distance + target_->offset()) <= 0.018 * target_->spacing();
-    }
+    if (target_ && loose)
+      return norm(x - from) <= reach && off_at(x).value_or(1) <= 0.9;
     return target_ && target_->project(x, reach);
   case Kind::sliding:
     for (int a = 0; a < 3; ++a)
@@ -108,13 +104,16 @@ bool Editor::bent(int32_t t, size_t face) const {
   return m_.counts_here(e, face) && misfit_face(e, face, -1, {}) > 1;
 }
 
-double Editor::off(int32_t v) const {
+std::optional<double> Editor::off_at(Vec3d x) const {
   double distance;
   Vec3d normal;
-  if (m_.vertex[size_t(v)].kind != Kind::surface || !target_ ||
-      !target_->probe(m_.point[size_t(v)], distance, normal))
-    return 0;
+  if (!target_ || !target_->probe(x, distance, normal))
+    return std::nullopt;
   return std::abs(distance + target_->offset()) / (0.02 * target_->spacing());
+}
+
+double Editor::off(int32_t v) const {
+  return m_.vertex[size_t(v)].kind == Kind::surface ? off_at(m_.point[size_t(v)]).value_or(0) : 0;
 }
 
 bool Editor::crowded(const std::array<int32_t, 3>& t) const {

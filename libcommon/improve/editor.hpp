@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -166,6 +167,7 @@ private:
   float lack(const std::vector<int32_t>& elements) const;
   float lack(const std::vector<Candidate>& elements) const;
   bool outward(const Element& e, size_t face) const;
+  std::optional<double> off_at(Vec3d x) const; ///< off() of a place; none where the target is not known
   bool constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const;
   /// A triangle on the target with one vertex that moves, running as the target's normal.
   struct Sail {
@@ -211,6 +213,8 @@ private:
   bool find_shell(Piece& piece, Vec3d c);
   bool place_on_target(Vec3d& x, double length, const Fit& before, float above);
   bool search(const Vertex& k, Vec3d& x, float& best, float aim, double length, const Fit& before, float above);
+  /// Moves v, star_ being its elements, as far as they stay above: all the way, or steps shorter each time.
+  bool step_to(int32_t v, Vec3d to, double shorter, double least, float above);
   bool take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above, float allowed);
   bool may_contract(const Vertex& a, const Vertex& b) const;
   bool finish_contraction(int32_t a, int32_t b, bool moved);

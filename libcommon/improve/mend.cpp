@@ -7,6 +7,14 @@
 
 namespace molmesh::improve {
 
+std::vector<int32_t> Mending::below(float goal, const std::vector<int32_t>& of) const {
+  std::vector<int32_t> list;
+  for (const int32_t t : of)
+    if (m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < goal)
+      list.push_back(t);
+  return list;
+}
+
 std::vector<int32_t> Mending::elements() const {
   std::vector<int32_t> all;
   for (const int32_t t : slots_)
@@ -37,44 +45,32 @@ void Mending::mend(int rounds) {
   editor_.loose = loose;
   editor_.goal = pass_.goal;
   for (int k = 0; k < rounds; ++k) {
-    Pass pass = pass_;
-    pass.worst_first = (k % 2 == 0) == pass_.worst_first;
-    editor_.worst_first = pass.worst_first;
-    std::vector<int32_t> list;
-    for (const int32_t t : slots_)
-      if (m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < pass.goal)
-        list.push_back(t);
+    editor_.worst_first = (k % 2 == 0) == pass_.worst_first;
+    std::vector<int32_t> list = below(pass_.goal, slots_);
     if (list.empty())
       return;
     for (int sweep = 0; sweep < 4 && !list.empty(); ++sweep) {
       sort_worst_first(m_, list);
       editor_.changed.clear();
       for (const int32_t t : list)
-        if (m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < pass.goal)
-          improve_element(editor_, m_, t, pass);
-      list.clear();
-      for (const int32_t t : editor_.changed)
-        if (m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < pass.goal)
-          list.push_back(t);
+        if (m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < pass_.goal)
+          improve_element(editor_, m_, t, pass_);
+      list = below(pass_.goal, editor_.changed);
     }
   }
 }
 
 double Mending::deficit() const {
   double sum = 0;
-  for (const int32_t t : slots_)
-    if (const Element& e = m_.element[size_t(t)]; e.alive() && e.q < FaultCount::share * pass_.goal)
-      sum += 1.2 - std::sqrt(e.q / pass_.goal);
+  for (const int32_t t : below(FaultCount::share * pass_.goal, slots_))
+    sum += 1.2 - std::sqrt(m_.element[size_t(t)].q / pass_.goal);
   return sum;
 }
 
 // The worst elements and those beside them.
 std::vector<int32_t> Mending::worst() const {
   constexpr size_t most = 4;
-  std::vector<int32_t> list;
-  for (const int32_t t : slots_)
-    if (const Element& e = m_.element[size_t(t)]; e.alive() && e.q < FaultCount::share * pass_.goal)
-      list.push_back(t);
+  std::vector<int32_t> list = below(FaultCount::share * pass_.goal, slots_);
   sort_worst_first(m_, list);
   list.resize(std::min(list.size(), most));
   for (size_t i = 0, n = list.size(); i < n; ++i)
@@ -87,11 +83,10 @@ std::vector<int32_t> Mending::worst() const {
 constexpr int operations = 34;
 
 bool Mending::operate(int32_t t, int k) {
-  constexpr int edge[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
   set_out();
   editor_.bold = true;
   editor_.changed.clear();
-  const auto [i, j] = edge[k % 6];
+  const auto [i, j] = edges[size_t(k % 6)];
   switch (k / 6) {
   case 0:
     return editor_.remove_edge(t, i, j);

@@ -31,6 +31,7 @@ public:
   double deficit() const;
 
 private:
+  std::vector<int32_t> below(float goal, const std::vector<int32_t>& of) const; ///< of elements, in their order
   std::vector<int32_t> worst() const;
   bool operate(int32_t t, int k);
 

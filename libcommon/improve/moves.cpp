@@ -194,7 +194,12 @@ bool Editor::settle(int32_t v, float floor) {
   if (!target_->project(to, guard_.reach * mean_edge(star_, v)))
     return false;
   const float now = worst(star_), above = floor >= 1 ? 0.5f * now : std::min(floor, now) * 0.999999f;
-  for (double step = 1; step > 0.1; step *= 0.5) {
+  return step_to(v, to, 0.5, 0.1, above);
+}
+
+bool Editor::step_to(int32_t v, Vec3d to, double shorter, double least, float above) {
+  const Vec3d from = m_.point[size_t(v)];
+  for (double step = 1; step > least; step *= shorter) {
     m_.point[size_t(v)] = step == 1 ? to : from + step * (to - from);
     if (take(star_, v, from, above, 1e30f))
       return true;

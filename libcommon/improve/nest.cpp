@@ -76,27 +76,24 @@ bool Editor::find_piece(int32_t v, Piece& piece) {
 // How small the piece has to be, and where, to lie on the target around `to`: as large as it may.
 bool Editor::fit_piece(const Piece& piece, Vec3d& to, double& scale) const {
   const double h = target_->spacing();
-  const auto off_at = [&](Vec3d at, double s) {
-    double most = 0, distance;
-    Vec3d normal;
+  const auto most_off = [&](Vec3d at, double s) {
+    double most = 0;
     for (const int32_t w : piece.vertex)
-      most = target_->probe(at + s * (m_.point[size_t(w)] - piece.centre), distance, normal)
-                 ? std::max(most, std::abs(distance + target_->offset()) / (0.02 * h))
-                 : 1e30;
+      most = std::max(most, off_at(at + s * (m_.point[size_t(w)] - piece.centre)).value_or(1e30));
     return most;
   };
   double best = 1e30;
   const Vec3d from = to;
   for (double s = 1; s > 0.005 && best > 0.8; s *= 0.9) {
     Vec3d x = from;
-    double now = off_at(x, s);
+    double now = most_off(x, s);
     for (double step = 0.2 * h; step > 1e-3 * h; step *= 0.5)
       for (bool again = true; again;) {
         again = false;
         for (int d = 0; d < 6; ++d) {
           Vec3d y = x;
           y[d / 2] += d % 2 ? step : -step;
-          if (const double off = off_at(y, s); off < 0.99 * now)
+          if (const double off = most_off(y, s); off < 0.99 * now)
             now = off, x = y, again = true;
         }
       }

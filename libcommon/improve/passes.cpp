@@ -5,12 +5,6 @@
 #include <algorithm>
 
 namespace molmesh::improve {
-namespace {
-
-constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-
-} // namespace
-
 bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass& pass) {
   const auto element = [&]() -> const Element& { return m.element[size_t(t)]; };
   if (pass.yield < 1)

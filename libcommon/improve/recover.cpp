@@ -45,7 +45,7 @@ public:
       for (const int32_t v : faults_.points_off())
         if (is_off(v))
           bring_back(v);
-      if (pass_.effort > 1 && daring.loose)
+      if (pass_.effort > 1)
         try_harder();
     }
   }
@@ -68,7 +68,7 @@ private:
         nearly_.clear();
         return true;
       }
-      if (pass_.effort > 1 && daring_.loose)
+      if (pass_.effort > 1)
         remember(before);
     }
     editor_.restore(snapshot);

@@ -105,11 +105,8 @@ void Schedule::find_owners() {
 void Schedule::set_parts_around(const std::vector<int32_t>& points, int shift, double size) {
   constexpr int32_t reach = 2; // cells: the point stays two fifths of the size from the cube's sides
   set_lattice(shift, size / (2 * reach + 1));
-  for (size_t i = 0; i < points.size(); ++i) {
-    const Vec3d p = m_.point[size_t(points[shift % 2 == 0 ? i : points.size() - 1 - i])];
-    if (parts_.boxes == 0 || parts_.at(p) < 0)
-      parts_.add_box(p, reach);
-  }
+  for (size_t i = 0; i < points.size(); ++i)
+    parts_.add_box(m_.point[size_t(points[shift % 2 == 0 ? i : points.size() - 1 - i])], reach);
   find_owners();
 }
 

@@ -56,11 +56,9 @@ private:
   /// All vertices of bad elements that may move, and their stars.
   int64_t find_candidates() {
     const ElementsView& e = r_.e;
-    auto wanted = m_.filled(e.positions, uint8_t{0}), has_new = m_.filled(1, uint8_t{1});
     // What has changed or is bad is at a candidate of the pass before.
     const bool again = vertex_.n > 0;
-    if (again)
-      has_new = m_.filled(1, uint8_t{0});
+    auto wanted = m_.filled(e.positions, uint8_t{0}), has_new = m_.filled(1, uint8_t{!again});
     const int64_t may_be_bad = again ? near_.n : e.tets;
     m_.for_n("want vertices", may_be_bad,
              WantVertices{e, r_.bound, r_.quality, r_.goal, surface_moves_, again ? near_.data() : nullptr,
