@@ -1,10 +1,10 @@
 // octree_test.cpp — leaves beside each other, and dual vertices off the faces of smaller ones.
 #include "contour/dual.hpp"
 #include "unit/contour/checked.hpp"
+#include "unit/contour/level_steps.hpp"
 #include "unit/contour/sample_grid.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdlib>
 
 using namespace molmesh;
 using namespace molmesh::test;
@@ -25,23 +25,6 @@ struct Leaves {
       : lattice(grid, {}, true, 1), surface(find_surface(lattice, 1)),
         tree(lattice.cells, select_leaves(lattice, surface, {adapt, true, true}, 1)) {}
 };
-
-/// The largest difference of level of a leaf and one that touches it in `axes` axes' direction, both ways on each.
-int most_steps(const Octree& tree, int axes) {
-  int most = 0;
-  for (int32_t leaf = 0; leaf < tree.size(); ++leaf)
-    for (int n = 0; n < 27; ++n) {
-      const Vec3i step{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
-      if (std::abs(step.x) + std::abs(step.y) + std::abs(step.z) != axes)
-        continue;
-      Vec3i p = tree.corner(leaf);
-      for (int a = 0; a < 3; ++a)
-        p[a] += step[a] > 0 ? tree.extent(leaf) : step[a];
-      if (const int32_t other = tree.find(p); other >= 0) // no smaller than the leaf, or it finds the leaf itself
-        most = std::max(most, tree.level[static_cast<size_t>(other)] - tree.level[static_cast<size_t>(leaf)]);
-    }
-  return most;
-}
 
 } // namespace
 

@@ -3,6 +3,7 @@
 #include "contour/leaves.hpp"
 #include "cuda/contour/selection.hpp"
 #include "cuda/par/host.hpp"
+#include "unit/contour/level_steps.hpp"
 #include "unit/contour/sample_grid.hpp"
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -67,19 +68,10 @@ bool is_balanced_octree(const contour::Octree& tree, Vec3i cells) {
     for (const Vec3i p : {corner, corner + (e - 1) * Vec3i{1, 1, 1}, corner + Vec3i{e / 2, 0, e - 1}})
       if (tree.find(p) != i)
         return false;
-    for (int n = 0; n < 27; ++n) {
-      const Vec3i step{n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1};
-      const int shared =
-          std::abs(step.x) + std::abs(step.y) + std::abs(step.z); // 1: a face, 2: an edge, 3: a corner
-      Vec3i p = corner;
-      for (int a = 0; a < 3; ++a)
-        p[a] += step[a] < 0 ? -1 : step[a] * e;
-      const int32_t other = tree.find(p);
-      if (other >= 0 &&
-          std::abs(int(tree.level[static_cast<size_t>(other)]) - tree.level[static_cast<size_t>(i)]) > shared)
-        return false;
-    }
   }
+  for (int axes = 1; axes <= 3; ++axes) // a face, an edge, a corner
+    if (test::most_steps(tree, axes) > axes)
+      return false;
   return volume == int64_t{cells.x} * cells.y * cells.z;
 }
 

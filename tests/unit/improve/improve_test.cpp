@@ -3,6 +3,7 @@
 #include "improve/improve.hpp"
 #include "improve/isosurface.hpp"
 #include "lattice_mesh.hpp"
+#include "surface_shape.hpp"
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -41,24 +42,16 @@ Measure measure(const TetMesh& mesh, const BlockGrid* grid) {
         m.max = std::max(m.max, angle);
       }
   }
-  std::set<int32_t> vertices;
-  std::set<std::pair<int32_t, int32_t>> edges;
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
     const Tri& f = mesh.tri[t];
     const Vec3d a = mesh.point[size_t(f[0])];
     m.area[mesh.boundary[t]] += norm(cross(mesh.point[size_t(f[1])] - a, mesh.point[size_t(f[2])] - a)) / 2;
-    if (mesh.boundary[t] != surface)
-      continue;
-    ++m.euler;
-    for (size_t i = 0; i < 3; ++i) {
-      vertices.insert(f[i]);
-      edges.insert({std::min(f[i], f[(i + 1) % 3]), std::max(f[i], f[(i + 1) % 3])});
-    }
   }
-  m.euler += int64_t(vertices.size()) - int64_t(edges.size());
+  const SurfaceShape shape = surface_shape(mesh);
+  m.euler = shape.euler();
   if (grid) {
     const improve::Isosurface iso(*grid, 1);
-    for (const int32_t v : vertices) {
+    for (const int32_t v : shape.points) {
       double distance = 1e30;
       Vec3d normal;
       REQUIRE(iso.probe(mesh.point[size_t(v)], distance, normal));

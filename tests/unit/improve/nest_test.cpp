@@ -2,6 +2,8 @@
 #include "improve/improve.hpp"
 #include "improve/schedule.hpp"
 #include "lattice_mesh.hpp"
+#include "recovery_pass.hpp"
+#include "surface_shape.hpp"
 #include <catch2/catch.hpp>
 #include <numeric>
 
@@ -30,27 +32,13 @@ struct Case {
         mesh(lattice_mesh(ball_with_hole(radius), {0, 0, 0}, h, n, keep)) {}
 };
 
-struct Shape {
-  double volume = 0;
-  int64_t triangles = 0, euler = 0; ///< of the surface
-};
-Shape shape(const TetMesh& mesh) {
-  Shape s;
+double volume(const TetMesh& mesh) {
+  double sum = 0;
   for (const Tet& t : mesh.tet)
-    s.volume += volume6(mesh.point[size_t(t[0])], mesh.point[size_t(t[1])], mesh.point[size_t(t[2])],
-                        mesh.point[size_t(t[3])]) /
-                6;
-  std::set<int32_t> points;
-  std::set<std::pair<int32_t, int32_t>> edges;
-  for (size_t t = 0; t < mesh.tri.size(); ++t)
-    for (size_t i = 0; i < 3 && mesh.boundary[t] == Boundary::surface; ++i) {
-      const int32_t a = mesh.tri[t][i], b = mesh.tri[t][(i + 1) % 3];
-      points.insert(a);
-      edges.insert({std::min(a, b), std::max(a, b)});
-      s.triangles += i == 0;
-    }
-  s.euler = int64_t(points.size()) - int64_t(edges.size()) + s.triangles;
-  return s;
+    sum += volume6(mesh.point[size_t(t[0])], mesh.point[size_t(t[1])], mesh.point[size_t(t[2])],
+                   mesh.point[size_t(t[3])]) /
+           6;
+  return sum;
 }
 
 } // namespace
@@ -63,7 +51,7 @@ TEST_CASE("all points of a hole smaller than the grid come to lie on it") {
   CHECK(result.fidelity.points_off == 0);
   CHECK(result.after.min >= 25);
   CHECK(result.after.max <= 140);
-  CHECK(shape(c.mesh).euler == 4);
+  CHECK(surface_shape(c.mesh).euler() == 4);
   CHECK_NOTHROW(improve::build(c.mesh, 180, 1));
 }
 
@@ -74,18 +62,14 @@ TEST_CASE("a hole much larger than what it stands for shrinks among good element
   improve::DynamicMesh m = improve::build(large.mesh, 180, 1);
   REQUIRE(improve::measure_fidelity(m, small.surface, 1).points_off > 3);
   improve::Schedule schedule(m, &small.surface, 32 * h, 1);
-  improve::Pass pass;
-  pass.goal = static_cast<float>(improve::angle_quality(26));
-  pass.effort = 1;
-  pass.cell = GENERATE(0.6, 1.);
-  pass.guard = {44, 0.24, 1, 0};
+  const improve::Pass pass = recovery_pass(GENERATE(0.6, 1.));
   improve::Counts counts;
   for (int k = 0; k < 4; ++k)
     counts += schedule.recover(pass);
   CHECK(improve::measure_fidelity(m, small.surface, 1).points_off == 0);
   CHECK(counts.nestings > 0);
   CHECK(schedule.below(static_cast<float>(improve::angle_quality(25))) == 0);
-  CHECK(shape(improve::extract(m)).euler == 4);
+  CHECK(surface_shape(improve::extract(m)).euler() == 4);
   CHECK_NOTHROW(improve::build(improve::extract(m), 180, 1));
 }
 
@@ -98,11 +82,7 @@ TEST_CASE("a part has room for the shells of a hole that has grown to several sp
   CAPTURE(off);
   REQUIRE(off > 3);
   improve::Schedule schedule(m, &small.surface, 32 * h, 1);
-  improve::Pass pass;
-  pass.goal = static_cast<float>(improve::angle_quality(26));
-  pass.effort = 1;
-  pass.cell = 1;
-  pass.guard = {44, 0.24, 1, 0};
+  const improve::Pass pass = recovery_pass(1);
   improve::Counts counts = schedule.recover(pass);
   CHECK(counts.nestings > 0);
   CHECK(improve::measure_fidelity(m, small.surface, 1).points_off == 0);
@@ -125,7 +105,7 @@ TEST_CASE("shells fill what they are put into, and the surface keeps its triangl
   improve::Parts parts;
   parts.owner.resize(m.point.size());
   std::vector<uint32_t> stamp(m.element.size());
-  improve::Editor editor(m, &c.surface, nullptr, parts, stamp, room, {44, 0.24, 1, 0});
+  improve::Editor editor(m, &c.surface, nullptr, parts, stamp, room, recovery_guard);
   int32_t in_hole = -1;
   for (size_t v = 0; v < points; ++v)
     if (m.vertex[v].kind == improve::Kind::surface && norm(m.point[v] - middle) < 2 * h)
@@ -134,22 +114,23 @@ TEST_CASE("shells fill what they are put into, and the surface keeps its triangl
   for (size_t v = 0; v < points; ++v)
     if (m.vertex[v].kind == improve::Kind::surface && norm(m.point[v] - middle) < 2 * h)
       m.point[v] = middle + 4. * (m.point[v] - middle);
-  const Shape before = shape(improve::extract(m));
+  const TetMesh then = improve::extract(m);
+  const SurfaceShape before = surface_shape(then);
   const double hole_before = improve::measure_fidelity(m, c.surface, 1).volume;
   REQUIRE(editor.off(in_hole) > 1);
   REQUIRE(editor.nest(in_hole, 0.5));
   CHECK(editor.counts.nestings == 1);
   CHECK(editor.off(in_hole) <= 1);
   const TetMesh now = improve::extract(m);
-  const Shape after = shape(now);
+  const SurfaceShape after = surface_shape(now);
   CHECK(after.triangles == before.triangles);
-  CHECK(after.euler == before.euler);
+  CHECK(after.euler() == before.euler());
   CHECK(now.tet.size() > elements);
   CHECK_NOTHROW(improve::build(now, 180, 1)); // no element overlaps its neighbour, all are positive
   // Of both regions together the volume stays; the molecule gains what the hole loses.
   const double gained = improve::measure_fidelity(m, c.surface, 1).volume - hole_before;
   CHECK(gained > 0);
-  CHECK(after.volume - before.volume == Approx(keep == 0 ? 0 : gained).margin(1e-9));
+  CHECK(volume(now) - volume(then) == Approx(keep == 0 ? 0 : gained).margin(1e-9));
   for (const int32_t v : room.vertex)
     REQUIRE(m.incident[size_t(v)] < 0);
 }

@@ -2,8 +2,9 @@
 #include "improve/improve.hpp"
 #include "improve/schedule.hpp"
 #include "lattice_mesh.hpp"
+#include "recovery_pass.hpp"
+#include "surface_shape.hpp"
 #include <catch2/catch.hpp>
-#include <set>
 
 using namespace molmesh;
 using namespace molmesh::test;
@@ -46,21 +47,6 @@ struct Case {
   }
 };
 
-/// Of the molecular surface.
-int64_t euler(const TetMesh& mesh) {
-  std::set<int32_t> points;
-  std::set<std::pair<int32_t, int32_t>> edges;
-  int64_t triangles = 0;
-  for (size_t t = 0; t < mesh.tri.size(); ++t)
-    for (size_t i = 0; i < 3 && mesh.boundary[t] == Boundary::surface; ++i) {
-      const int32_t a = mesh.tri[t][i], b = mesh.tri[t][(i + 1) % 3];
-      points.insert(a);
-      edges.insert({std::min(a, b), std::max(a, b)});
-      triangles += i == 0;
-    }
-  return int64_t(points.size()) - int64_t(edges.size()) + triangles;
-}
-
 } // namespace
 
 TEST_CASE("points pushed off the isosurface are recovered, no element is the worse for it") {
@@ -69,11 +55,7 @@ TEST_CASE("points pushed off the isosurface are recovered, no element is the wor
   const improve::Fidelity before = improve::measure_fidelity(c.m, c.surface, 1);
   REQUIRE(before.points_off > 10);
   improve::Schedule schedule(c.m, &c.surface, 32 * h, 1);
-  improve::Pass pass;
-  pass.goal = static_cast<float>(improve::angle_quality(26));
-  pass.effort = 1;
-  pass.cell = 0.5;
-  pass.guard = {44, 0.24, 1, 0};
+  const improve::Pass pass = recovery_pass(0.5);
   const float worst = schedule.worst();
   const int64_t below = schedule.below(0.94f * pass.goal);
   for (int k = 0; k < 4; ++k)
@@ -83,18 +65,15 @@ TEST_CASE("points pushed off the isosurface are recovered, no element is the wor
   CHECK(after.turned <= before.turned);
   CHECK(schedule.worst() >= worst);
   CHECK(schedule.below(0.94f * pass.goal) <= below);
-  CHECK(euler(improve::extract(c.m)) == 2);
+  CHECK(surface_shape(improve::extract(c.m)).euler() == 2);
   CHECK_NOTHROW(improve::build(improve::extract(c.m), 180, 1));
 }
 
 TEST_CASE("one pass has room around every point, wherever the lattice of the parts lies") {
   Case c;
   improve::Schedule schedule(c.m, &c.surface, 32 * h, 1);
-  improve::Pass pass;
-  pass.goal = static_cast<float>(improve::angle_quality(26));
-  pass.effort = 1;
-  pass.cell = 0.3; // a fifth of the molecule's surface is near a side of a lattice of such cells
-  pass.guard = {44, 0.24, 1, 0};
+  const improve::Pass pass =
+      recovery_pass(0.3); // a fifth of the molecule's surface is near a side of a lattice of such cells
   int pushed = 0;
   for (size_t v = 0; v < c.m.point.size() && pushed < 60; ++v) {
     double distance;
@@ -151,7 +130,7 @@ TEST_CASE("what is restored is as it was saved") {
   for (size_t v = 0; v < owner.size(); ++v)
     owner[v] = v < size_t(points) && c.m.point[v].x > h * n / 2;
   std::vector<uint32_t> stamp(c.m.element.size());
-  improve::Editor editor(c.m, &c.surface, nullptr, parts, stamp, room, {44, 0.24, 1, 0});
+  improve::Editor editor(c.m, &c.surface, nullptr, parts, stamp, room, recovery_guard);
   std::vector<int32_t> inner;
   for (int32_t e = 0; e < size; ++e)
     if (editor.owned(e))
@@ -216,7 +195,7 @@ TEST_CASE("a surface point that leaves the surface leaves a surface behind") {
   parts.owner.resize(c.m.point.size());
   std::vector<uint32_t> stamp(c.m.element.size());
   improve::PartRoom room;
-  improve::Editor editor(c.m, &c.surface, nullptr, parts, stamp, room, {44, 0.24, 1, 0});
+  improve::Editor editor(c.m, &c.surface, nullptr, parts, stamp, room, recovery_guard);
   editor.straighten = editor.bold = true;
   editor.goal = 1e-4f;
   int gone = 0;
@@ -232,7 +211,7 @@ TEST_CASE("a surface point that leaves the surface leaves a surface behind") {
   }
   CHECK(gone > 2);
   const TetMesh mesh = improve::extract(c.m);
-  CHECK(euler(mesh) == 2);
+  CHECK(surface_shape(mesh).euler() == 2);
   const improve::DynamicMesh again = improve::build(mesh, 180, 1); // throws when faces or labels are wrong
   for (size_t v = 0; v < again.point.size(); ++v)
     REQUIRE(again.vertex[v].kind == c.m.vertex[v].kind);

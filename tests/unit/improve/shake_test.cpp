@@ -1,8 +1,8 @@
 // shake_test.cpp — points in gaps and spikes narrower than the grid, where mending by itself gets stuck.
 #include "improve/improve.hpp"
 #include "lattice_mesh.hpp"
+#include "surface_shape.hpp"
 #include <catch2/catch.hpp>
-#include <set>
 
 using namespace molmesh;
 using namespace molmesh::test;
@@ -10,21 +10,6 @@ using namespace molmesh::test;
 namespace {
 
 constexpr double h = 0.5;
-
-/// Of the molecular surface.
-int64_t euler(const TetMesh& mesh) {
-  std::set<int32_t> points;
-  std::set<std::pair<int32_t, int32_t>> edges;
-  int64_t triangles = 0;
-  for (size_t t = 0; t < mesh.tri.size(); ++t)
-    for (size_t i = 0; i < 3 && mesh.boundary[t] == Boundary::surface; ++i) {
-      const int32_t a = mesh.tri[t][i], b = mesh.tri[t][(i + 1) % 3];
-      points.insert(a);
-      edges.insert({std::min(a, b), std::max(a, b)});
-      triangles += i == 0;
-    }
-  return int64_t(points.size()) - int64_t(edges.size()) + triangles;
-}
 
 } // namespace
 
@@ -51,11 +36,11 @@ TEST_CASE("points come back where mending alone leaves elements below the goal")
   };
   const BlockGrid grid = lattice_grid(field, {0, 0, 0}, h, 20);
   TetMesh mesh = lattice_mesh(field, {0, 0, 0}, h, 20, k.keep);
-  const int64_t shape = euler(mesh);
+  const int64_t shape = surface_shape(mesh).euler();
   const improve::Result result = improve::improve(mesh, &grid, {});
   CHECK(result.fidelity.points_off == 0);
   CHECK(result.after.min >= 25);
   CHECK(result.after.max <= 140);
-  CHECK(euler(mesh) == shape);
+  CHECK(surface_shape(mesh).euler() == shape);
   CHECK_NOTHROW(improve::build(mesh, 180, 1));
 }
