@@ -56,6 +56,7 @@ public:
     for (const NewQuality& n : on_host(changed.array, changed.n)) {
       improve::Element& e = m.element[static_cast<size_t>(n.element)];
       e.q = n.q;
+      m.note_change(n.element);
       e.tried = 0;
     }
   }

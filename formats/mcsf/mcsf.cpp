@@ -24,7 +24,7 @@ void write_mcsf(std::ostream& stream, const TetMesh& m) {
     face.emplace_back(f, patch[t]);
   }
   std::sort(face.begin(), face.end());
-  const std::vector<int32_t> across = face_neighbors(m, 1);
+  const LargeArray<int32_t> across = face_neighbors(m, 1);
   TextOut out(stream);
   out << "mcsf_begin=1;\n\ndim=3;\ndimii=3;\nvertices=" << m.point.size() << ";\nsimplices=" << m.tet.size()
       << ";\n\nvert=[" << '\n';

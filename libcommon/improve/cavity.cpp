@@ -136,6 +136,7 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
       id = room_.element.back(), room_.element.pop_back();
     made_.push_back(id);
     Element& e = m_.element[size_t(id)];
+    m_.note_change(id);
     e = {};
     e.v = now[k].v;
     e.region = now[k].region;
@@ -148,6 +149,7 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
   }
   for (size_t k = now.size(); k < old.size(); ++k) {
     m_.element[size_t(old[k])] = {};
+    m_.note_change(old[k]);
     room_.element.push_back(old[k]);
   }
   const auto join = [&](int32_t a, size_t f, int32_t b, size_t g, uint8_t label) {

@@ -14,6 +14,14 @@
 namespace molmesh::improve {
 namespace {
 
+// From any thread.
+void raise_to(int32_t& place, int32_t value) {
+  const std::atomic_ref shared(place);
+  int32_t seen = shared.load(std::memory_order_relaxed);
+  while (seen < value && !shared.compare_exchange_weak(seen, value, std::memory_order_relaxed))
+    ;
+}
+
 Tri face_at(const TetMesh& mesh, int64_t slot) {
   return outward_triangle(mesh.tet[size_t(slot / 4)], size_t(slot % 4));
 }
@@ -115,21 +123,22 @@ void check_labels(const DynamicMesh& m, const TetMesh& mesh, int threads) {
   fault.fail_if_any();
 }
 
-// Which way the first triangle of each label points. Needs an element at each vertex.
-void set_directions(DynamicMesh& m, const TetMesh& mesh, const std::vector<int64_t>& first) {
+// Which way the first triangle of each label points.
+void set_directions(DynamicMesh& m, const TetMesh& mesh, const std::vector<int64_t>& first, int threads) {
   std::vector<SortedTriangle> wanted(1);
   for (size_t l = 1; l < first.size(); ++l)
     wanted.push_back(sorted_triangle(mesh.tri[size_t(first[l])]));
-  for (size_t e = 0; e < m.element.size(); ++e)
+  par::for_n(static_cast<int64_t>(m.element.size()), threads, [&](int64_t e) {
+    const Element& el = m.element[size_t(e)];
     for (size_t i = 0; i < 4; ++i) {
-      const Element& el = m.element[e];
       const uint8_t l = el.label[i];
       if (!m.counts_here(el, i))
         continue;
-      const SortedTriangle s = sorted_triangle(face_at(mesh, 4 * int64_t(e) + int64_t(i)));
-      if (s.v == wanted[l].v)
+      const SortedTriangle s = sorted_triangle(face_at(mesh, 4 * e + int64_t(i)));
+      if (s.v == wanted[l].v) // one face of the mesh for each label
         m.labels[l].reversed = s.odd != wanted[l].odd;
     }
+  });
 }
 
 } // namespace
@@ -148,6 +157,15 @@ void require_slots(int64_t elements, int64_t vertices) {
                              std::to_string(vertices) + " points, expected fewer than 2^31");
 }
 
+void DynamicMesh::resize(size_t elements, size_t vertices) {
+  element.resize(elements, Element{});
+  restless.resize((elements + stretch - 1) / stretch, 1);
+  point.resize(vertices);
+  vertex.resize(vertices);
+  incident.resize(vertices, -1);
+  touched.resize(vertices, 0);
+}
+
 DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   require_size(static_cast<int64_t>(mesh.tet.size()), static_cast<int64_t>(mesh.tri.size()),
                static_cast<int64_t>(mesh.point.size()));
@@ -162,6 +180,7 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   m.incident.assign(m.point.size(), -1);
   m.touched.assign(m.point.size(), 0);
   with_room(m.element, mesh.tet.size());
+  m.restless.assign((mesh.tet.size() + DynamicMesh::stretch - 1) / DynamicMesh::stretch, 1);
   FirstFault fault;
   constexpr int64_t chunk = 4096;
   const auto tets = static_cast<int64_t>(mesh.tet.size());
@@ -169,7 +188,7 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
     const auto first = static_cast<size_t>(c * chunk), n = static_cast<size_t>(std::min(chunk, tets - c * chunk));
     const auto corner = [&](size_t k, size_t i) { return m.point[size_t(mesh.tet[first + k][i])]; };
     judge_each(n, corner, [&](size_t k, float q) {
-      Element& e = m.element[first + k];
+      Element& e = m.element[first + k] = {};
       e.v = mesh.tet[first + k];
       e.region = mesh.region[first + k];
       e.q = std::max(q, 0.f);
@@ -179,17 +198,17 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
         });
       return true;
     });
+    for (size_t e = first + n; e-- > first;) // downwards: most find a higher one there
+      for (const int32_t v : mesh.tet[e])
+        raise_to(m.incident[size_t(v)], static_cast<int32_t>(e));
   });
   fault.fail_if_any();
-  for (size_t e = 0; e < mesh.tet.size(); ++e)
-    for (const int32_t v : mesh.tet[e])
-      m.incident[size_t(v)] = static_cast<int32_t>(e);
   std::vector<int64_t> first;
   const std::vector<uint8_t> label = set_labels(m, mesh, first);
   link(m, mesh, label, threads);
   check_labels(m, mesh, threads);
-  set_directions(m, mesh, first);
-  set_kinds(m, mesh, label, sharp);
+  set_directions(m, mesh, first, threads);
+  set_kinds(m, mesh, label, sharp, threads);
   return m;
 }
 

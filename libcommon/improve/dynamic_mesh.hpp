@@ -3,6 +3,7 @@
 #include "improve/quality.hpp"
 #include "mesh/tet_mesh.hpp"
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -46,6 +47,14 @@ inline std::array<int32_t, 3> outward_triangle(const std::array<int32_t, 4>& v, 
   return {v[size_t(o[0])], v[size_t(o[1])], v[size_t(o[2])]};
 }
 
+} // namespace molmesh::improve
+
+/// build() fills them on all threads.
+template <>
+inline constexpr bool molmesh::leave_untouched<molmesh::improve::Element> = true;
+
+namespace molmesh::improve {
+
 struct Label {
   int32_t name = 0;      ///< TetMesh::boundary
   int axis = -1;         ///< all its triangles lie in one plane normal to this axis; -1: curved
@@ -58,8 +67,18 @@ struct DynamicMesh {
   std::vector<Vertex> vertex;
   std::vector<int32_t> incident; ///< [vertices] an element at the vertex; -1: free slot
   std::vector<int32_t> touched;  ///< [vertices] when an element at the vertex last changed
-  std::vector<Element> element;
+  LargeArray<Element> element;
   std::vector<Label> labels; ///< [0] is no label
+  /// [elements / stretch, rounded up] not 0 where the quality of one may have changed since this was cleared.
+  std::vector<uint8_t> restless;
+  static constexpr int64_t stretch = 4096;
+
+  /// To so many slots; new ones are free.
+  void resize(size_t elements, size_t vertices);
+  /// Of the element's quality. From any thread.
+  void note_change(int32_t e) {
+    std::atomic_ref(restless[size_t(e / stretch)]).store(1, std::memory_order_relaxed);
+  }
 
   /// Whether the face is labelled and this side's to count: the lower region's.
   bool counts_here(const Element& e, size_t face) const {
@@ -83,7 +102,8 @@ void require_slots(int64_t elements, int64_t vertices); ///< of one that grows: 
 DynamicMesh build(const TetMesh& mesh, double sharp, int threads);
 
 /// Elements, vertices and triangles in slot order, unused slots squeezed out; triangles point as they did.
-/// isovalue, source and creator are the caller's. across: what face_neighbors() would find.
-TetMesh extract(const DynamicMesh& mesh, int threads = 1, std::vector<int32_t>* across = nullptr);
+/// isovalue, source and creator are the caller's. across [4 tets]: the tetrahedron across each
+/// face, -1: none.
+TetMesh extract(const DynamicMesh& mesh, int threads = 1, LargeArray<int32_t>* across = nullptr);
 
 } // namespace molmesh::improve

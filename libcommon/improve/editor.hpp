@@ -90,9 +90,11 @@ struct Ring {
 class Editor {
 public:
   /// target may be null: then surface points stay. sheets: where the mesh ends in curved surfaces, or null.
-  /// stamp [elements] is scratch, zero where no editor has been since it was cleared.
+  /// stamp [elements] is scratch: nothing above `clock`.
   Editor(DynamicMesh& mesh, const Target* target, const Sheets* sheets, const Parts& parts,
-         std::vector<uint32_t>& stamp, PartRoom& room, Guard guard);
+         std::vector<uint32_t>& stamp, PartRoom& room, Guard guard, uint32_t clock = 0);
+
+  uint32_t clock() const { return clock_; } ///< nothing above it has been stamped
 
   // Each tries its operation and tells whether it was done: the worst quality among the elements concerned has
   // risen. When straightening: their surface triangles fit better, and no element has fallen under the goal.
@@ -229,7 +231,7 @@ private:
   PartRoom& room_;
   Guard guard_;
   double most_tilt_; ///< the guard's
-  uint32_t clock_ = 0;
+  uint32_t clock_;
   struct FaceEntry {
     std::array<int32_t, 3> v;       ///< ascending
     int64_t old;                    ///< outer: 4 element + face of the one that goes

@@ -1,6 +1,5 @@
 // extract.cpp — back to a plain mesh: what is alive, in slot order.
 #include "improve/dynamic_mesh.hpp"
-#include "mesh/adjacency.hpp" // how neighbours are numbered
 #include "par/par.hpp"
 #include <algorithm>
 
@@ -8,31 +7,33 @@ namespace molmesh::improve {
 namespace {
 
 void number_neighbors(const DynamicMesh& m, const LargeArray<int32_t>& alive, int threads,
-                      std::vector<int32_t>& across) {
+                      LargeArray<int32_t>& across) {
   const auto tets = static_cast<int64_t>(alive.size());
-  std::vector<int32_t> id(m.element.size(), -1);
+  LargeArray<int32_t> id(m.element.size());
   par::for_n(tets, threads, [&](int64_t t) { id[size_t(alive[size_t(t)])] = static_cast<int32_t>(t); });
-  across.assign(4 * alive.size(), no_face);
+  across.resize(4 * alive.size());
   par::for_n(tets, threads, [&](int64_t t) {
-    const int32_t slot = alive[size_t(t)];
-    for (size_t f = 0; f < 4; ++f)
-      if (const int32_t n = m.element[size_t(slot)].n[f]; n >= 0) {
-        const auto& back = m.element[size_t(n)].n;
-        across[4 * size_t(t) + f] =
-            4 * id[size_t(n)] + static_cast<int32_t>(std::find(back.begin(), back.end(), slot) - back.begin());
-      }
+    for (size_t f = 0; f < 4; ++f) {
+      const int32_t n = m.element[size_t(alive[size_t(t)])].n[f];
+      across[4 * size_t(t) + f] = n < 0 ? -1 : id[size_t(n)];
+    }
   });
 }
 
 } // namespace
 
-TetMesh extract(const DynamicMesh& m, int threads, std::vector<int32_t>* across) {
+TetMesh extract(const DynamicMesh& m, int threads, LargeArray<int32_t>* across) {
   TetMesh out;
   const auto slots = static_cast<int64_t>(m.element.size());
-  std::vector<int32_t> id(m.point.size(), -1);
-  for (size_t v = 0; v < m.point.size(); ++v)
-    if (m.incident[v] >= 0)
-      id[v] = static_cast<int32_t>(out.point.size()), out.point.push_back(m.point[v]);
+  const auto used = par::select(static_cast<int64_t>(m.point.size()), threads,
+                                [&](int64_t v) { return m.incident[size_t(v)] >= 0; });
+  LargeArray<int32_t> id(m.point.size());
+  out.point.resize(used.size());
+  par::for_n(static_cast<int64_t>(used.size()), threads, [&](int64_t k) {
+    const auto v = size_t(used[size_t(k)]);
+    id[v] = static_cast<int32_t>(k);
+    out.point[size_t(k)] = m.point[v];
+  });
   const auto alive = par::select(slots, threads, [&](int64_t e) { return m.element[size_t(e)].alive(); });
   out.tet.resize(alive.size());
   out.region.resize(alive.size());

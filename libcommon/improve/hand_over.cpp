@@ -95,8 +95,10 @@ bool Editor::hand_over(int32_t v) {
   }
   if (!fits(after, side.before))
     return back();
-  for (size_t i = 0; i < now_.size(); ++i)
+  for (size_t i = 0; i < now_.size(); ++i) {
     m_.element[size_t(star2_[i])].q = now_[i].q;
+    m_.note_change(star2_[i]);
+  }
   for (const int32_t t : side.element) {
     Element& e = m_.element[size_t(t)];
     e.region = side.to;

@@ -22,7 +22,7 @@ struct Result {
   int rounds = 0;
   Angles before, after;
   Fidelity fidelity;           ///< after (with a density)
-  std::vector<int32_t> across; ///< face_neighbors() of the mesh; empty where it stayed as it came
+  LargeArray<int32_t> across; ///< [4 tets] what is across each face, -1: none; empty where the mesh stayed as it came
 };
 
 /// Moves many points at once where no element below the pass' goal becomes worse: what a device does before each

@@ -1,5 +1,6 @@
 // kinds.cpp — labels that are flat, vertices by the labels they are on, and sharp edges.
 #include "improve/kinds.hpp"
+#include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -43,7 +44,8 @@ void find_flat_labels(DynamicMesh& m, const TetMesh& mesh, const std::vector<uin
 
 } // namespace
 
-void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, double sharp) {
+void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, double sharp,
+               int threads) {
   find_flat_labels(m, mesh, label);
   std::vector<std::array<uint8_t, 3>> seen(m.point.size(), {0, 0, 0});
   std::vector<uint8_t> many(m.point.size(), 0);
@@ -99,7 +101,7 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& 
     return n / std::max(norm(n), 1e-300);
   };
   const double limit = std::cos(sharp * 3.14159265358979323846 / 180);
-  std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) {
+  par::sort(edges, threads, [](const Edge& x, const Edge& y) {
     return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.tri < y.tri;
   });
   for (size_t i = 0, j; i < edges.size(); i = j) {

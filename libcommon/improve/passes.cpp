@@ -79,7 +79,7 @@ Counts Schedule::run(const Pass& pass) {
   if (pass != last_)
     since_ = time_; // what failed before may work now
   last_ = pass;
-  set_parts(passes_++, pass.cell * cell_);
+  const int shift = passes_++;
   constexpr int32_t sweeps = 4;
   const int32_t start = time_, since = since_;
   time_ += sweeps;
@@ -91,8 +91,14 @@ Counts Schedule::run(const Pass& pass) {
     return e.tried <= since || std::max({m_.touched[size_t(v[0])], m_.touched[size_t(v[1])],
                                          m_.touched[size_t(v[2])], m_.touched[size_t(v[3])]}) >= e.tried;
   };
-  const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.element.size()), threads_,
-                                            [&](int64_t e) { return worthwhile(static_cast<int32_t>(e)); });
+  find_worst();
+  const std::vector<int32_t> items = choose(
+      static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::stretch,
+      [&](int64_t s) { return worst_[size_t(s)] < pass.goal; },
+      [&](int64_t e) { return worthwhile(static_cast<int32_t>(e)); });
+  if (items.empty())
+    return {};
+  set_parts(shift, pass.cell * cell_);
   return for_parts(items, parts_of(items), pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
     editor.goal = pass.goal;
     editor.worst_first = pass.worst_first;

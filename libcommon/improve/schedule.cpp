@@ -45,11 +45,23 @@ void Schedule::find_crowded(bool everywhere) {
       sheets_.insert(t);
 }
 
-float Schedule::worst() const {
-  return par::reduce(
-      static_cast<int64_t>(m_.element.size()), threads_, 2.f,
-      [&](int64_t e) { return m_.element[size_t(e)].alive() ? m_.element[size_t(e)].q : 2.f; },
-      [](float a, float b) { return std::min(a, b); });
+void Schedule::find_worst() {
+  const auto elements = static_cast<int64_t>(m_.element.size());
+  worst_.resize(m_.restless.size());
+  par::for_n(static_cast<int64_t>(worst_.size()), threads_, 1, [&](int64_t s) {
+    if (!m_.restless[size_t(s)])
+      return;
+    m_.restless[size_t(s)] = 0;
+    worst_[size_t(s)] = 2;
+    for (int64_t e = s * DynamicMesh::stretch; e < std::min(elements, (s + 1) * DynamicMesh::stretch); ++e)
+      if (const Element& el = m_.element[size_t(e)]; el.alive())
+        worst_[size_t(s)] = std::min(worst_[size_t(s)], el.q);
+  });
+}
+
+float Schedule::worst() {
+  find_worst();
+  return worst_.empty() ? 2 : *std::min_element(worst_.begin(), worst_.end());
 }
 
 int64_t Schedule::below(float goal) const {
@@ -130,6 +142,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     std::vector<int32_t> items;
     Counts counts;
     Sheets sheets{1};
+    uint32_t clock = 0;
   };
   std::vector<int32_t> job_of(static_cast<size_t>(parts_.count()), -1);
   std::vector<Job> jobs;
@@ -157,26 +170,33 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     reserve(free_element_, job.room.element, elements, element_size);
     reserve(free_vertex_, job.room.vertex, vertices, vertex_size);
     require_slots(static_cast<int64_t>(element_size), static_cast<int64_t>(vertex_size));
-    m_.element.resize(element_size);
-    m_.point.resize(vertex_size);
-    m_.vertex.resize(vertex_size);
-    m_.incident.resize(vertex_size, -1);
-    m_.touched.resize(vertex_size, 0);
+    m_.resize(element_size, vertex_size);
     parts_.owner.resize(vertex_size);
     for (const int32_t v : job.room.vertex)
       parts_.owner[size_t(v)] = job.room.part;
   }
-  stamp_.assign(m_.element.size(), 0);
+  if (last_stamp_ > UINT32_MAX / 2) {
+    stamp_.clear();
+    last_stamp_ = 0;
+  }
+  stamp_.resize(m_.element.size(), 0);
+  std::vector<Job*> largest_first; // else threads wait for one that came last
+  for (Job& job : jobs)
+    largest_first.push_back(&job);
+  std::stable_sort(largest_first.begin(), largest_first.end(),
+                   [](const Job* a, const Job* b) { return a->items.size() > b->items.size(); });
   par::for_n(static_cast<int64_t>(jobs.size()), threads_, 1, [&](int64_t j) {
-    Job& job = jobs[size_t(j)];
-    Editor editor(m_, target_, sheets_.alive() > 0 ? &sheets_ : nullptr, parts_, stamp_, job.room, guard);
+    Job& job = *largest_first[size_t(j)];
+    Editor editor(m_, target_, sheets_.alive() > 0 ? &sheets_ : nullptr, parts_, stamp_, job.room, guard, last_stamp_);
     work(editor, job.items);
     job.counts = editor.counts;
     job.sheets = editor.changed_sheets();
+    job.clock = editor.clock();
   });
   Counts sum;
   for (Job& job : jobs) {
     sum += job.counts;
+    last_stamp_ = std::max(last_stamp_, job.clock);
     sheets_.merge(job.sheets);
     free_element_.insert(free_element_.end(), job.room.element.begin(), job.room.element.end());
     free_vertex_.insert(free_vertex_.end(), job.room.vertex.begin(), job.room.vertex.end());

@@ -28,12 +28,16 @@ Snapshot Editor::save(const std::vector<int32_t>& inner) const {
 }
 
 void Editor::restore(const Snapshot& s) {
-  for (const int32_t t : s.room.element)
+  for (const int32_t t : s.room.element) {
     m_.element[size_t(t)] = {};
+    m_.note_change(t);
+  }
   for (const int32_t v : s.room.vertex)
     m_.incident[size_t(v)] = -1;
-  for (const auto& [t, e] : s.element)
+  for (const auto& [t, e] : s.element) {
     m_.element[size_t(t)] = e;
+    m_.note_change(t);
+  }
   for (const Snapshot::Corner& c : s.corner) {
     m_.point[size_t(c.id)] = c.point;
     m_.vertex[size_t(c.id)] = c.vertex;

@@ -4,9 +4,9 @@
 
 namespace molmesh {
 
-std::vector<int32_t> face_neighbors(const TetMesh& m, int threads) {
+LargeArray<int32_t> face_neighbors(const TetMesh& m, int threads) {
   const auto faces = static_cast<int64_t>(4 * m.tet.size());
-  std::vector<int32_t> across(static_cast<size_t>(faces), no_face);
+  LargeArray<int32_t> across(static_cast<size_t>(faces), no_face);
   const auto key = [&](int64_t face) { return triangle_key(face_points(m, face)); };
   for_each_group(faces, static_cast<int64_t>(m.point.size()), threads, key, [&](const uint32_t* face, int n) {
     if (n == 2) {
@@ -19,7 +19,7 @@ std::vector<int32_t> face_neighbors(const TetMesh& m, int threads) {
   return across;
 }
 
-std::vector<int64_t> boundary_faces(const TetMesh& m, const std::vector<int32_t>& across, int threads) {
+std::vector<int64_t> boundary_faces(const TetMesh& m, const LargeArray<int32_t>& across, int threads) {
   constexpr int64_t chunk = 1 << 16;
   const auto faces = static_cast<int64_t>(across.size()), chunks = (faces + chunk - 1) / chunk;
   std::vector<std::vector<int64_t>> part(static_cast<size_t>(chunks));
@@ -37,7 +37,7 @@ std::vector<int64_t> boundary_faces(const TetMesh& m, const std::vector<int32_t>
 
 void rebuild_triangles(TetMesh& m, int threads) {
   m.tri.clear();
-  const std::vector<int32_t> across = face_neighbors(m, threads);
+  const LargeArray<int32_t> across = face_neighbors(m, threads);
   for (int64_t face : boundary_faces(m, across, threads)) {
     const int32_t region = m.region[static_cast<size_t>(face / 4)], other = region_across(m, across, face);
     if (other != 0 && region >= other)

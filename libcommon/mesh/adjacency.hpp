@@ -18,17 +18,17 @@ enum : int32_t { no_face = -1, crowded_face = -2 };
 
 /// [4 tets] The face of the neighboring tetrahedron, no_face, or crowded_face where more than two tetrahedra share
 /// it. At most 2^29 tetrahedra; points in range.
-std::vector<int32_t> face_neighbors(const TetMesh& m, int threads);
+LargeArray<int32_t> face_neighbors(const TetMesh& m, int threads);
 
 /// Region on the other side of the face; 0 where no tetrahedron is, or several are. across: face_neighbors.
-inline int32_t region_across(const TetMesh& m, const std::vector<int32_t>& across, int64_t face) {
+inline int32_t region_across(const TetMesh& m, const LargeArray<int32_t>& across, int64_t face) {
   const int32_t f = across[static_cast<size_t>(face)];
   return f < 0 ? 0 : m.region[static_cast<size_t>(f) / 4];
 }
 
 /// Faces towards another region or nothing, ascending; those between two regions from both of their sides, crowded
 /// ones left out.
-std::vector<int64_t> boundary_faces(const TetMesh& m, const std::vector<int32_t>& across, int threads);
+std::vector<int64_t> boundary_faces(const TetMesh& m, const LargeArray<int32_t>& across, int threads);
 
 /// Two triangles on the same points: do they go round the same way?
 inline bool same_turn(const Tri& a, const Tri& b) {

@@ -31,7 +31,7 @@ std::vector<int32_t> point_twins(const std::vector<Vec3d>& point, int threads) {
   return twin;
 }
 
-std::vector<int64_t> tet_copies(const TetMesh& m, const std::vector<int32_t>& across) {
+std::vector<int64_t> tet_copies(const TetMesh& m, const LargeArray<int32_t>& across) {
   // Two faces cover all four points: tetrahedra that share two are the same. Those with crowded faces are few.
   std::vector<int64_t> copies;
   std::vector<std::pair<Tet, int64_t>> crowded;

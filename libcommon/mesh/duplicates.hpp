@@ -8,6 +8,6 @@ namespace molmesh {
 std::vector<int32_t> point_twins(const std::vector<Vec3d>& point, int threads);
 
 /// Tetrahedra with the same four points as an earlier one, ascending. across: face_neighbors.
-std::vector<int64_t> tet_copies(const TetMesh& m, const std::vector<int32_t>& across);
+std::vector<int64_t> tet_copies(const TetMesh& m, const LargeArray<int32_t>& across);
 
 } // namespace molmesh

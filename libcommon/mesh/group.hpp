@@ -38,7 +38,7 @@ void for_each_group(int64_t count, int64_t leads, int threads, Key key, Visit vi
   std::vector<int64_t> begin(static_cast<size_t>(ranges + 1), count);
   for (int64_t r = 0; r < ranges; ++r)
     begin[static_cast<size_t>(r)] = at(r, 0);
-  std::vector<uint32_t> item(static_cast<size_t>(count));
+  LargeArray<uint32_t> item(static_cast<size_t>(count));
   par::for_n(chunks, threads, 1, [&](int64_t c) {
     for (int64_t i = c * chunk, end = std::min(count, i + chunk); i < end; ++i)
       item[static_cast<size_t>(at(range_of(i), c)++)] = static_cast<uint32_t>(i);

@@ -15,35 +15,36 @@ static_assert(sizeof(idx_t) == sizeof(int32_t), "METIS with 32-bit indices");
 // METIS is serial and takes 100 bytes and 0.7 µs a tetrahedron: of a large mesh it gets clusters of this many.
 constexpr int64_t cluster_size = 16, large = 1 << 17;
 
-// Tetrahedra along the Morton curve of their centroids.
+// Tetrahedra along the Morton curve of their centroids, 256 places an axis; else as they come.
 LargeArray<uint32_t> along_curve(const TetMesh& m, int threads) {
+  constexpr int bits = 8;
   Vec3d low = m.point[0], high = low;
   for (const Vec3d& p : m.point)
     for (int a = 0; a < 3; ++a)
       low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
-  const double scale = 1023.999 / std::max({high.x - low.x, high.y - low.y, high.z - low.z, 1e-300});
+  const double scale = ((1 << bits) - 1e-3) / std::max({high.x - low.x, high.y - low.y, high.z - low.z, 1e-300});
   const auto n = static_cast<int64_t>(m.tet.size());
-  LargeArray<uint64_t> key(m.tet.size());
+  LargeArray<uint32_t> key(m.tet.size()), order(m.tet.size());
   par::for_n(n, threads, [&](int64_t t) {
     Vec3d c;
     for (const int32_t v : m.tet[size_t(t)])
       c += 0.25 * scale * (m.point[size_t(v)] - low);
     const auto at = [](double x) { return static_cast<int32_t>(x); };
-    key[size_t(t)] = morton({at(c.x), at(c.y), at(c.z)}) << 32 | uint64_t(t);
+    key[size_t(t)] = static_cast<uint32_t>(morton({at(c.x), at(c.y), at(c.z)}));
   });
-  par::sort(key, threads);
-  LargeArray<uint32_t> order(m.tet.size());
-  par::for_n(n, threads, [&](int64_t k) { order[size_t(k)] = static_cast<uint32_t>(key[size_t(k)]); });
+  par::place_by(
+      n, int64_t{1} << 3 * bits, threads, [&](int64_t t) { return int64_t{key[size_t(t)]}; }, [](int64_t) {},
+      [&](int64_t k, int64_t t) { order[size_t(k)] = static_cast<uint32_t>(t); });
   return order;
 }
 
 /// Nodes are clusters, weighted by their tetrahedra; edges by the faces between them.
 struct Graph {
-  std::vector<int32_t> cluster; ///< [tets]
+  LargeArray<int32_t> cluster; ///< [tets]
   std::vector<idx_t> begin, neighbor, node_weight, edge_weight;
 };
 
-Graph dual_graph(const TetMesh& m, int threads, std::vector<int32_t> across) {
+Graph dual_graph(const TetMesh& m, int threads, LargeArray<int32_t> across) {
   const auto n = static_cast<int64_t>(m.tet.size()), size = n < large ? 1 : cluster_size;
   const int64_t nodes = (n + size - 1) / size;
   LargeArray<uint32_t> order;
@@ -55,45 +56,59 @@ Graph dual_graph(const TetMesh& m, int threads, std::vector<int32_t> across) {
   g.node_weight.resize(size_t(nodes));
   g.begin.assign(size_t(nodes + 1), 0);
   par::for_n(n, threads, [&](int64_t k) { g.cluster[size_t(tet_at(k))] = static_cast<int32_t>(k / size); });
-  if (across.empty())
-    across = face_neighbors(m, threads);
-  // A node's neighbours, ascending, one for every face, then -1: in place of its tetrahedra's own.
-  const auto place = [&](int64_t node, size_t i) -> int32_t& {
-    return across[size_t(4 * tet_at(node * size + int64_t(i) / 4)) + i % 4];
+  // f(of the tetrahedron across) for the faces of a node's tetrahedra, while it says so.
+  const auto each_face = [&](int64_t node, auto&& f) {
+    for (int64_t k = node * size, end = std::min(n, k + size); k < end; ++k)
+      for (int64_t face = 4 * tet_at(k), last = face + 4; face < last; ++face)
+        if (!f(across[size_t(face)]))
+          return;
   };
-  const auto slots = [&](int64_t node) { return size_t(4 * (std::min(n, (node + 1) * size) - node * size)); };
+  // A node's neighbours, ascending, one for every face, then -1: in place of its tetrahedra's own.
   par::for_n(nodes, threads, [&](int64_t node) {
     std::array<int32_t, 4 * cluster_size> near;
-    size_t count = 0;
-    for (size_t i = 0; i < slots(node); ++i)
-      if (const int32_t other = place(node, i); other >= 0 && g.cluster[size_t(other / 4)] != node)
-        near[count++] = g.cluster[size_t(other / 4)];
+    size_t count = 0, placed = 0;
+    each_face(node, [&](int32_t other) {
+      if (other >= 0 && g.cluster[size_t(other)] != node)
+        near[count++] = g.cluster[size_t(other)];
+      return true;
+    });
     std::sort(near.begin(), near.begin() + count);
-    for (size_t i = 0; i < slots(node); ++i)
-      place(node, i) = i < count ? near[i] : -1;
+    each_face(node, [&](int32_t& other) {
+      other = placed < count ? near[placed] : -1;
+      return placed++ < count;
+    });
     g.begin[size_t(node)] = static_cast<idx_t>(std::unique(near.begin(), near.begin() + count) - near.begin());
-    g.node_weight[size_t(node)] = static_cast<idx_t>(slots(node) / 4);
+    g.node_weight[size_t(node)] = static_cast<idx_t>(std::min(n, (node + 1) * size) - node * size);
   });
   const auto edges = size_t(par::exclusive_scan(g.begin));
   g.neighbor.resize(edges);
   g.edge_weight.resize(edges);
   par::for_n(nodes, threads, [&](int64_t node) {
     auto at = size_t(g.begin[size_t(node)]) - 1;
-    for (size_t i = 0; i < slots(node) && place(node, i) >= 0; ++i) {
-      if (i == 0 || place(node, i) != place(node, i - 1))
-        g.neighbor[++at] = place(node, i);
+    int32_t last = -1;
+    each_face(node, [&](int32_t other) {
+      if (other < 0)
+        return false;
+      if (other != last)
+        g.neighbor[++at] = last = other;
       ++g.edge_weight[at];
-    }
+      return true;
+    });
   });
   return g;
 }
 
 } // namespace
 
-std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, std::vector<int32_t> across) {
+std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeArray<int32_t> across) {
   std::vector<int32_t> part(m.tet.size(), 0);
   if (std::min<int64_t>(parts, int64_t(m.tet.size())) <= 1)
     return part;
+  if (across.empty()) {
+    across = face_neighbors(m, threads);
+    for (int32_t& f : across)
+      f = f < 0 ? -1 : f / 4;
+  }
   Graph g = dual_graph(m, threads, std::move(across));
   auto n = static_cast<idx_t>(g.node_weight.size());
   idx_t k = std::min<idx_t>(parts, n);

@@ -5,8 +5,8 @@
 namespace molmesh {
 
 /// [tets] Part, 0 … parts - 1, of the dual graph (tetrahedra that share a face), by METIS k-way with a fixed seed.
-/// At most as many parts as tetrahedra. across: face_neighbors() where that is known, else it is found here. Same
-/// result at any number of threads. Throws Error(failed) when METIS gives up.
-std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, std::vector<int32_t> across = {});
+/// At most as many parts as tetrahedra. across [4 tets]: the tetrahedron on the other side of each face, -1: none;
+/// found here when empty. Same result at any number of threads. Throws Error(failed) when METIS gives up.
+std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeArray<int32_t> across = {});
 
 } // namespace molmesh

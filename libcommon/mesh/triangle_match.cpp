@@ -5,7 +5,7 @@
 
 namespace molmesh {
 
-TriangleMatch match_triangles(const TetMesh& m, const std::vector<int32_t>& across,
+TriangleMatch match_triangles(const TetMesh& m, const LargeArray<int32_t>& across,
                               const std::vector<int64_t>& boundary, int threads) {
   const auto region = [&](int64_t face) { return m.region[static_cast<size_t>(face / 4)]; };
   TriangleMatch r;

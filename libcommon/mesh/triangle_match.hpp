@@ -18,7 +18,7 @@ struct TriangleMatch {
 };
 
 /// across: face_neighbors; boundary: boundary_faces. Same result at any number of threads.
-TriangleMatch match_triangles(const TetMesh& m, const std::vector<int32_t>& across,
+TriangleMatch match_triangles(const TetMesh& m, const LargeArray<int32_t>& across,
                               const std::vector<int64_t>& boundary, int threads);
 
 } // namespace molmesh

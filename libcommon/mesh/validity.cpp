@@ -251,7 +251,7 @@ private:
   const TetMesh& m_;
   int threads_;
   Validity v_;
-  std::vector<int32_t> across_;
+  LargeArray<int32_t> across_;
   std::vector<int64_t> side_;
   std::vector<uint8_t> one_sided_; ///< [tris] on a face with one tetrahedron
 };

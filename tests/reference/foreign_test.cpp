@@ -17,7 +17,7 @@ TEST_CASE("TetGen's mesh of 1TII reaches 15 degrees, with its surface kept") {
   contour::Summary summary;
   const TetMesh ours = contour::contour(grid, options, summary, [](const std::string&) {});
   TetMesh mesh = reference::tetgen_fill(ours.point, ours.tri, {}, "q1.6");
-  const std::vector<int32_t> across = face_neighbors(mesh, 1);
+  const LargeArray<int32_t> across = face_neighbors(mesh, 1);
   for (size_t f = 0; f < across.size(); ++f)
     if (across[f] < 0) {
       mesh.tri.push_back(face_points(mesh, static_cast<int64_t>(f)));

@@ -32,7 +32,7 @@ TetMesh shaken_body() {
 
 std::vector<Tri> region_boundary(const TetMesh& m, int32_t region) {
   std::vector<Tri> tri;
-  const std::vector<int32_t> across = face_neighbors(m, 1);
+  const LargeArray<int32_t> across = face_neighbors(m, 1);
   for (size_t f = 0; f < across.size(); ++f)
     if (m.region[f / 4] == region && (across[f] < 0 || m.region[static_cast<size_t>(across[f]) / 4] != region))
       tri.push_back(face_points(m, static_cast<int64_t>(f)));

@@ -97,11 +97,7 @@ TEST_CASE("shells fill what they are put into, and the surface keeps its triangl
   improve::PartRoom room{0, std::vector<int32_t>(more), std::vector<int32_t>(more)};
   std::iota(room.element.begin(), room.element.end(), int32_t(elements));
   std::iota(room.vertex.begin(), room.vertex.end(), int32_t(points));
-  m.element.resize(elements + more);
-  m.point.resize(points + more);
-  m.vertex.resize(points + more);
-  m.incident.resize(points + more, -1);
-  m.touched.resize(points + more);
+  m.resize(elements + more, points + more);
   improve::Parts parts;
   parts.owner.resize(m.point.size());
   std::vector<uint32_t> stamp(m.element.size());

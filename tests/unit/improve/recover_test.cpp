@@ -118,11 +118,7 @@ TEST_CASE("what is restored is as it was saved") {
   improve::PartRoom room{0, {}, {}};
   for (int32_t k = 0; k < 1000; ++k)
     room.element.push_back(size + k), room.vertex.push_back(points + k);
-  c.m.element.resize(size_t(size) + 1000);
-  c.m.point.resize(size_t(points) + 1000);
-  c.m.vertex.resize(size_t(points) + 1000);
-  c.m.incident.resize(size_t(points) + 1000, -1);
-  c.m.touched.resize(size_t(points) + 1000);
+  c.m.resize(size_t(size) + 1000, size_t(points) + 1000);
   // One part owns what lies below half the box, so that some elements are of neither.
   improve::Parts parts;
   std::vector<int32_t>& owner = parts.owner;

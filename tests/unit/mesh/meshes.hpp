@@ -32,7 +32,7 @@ inline TetMesh cubes(int n, const std::function<int32_t(Vec3i)>& region, double 
         }
       }
   rebuild_triangles(m);
-  const std::vector<int32_t> across = face_neighbors(m, 1);
+  const LargeArray<int32_t> across = face_neighbors(m, 1);
   for (size_t t = 0; t < m.tri.size(); ++t)
     for (int axis = 0; axis < 3; ++axis)
       for (int side = 0; side < 2; ++side) {

@@ -18,7 +18,7 @@ TEST_CASE("parts are even and compact, the same at any number of threads") {
     ++size.at(static_cast<size_t>(p));
   for (size_t s : size)
     CHECK(s == Approx(double(m.tet.size()) / 8).epsilon(0.05));
-  const std::vector<int32_t> across = face_neighbors(m, 1);
+  const LargeArray<int32_t> across = face_neighbors(m, 1);
   size_t cut = 0;
   for (size_t f = 0; f < across.size(); ++f)
     cut += across[f] >= 0 && part[f / 4] != part[static_cast<size_t>(across[f]) / 4];

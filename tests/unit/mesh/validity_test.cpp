@@ -280,7 +280,7 @@ TEST_CASE("surfaces agree with a slow count on random regions") {
   for (int n = 0; n < 20; ++n) {
     const TetMesh m = cubes(4, [&](Vec3i) { return int32_t(random() % 2 + 1); });
     const Validity v = check_validity(m, 2);
-    const std::vector<int32_t> across = face_neighbors(m, 1);
+    const LargeArray<int32_t> across = face_neighbors(m, 1);
     int64_t crowded = 0, pinched = 0;
     for (const RegionSummary& r : v.region) {
       std::map<std::array<int32_t, 2>, int> directed;
