@@ -35,6 +35,27 @@ std::istream& InputFile::stream() {
   return standard_ ? std::cin : file_;
 }
 
+WrittenFile::int_type WrittenFile::overflow(int_type c) {
+  const int_type done = std::filebuf::overflow(c);
+  if (traits_type::eq_int_type(done, traits_type::eof()) && error == 0)
+    error = errno;
+  return done;
+}
+
+std::streamsize WrittenFile::xsputn(const char* from, std::streamsize n) {
+  const std::streamsize done = std::filebuf::xsputn(from, n);
+  if (done < n && error == 0)
+    error = errno;
+  return done;
+}
+
+int WrittenFile::sync() {
+  const int done = std::filebuf::sync();
+  if (done < 0 && error == 0)
+    error = errno;
+  return done;
+}
+
 OutputFile::OutputFile(const std::string& path) : path_(path), target_(path), written_(path) {
   if (path == "-") {
     standard_ = true;
@@ -49,17 +70,16 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path), wr
     written_ = target_ + ".tmp." + std::to_string(getpid());
     temporary_.emplace(written_);
   }
-  file_.open(written_, std::ios::binary | std::ios::trunc);
-  if (!file_)
+  if (!file_.open(written_, std::ios::binary | std::ios::out | std::ios::trunc))
     refuse("cannot open");
 }
 
 std::ostream& OutputFile::stream() {
-  return standard_ ? std::cout : file_;
+  return standard_ ? std::cout : stream_;
 }
 
 void OutputFile::refuse(const char* what) const {
-  const int error = errno ? errno : EIO;
+  const int error = file_.error ? file_.error : errno ? errno : EIO;
   fail(Status::not_written, (standard_ ? "<stdout>" : path_) + ": " + what + ": " + std::strerror(error));
 }
 
@@ -70,8 +90,7 @@ void OutputFile::commit() {
     refuse("cannot write");
   if (standard_)
     return;
-  file_.close();
-  if (!file_)
+  if (!file_.close())
     refuse("cannot write");
   if (!temporary_)
     return;

@@ -22,6 +22,17 @@ private:
   bool standard_ = false;
 };
 
+/// A file to write that knows why writing failed: streams forget errno long before anybody asks.
+class WrittenFile : public std::filebuf {
+public:
+  int error = 0; ///< errno of the first failure; 0: none
+
+protected:
+  int_type overflow(int_type c) override;
+  std::streamsize xsputn(const char* from, std::streamsize n) override;
+  int sync() override;
+};
+
 /// "-" is standard output. A regular file is written as PATH.tmp.PID beside it and renamed by commit(); without
 /// commit(), or when a signal ends the process, nothing is left behind and an older file of that name stays as it
 /// was. A symbolic link is followed; a device or named pipe is written directly. Throws Error(not_written).
@@ -37,8 +48,9 @@ public:
 private:
   [[noreturn]] void refuse(const char* what) const;
   std::string path_, target_, written_;
-  std::optional<Temporary> temporary_; ///< before file_: the file is closed first, then removed
-  std::ofstream file_;
+  std::optional<Temporary> temporary_; ///< before file_: that is closed first, then removed
+  WrittenFile file_;
+  std::ostream stream_{&file_};
   bool standard_ = false;
 };
 

@@ -13,16 +13,19 @@ using namespace molmesh::test;
 
 namespace {
 
-/// Status of writing `bytes` zeros to `path` and committing.
-Status write(const std::string& path, size_t bytes) {
+/// Status and message of writing `bytes` zeros to `path` and committing.
+std::pair<Status, std::string> attempt(const std::string& path, size_t bytes) {
   try {
     cli::OutputFile file(path);
     file.stream() << std::string(bytes, '\0');
     file.commit();
-    return Status::good;
+    return {Status::good, ""};
   } catch (const Error& e) {
-    return e.status;
+    return {e.status, e.what()};
   }
+}
+Status write(const std::string& path, size_t bytes) {
+  return attempt(path, bytes).first;
 }
 
 } // namespace
@@ -56,6 +59,11 @@ TEST_CASE("an output that cannot be opened or written is status 4") {
   CHECK(write("/dev/full", 1 << 20) == Status::not_written);
   CHECK(write("/dev/null", 1 << 20) == Status::good);
   CHECK(folder.files() == 0);
+}
+
+TEST_CASE("the message says why, also when writing failed long before the end") {
+  for (const size_t bytes : {size_t{1}, size_t{1} << 20})
+    CHECK(attempt("/dev/full", bytes).second == "/dev/full: cannot write: No space left on device");
 }
 
 TEST_CASE("a disk that fills up is status 4 and leaves nothing") {
