@@ -33,7 +33,7 @@ struct Stage {
 };
 const Stage stages[] = {
     {0.35, 0, 1, true, kept},    {0.6, 0, 1, true, kept},     {0.8, 1, 1, true, kept},
-    {0.9, 1, 1, true, kept},     {1, 1, 1, false, kept},      {1, 1, 8, true, kept},
+    {0.9, 1, 2, true, kept},     {1, 1, 2, false, kept},      {1, 1, 8, true, kept},
     {0.8, 1, 8, true, released}, {1, 1, 8, false, released},  {0.5, 1, 32, true, lifted},
     {1, 1, 32, true, released},  {0.97, 1, 32, true, lifted}, {1, 1, 32, false, released},
     {0.97, 1, 32, true, lifted},
@@ -104,6 +104,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
       result.counts.moves += done;
     }
     for (int repeat = 0; repeat < 2; ++repeat) {
+      pass.cell = repeat == 0 && stage.cell <= 2 ? 1 : stage.cell;
       const Counts c = schedule.run(pass);
       result.counts += c;
       done += c.total();

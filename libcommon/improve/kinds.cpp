@@ -44,8 +44,7 @@ void find_flat_labels(DynamicMesh& m, const TetMesh& mesh, const std::vector<uin
 
 } // namespace
 
-void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, double sharp,
-               int threads) {
+void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, double sharp, int threads) {
   find_flat_labels(m, mesh, label);
   std::vector<std::array<uint8_t, 3>> seen(m.point.size(), {0, 0, 0});
   std::vector<uint8_t> many(m.point.size(), 0);

@@ -187,7 +187,8 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
                    [](const Job* a, const Job* b) { return a->items.size() > b->items.size(); });
   par::for_n(static_cast<int64_t>(jobs.size()), threads_, 1, [&](int64_t j) {
     Job& job = *largest_first[size_t(j)];
-    Editor editor(m_, target_, sheets_.alive() > 0 ? &sheets_ : nullptr, parts_, stamp_, job.room, guard, last_stamp_);
+    Editor editor(m_, target_, sheets_.alive() > 0 ? &sheets_ : nullptr, parts_, stamp_, job.room, guard,
+                  last_stamp_);
     work(editor, job.items);
     job.counts = editor.counts;
     job.sheets = editor.changed_sheets();

@@ -66,7 +66,7 @@ private:
   std::vector<uint32_t> stamp_; ///< of the editors
   uint32_t last_stamp_ = 0;
   std::vector<float> worst_; ///< of each stretch of elements, when it last was restless
-  Sheets sheets_; ///< where the mesh ends in curved surfaces
+  Sheets sheets_;            ///< where the mesh ends in curved surfaces
   std::vector<int32_t> free_element_, free_vertex_;
 };
 

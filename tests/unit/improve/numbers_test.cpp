@@ -58,7 +58,10 @@ TEST_CASE("the improved mesh comes with its neighbours and its own extreme angle
   const improve::Angles before = extremes(mesh);
   const improve::Result result = improve::improve(mesh, &grid, {});
   const improve::Angles after = extremes(mesh);
-  CHECK(result.across == face_neighbors(mesh, 1));
+  LargeArray<int32_t> across = face_neighbors(mesh, 1);
+  for (int32_t& f : across)
+    f = f < 0 ? -1 : f / 4;
+  CHECK((result.across == across)); // not printed
   CHECK(before.below_25 > 0);
   CHECK(result.before.below_25 == before.below_25);
   CHECK(result.before.above_140 == before.above_140);
