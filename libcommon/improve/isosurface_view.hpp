@@ -67,10 +67,21 @@ struct IsosurfaceView {
 
   HD bool project(Vec3d& p, double reach) const {
     const Vec3d from = p;
-    double distance;
-    Vec3d normal;
+    double f, distance, v[8];
+    Vec3d u, gradient, normal;
+    Vec3i c, known;
+    bool any_known = false; // the values at v are those of the cell there: most steps stay in it
     for (int step = 0; step < 8; ++step) {
-      if (!probe(p, distance, normal))
+      if (!locate(p, u, c))
+        return false;
+      if (!any_known || !(c == known)) {
+        known = c;
+        any_known = values(c, v);
+        if (!any_known && !values_beside(u, c, v))
+          return false;
+      }
+      interpolate(u, c, v, f, gradient);
+      if (!to_distance(f, gradient, distance, normal))
         return false;
       if (std::abs(distance) < 1e-3 * frame.spacing)
         return norm2(p - from) <= reach * reach;
