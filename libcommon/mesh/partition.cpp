@@ -1,7 +1,7 @@
 // partition.cpp — METIS on the dual graph: of tetrahedra, or of compact clusters of them where there are many.
 #include "mesh/partition.hpp"
 #include "error.hpp"
-#include "geom/morton.hpp" // clusters follow the curve
+#include "geom/hilbert.hpp" // clusters follow the curve
 #include "mesh/adjacency.hpp"
 #include "par/par.hpp"
 #include <metis.h>
@@ -12,10 +12,11 @@ namespace {
 
 static_assert(sizeof(idx_t) == sizeof(int32_t), "METIS with 32-bit indices");
 
-// METIS is serial and takes 100 bytes and 0.7 µs a tetrahedron: of a large mesh it gets clusters of this many.
-constexpr int64_t cluster_size = 16, large = 1 << 17;
+// METIS is serial and takes 100 bytes and 0.7 µs a tetrahedron: of a large mesh it gets clusters of this many,
+// which cut as many faces as clusters of half the size along the Morton curve.
+constexpr int64_t cluster_size = 32, large = 1 << 17;
 
-// Tetrahedra along the Morton curve of their centroids, 256 places an axis; else as they come.
+// Tetrahedra along the Hilbert curve of their centroids, 256 places an axis; else as they come.
 LargeArray<uint32_t> along_curve(const TetMesh& m, int threads) {
   constexpr int bits = 8;
   Vec3d low = m.point[0], high = low;
@@ -30,7 +31,7 @@ LargeArray<uint32_t> along_curve(const TetMesh& m, int threads) {
     for (const int32_t v : m.tet[size_t(t)])
       c += 0.25 * scale * (m.point[size_t(v)] - low);
     const auto at = [](double x) { return static_cast<int32_t>(x); };
-    key[size_t(t)] = static_cast<uint32_t>(morton({at(c.x), at(c.y), at(c.z)}));
+    key[size_t(t)] = static_cast<uint32_t>(hilbert({at(c.x), at(c.y), at(c.z)}, bits));
   });
   par::place_by(
       n, int64_t{1} << 3 * bits, threads, [&](int64_t t) { return int64_t{key[size_t(t)]}; }, [](int64_t) {},
