@@ -2,6 +2,8 @@
 // samples.
 #pragma once
 #include "contour/detail/node_items.hpp"
+#include "contour/surface_cells.hpp"
+#include "geom/morton.hpp"
 #include <cmath>
 #include <cstdint>
 
@@ -14,36 +16,73 @@ HD inline double sample_area(const SurfaceSample& s) {
   return crossed > 0 ? 1 / crossed : 0;
 }
 
-/// Volume that chords of leaves cut off, less where the surface is hollow, in cubed fine spacings, by nodes of a
-/// level. Where κ is the mean curvature, chords of triangles with legs e lie κ e²/6 off on average; the samples of
-/// a square of side e lie <t²> = e²/6 from its middle, and their inward normals turn so that n · t = -κ t². Cells
-/// of half the size cut off a quarter.
-struct CutOff {
+/// Volume that the chords from the sample of cell i to those of the next cells along the axes cut off, less where
+/// the surface is hollow, in cubed fine spacings. Along a chord d inward normals turn so that Δn · d = -κ d², and a
+/// quadrangle of four chords lies a twelfth of their sum off on average.
+/// Of large surfaces every so many cells speak for all.
+struct CutByCells {
+  static constexpr int64_t enough = 1 << 17;
+  const SurfaceCell* cell;
   const SurfaceSample* sample;
+  const uint64_t* key; ///< of the cells
+  int64_t n;
+  float isovalue;
+  double* cut = nullptr;
+  HD void operator()(int64_t i) const {
+    const int64_t every = 1 + n / enough;
+    cut[i] = i % every == 0 ? static_cast<double>(every) * of_cell(i) : 0;
+  }
+
+  HD double of_cell(int64_t i) const {
+    double sum = 0;
+    const uint32_t inside = inside_corners(cell[i], isovalue);
+    for (int axis = 0; axis < 3; ++axis) {
+      const uint32_t face = axis == 0 ? 0xAA : axis == 1 ? 0xCC : 0xF0;
+      if ((inside & face) == 0 || (inside & face) == face)
+        continue;
+      const uint64_t beside = morton_after(key[i], axis, 0);
+      const int64_t k = first_from(i, beside);
+      if (k == n || key[k] != beside)
+        continue; // beyond the lattice
+      const SurfaceSample &a = sample[i], &b = sample[k];
+      sum -= (sample_area(a) + sample_area(b)) / 24 * dot(b.normal - a.normal, b.point - a.point);
+    }
+    return sum;
+  }
+
+private:
+  /// After i and likely near: the first key not below the one wanted, which is larger than key[i].
+  HD int64_t first_from(int64_t i, uint64_t wanted) const {
+    int64_t step = 1;
+    for (; i + step < n && key[i + step] < wanted; step *= 2)
+      i += step;
+    int64_t end = i + step < n ? i + step : n;
+    while (end - i > 1) {
+      const int64_t middle = (i + end) / 2;
+      (key[middle] < wanted ? i : end) = middle;
+    }
+    return end;
+  }
+};
+
+/// The same by nodes of a level, of the chords of leaves: chords twice as long cut off four times as much.
+struct CutByNodes {
+  const double* cell_cut;
   SurfaceNodes nodes;
-  NodeSet refined;         ///< of this level
+  NodeSet refined; ///< of this level
+  int level;
   const double* child_cut; ///< level 1: null
   double* cut;
   HD void operator()(int64_t i) const {
     const bool leaf = !(refined.word(nodes.key[i] >> 6) >> (nodes.key[i] & 63) & 1);
-    cut[i] = 0;
-    if (!leaf && child_cut)
-      for (int64_t c = nodes.child_begin(i); c < nodes.child_begin(i + 1); ++c)
-        cut[i] += child_cut[c];
-    else
-      cut[i] = (leaf ? 1 : 0.25) * of_one_cell(sample + nodes.cell_begin(i), sample + nodes.cell_begin(i + 1));
-  }
-
-private:
-  HD static double of_one_cell(const SurfaceSample* begin, const SurfaceSample* end) {
-    const Sheet sheet(begin, end);
+    const bool of_cells = leaf || !child_cut;
+    const double* const from = of_cells ? cell_cut : child_cut;
+    const int64_t begin = of_cells ? nodes.cell_begin(i) : nodes.child_begin(i),
+                  end = of_cells ? nodes.cell_begin(i + 1) : nodes.child_begin(i + 1);
     double sum = 0;
-    for (const SurfaceSample* s = begin; s < end; ++s) {
-      if (!sheet.has(*s))
-        return 0; // nothing is known
-      sum -= sample_area(*s) * dot(s->normal, s->point - sheet.middle);
-    }
-    return sum;
+    for (int64_t c = begin; c < end; ++c)
+      sum += from[c];
+    cut[i] = leaf ? sum * (1 << 2 * level) : sum;
   }
 };
 
@@ -62,6 +101,11 @@ struct SurfaceSums {
   double volume() const { return area > 0 ? std::fabs(flux - dot(moment, normal) / area) / 3 : 0; }
 };
 
+HD inline SurfaceSums of_sample(const SurfaceSample& s) {
+  const double area = sample_area(s);
+  return {area, area * dot(s.point, s.normal), area * s.point, area * s.normal};
+}
+
 /// In stretches, so that sums keep their order.
 struct SumSamples {
   static constexpr int64_t stretch = 1024, grain = 1;
@@ -70,11 +114,8 @@ struct SumSamples {
   SurfaceSums* out;
   HD void operator()(int64_t i) const {
     SurfaceSums sums;
-    for (int64_t s = stretch * i; s < stretch * (i + 1) && s < samples; ++s) {
-      const double area = sample_area(sample[s]);
-      sums +=
-          {area, area * dot(sample[s].point, sample[s].normal), area * sample[s].point, area * sample[s].normal};
-    }
+    for (int64_t s = stretch * i; s < stretch * (i + 1) && s < samples; ++s)
+      sums += of_sample(sample[s]);
     out[i] = sums;
   }
 };

@@ -43,9 +43,11 @@ public:
     collect_surface_nodes();
     double tolerance = options_.adapt;
     select(tolerance);
-    if (options_.adapt > 0)
+    if (options_.adapt > 0) {
+      find_cuts();
       for (const double most = allowed_cut(); std::fabs(cut_off()) > most && tolerance > 0; select(tolerance))
         tolerance = tolerance > least_tolerance ? tolerance / 2 : 0;
+    }
     return leaves();
   }
 
@@ -109,14 +111,21 @@ private:
     const SurfaceSums all = sum(part, stretches, SurfaceSums{});
     return improve::most_offset * all.area + most_cut * all.volume();
   }
+  void find_cuts() {
+    cell_cut_ = m_.template array<double>(surface_.n);
+    m_.for_n("cut by cells", surface_.n,
+             CutByCells{surface_.cell, surface_.sample, surface_nodes(0).key, surface_.n, l_.isovalue,
+                        cell_cut_.data()});
+  }
   double cut_off() {
     Array<double> cut;
     int64_t n = 0;
     for (int l = 1; l <= std::min(most_merges, top_); ++l) {
       n = surface_nodes(l).n;
       auto here = m_.template array<double>(n);
-      m_.for_n("cut off", n,
-               CutOff{surface_.sample, surface_nodes(l), set(l), l > 1 ? cut.data() : nullptr, here.data()});
+      m_.for_n(
+          "cut by nodes", n,
+          CutByNodes{cell_cut_.data(), surface_nodes(l), set(l), l, l > 1 ? cut.data() : nullptr, here.data()});
       cut = std::move(here);
     }
     return sum(cut, n, 0.);
@@ -232,6 +241,7 @@ private:
   SurfaceView surface_;
   RefineOptions options_;
   std::vector<Level> level_;   ///< [top + 3]
+  Array<double> cell_cut_;     ///< [cells] CutByCells
   std::vector<Nodes> refined_; ///< [levels + 1] nodes with children
 };
 

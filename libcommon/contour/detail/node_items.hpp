@@ -52,6 +52,13 @@ private:
   }
 };
 
+HD inline uint32_t inside_corners(const SurfaceCell& cell, float isovalue) {
+  uint32_t inside = 0;
+  for (int c = 0; c < 8; ++c)
+    inside |= uint32_t{cell.value[c] > isovalue} << c;
+  return inside;
+}
+
 struct StartFromCells {
   const SurfaceCell* from;
   float isovalue;
@@ -60,10 +67,7 @@ struct StartFromCells {
   OneDisc one_disc{};
   HD void operator()(int64_t i) const {
     key[i] = from[i].key;
-    uint32_t inside = 0;
-    for (int c = 0; c < 8; ++c)
-      inside |= uint32_t{from[i].value[c] > isovalue} << c;
-    flags[i] = one_disc(inside) ? whole : uint8_t{0};
+    flags[i] = one_disc(inside_corners(from[i], isovalue)) ? whole : uint8_t{0};
   }
 };
 
