@@ -66,8 +66,8 @@ void describe(CLI::App& app, Options& o) {
   app.add_option(
          "--adapt", o.adapt,
          "how far the surface may lie from a coarser cell's mean plane, in grid spacings, and less where "
-         "the chords of a small body would cost it volume; 0: uniform; auto: 0.1, or as many as 0.1 Å are, at "
-         "most 0.5")
+         "the chords of a small body would cost it volume: bodies of few spacings get cells of a half or a quarter "
+         "of one; 0: uniform, the grid's own cells; auto: 0.1, or as many as 0.1 Å are, at most 0.5")
       ->type_name("ERROR");
   app.add_option("--cavities", o.cavities, "closed cavities: keep (region 3) or fill (region 1)")
       ->check(CLI::IsMember({"keep", "fill"}));
@@ -106,6 +106,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.counts["tetrahedra"] = mesh.tet.size();
   run.counts["triangles"] = mesh.tri.size();
   run.counts["adapt"] = summary.adapt;
+  run.counts["halvings"] = summary.halvings;
   run.counts["leaves"] = summary.leaves;
   run.counts["surface_cells"] = summary.surface_cells;
   run.counts["split_cells"] = summary.split_cells;
@@ -117,6 +118,10 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.counts["cavity_volumes"] = summary.cavity_volumes;
   run.counts["dropped_parts"] = summary.dropped_parts;
   run.counts["filled_cavities"] = summary.filled_cavities;
+
+  if (summary.halvings > 0)
+    run.note(std::string("bodies of few spacings: cells of ") + (summary.halvings > 1 ? "a quarter" : "half") +
+             " the grid's spacing keep their volume (--adapt 0: the grid's own)");
 
   run.phase("write");
   mesh.creator = cli::creator("density2tet");

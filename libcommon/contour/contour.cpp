@@ -1,5 +1,6 @@
 // contour.cpp — the stages in order.
 #include "contour/contour.hpp"
+#include "contour/finer_grid.hpp"
 #include "error.hpp"
 
 namespace molmesh::contour {
@@ -8,11 +9,14 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
                 const std::function<void(const std::string&)>& on_phase, Stages& stages) {
   const bool with_outside = options.meshed != Options::interior;
   on_phase("surface cells");
-  const Lattice lattice(grid, options.box, with_outside, options.threads);
+  const FinerGrid finer = finer_grid(grid, options);
+  summary.halvings = finer.halvings;
+  const Lattice lattice(finer.grid ? *finer.grid : grid, options.box, with_outside, options.threads);
   stages.find_surface(lattice);
   on_phase("octree");
   RefineOptions refine_options;
-  refine_options.adapt = summary.adapt = options.adapt.value_or(default_adapt(grid.frame.spacing));
+  summary.adapt = options.adapt.value_or(default_adapt(grid.frame.spacing));
+  refine_options.adapt = summary.adapt * (1 << finer.halvings);
   refine_options.inside = options.meshed != Options::exterior;
   refine_options.outside = with_outside;
   stages.select_leaves(refine_options);

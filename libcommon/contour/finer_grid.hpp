@@ -1,0 +1,23 @@
+// finer_grid.hpp — where the grid's cells are too large for its bodies, a grid with smaller ones.
+#pragma once
+#include "contour/options.hpp"
+#include "density/block_grid.hpp"
+#include <optional>
+
+namespace molmesh::contour {
+
+struct FinerGrid {
+  std::optional<BlockGrid> grid; ///< none: the cells of the grid itself
+  int halvings = 0;              ///< of the spacing, at most two
+};
+
+/// Chords between points a spacing h apart cut h²/2r² off a ball of radius r, which is more than I8 allows up to
+/// some 5 h. While they would the spacing is halved (halved_grid.hpp), but never
+/// - where the cells are to be uniform: those are the grid's,
+/// - on grids of many points, where the volume is that of large bodies,
+/// - where a wall cuts the grid,
+/// - where a cell may hold more than one sheet, before or after: the trilinear functions of G, whose topology the
+///   mesh has (I7), and of log G, of which the points between are, may differ there.
+FinerGrid finer_grid(const BlockGrid& grid, const Options& options);
+
+} // namespace molmesh::contour

@@ -1,0 +1,150 @@
+// finer_grid_test.cpp — half the spacing: the same values, sides and topology, and the volume of small bodies.
+#include "contour/finer_grid.hpp"
+#include "contour/halved_grid.hpp"
+#include "improve/improve.hpp"
+#include "unit/contour/checked.hpp"
+#include "unit/contour/sample_grid.hpp"
+#include "unit/contour/trilinear_euler.hpp"
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+using namespace molmesh;
+using namespace molmesh::test;
+using contour::Options;
+
+namespace {
+
+/// An atom off the grid points.
+BlockGrid atom_grid(double radius, double h) {
+  return cube_grid(radius + 6 * h, h, [=](Vec3d x) {
+    return std::exp(radius * radius - norm2(x - h * Vec3d{0.23, 0.54, 0.79}));
+  });
+}
+
+/// Checks one point between, or one of the grid's own.
+void check_point(const BlockGrid& grid, const BlockIndex& index, const BlockGrid& half,
+                 const BlockIndex& half_index, Vec3i q) {
+  const Vec3i low{q.x >> 1, q.y >> 1, q.z >> 1};
+  double sum = 0;
+  int points = 0, active = 0, inside = 0;
+  for (int c = 0; c < 8; ++c) {
+    const Vec3i step{c & 1, c >> 1 & 1, c >> 2};
+    if ((step.x && q.x % 2 == 0) || (step.y && q.y % 2 == 0) || (step.z && q.z % 2 == 0))
+      continue;
+    const float v = value_at(grid, index, low + step);
+    sum += std::log(double(v));
+    active += is_active(grid, index, low + step);
+    inside += v > 1;
+    ++points;
+  }
+  const float v = value_at(half, half_index, q);
+  CHECK(is_active(half, half_index, q) == (active == points));
+  if (points == 1)
+    CHECK(v == value_at(grid, index, low));
+  else if (active == points)
+    CHECK(std::log(double(v)) == Approx(sum / points).margin(1e-6));
+  if (inside == points)
+    CHECK(v > 1);
+  if (inside == 0)
+    CHECK(!(v > 1));
+}
+
+} // namespace
+
+TEST_CASE("half the spacing: the grid's values, means of log G between, each on its side") {
+  std::mt19937_64 random(11);
+  for (int trial = 0; trial < 12; ++trial) {
+    CAPTURE(trial);
+    const BlockGrid grid = random_grid(random, trial), half = contour::halved(grid, 1);
+    CHECK(half.frame.spacing == grid.frame.spacing / 2);
+    CHECK(half.frame.position(2 * grid.frame.lower) == grid.frame.position(grid.frame.lower));
+    CHECK(std::is_sorted(half.corner.begin(), half.corner.end()));
+    CHECK(std::is_sorted(half.inside.begin(), half.inside.end()));
+    const BlockIndex index(grid), half_index(half);
+    const Vec3i end = half.frame.lower + half.frame.points;
+    Vec3i q;
+    for (q.x = half.frame.lower.x; q.x < end.x; ++q.x)
+      for (q.y = half.frame.lower.y; q.y < end.y; ++q.y)
+        for (q.z = half.frame.lower.z; q.z < end.z; ++q.z)
+          check_point(grid, index, half, half_index, q);
+  }
+}
+
+TEST_CASE("half the spacing: blocks inside stay inside, and the same bytes at any number of threads") {
+  const BlockGrid grid = atom_grid(12, 0.5), half = contour::halved(grid, 1), threads = contour::halved(grid, 3);
+  REQUIRE(!grid.inside.empty());
+  CHECK(half.inside.size() >= 8 * grid.inside.size());
+  CHECK(value_at(half, BlockIndex(half), {0, 0, 0}) == 2);
+  CHECK(half.corner == threads.corner);
+  CHECK(half.value == threads.value);
+  CHECK(half.active == threads.active);
+  CHECK(half.inside == threads.inside);
+}
+
+TEST_CASE("finer grids keep components and Euler number") {
+  std::mt19937_64 random(12);
+  int finer_ones = 0;
+  for (int trial = 1; trial < 60; ++trial) {
+    CAPTURE(trial);
+    const BlockGrid grid = random_grid(random, trial);
+    Options options;
+    options.adapt = 0.3;
+    const contour::FinerGrid finer = contour::finer_grid(grid, options);
+    if (!finer.grid)
+      continue;
+    ++finer_ones;
+    CHECK(trilinear_euler(*finer.grid) == trilinear_euler(grid));
+    Options uniform;
+    uniform.adapt = 0;
+    const Validity v = checked(mesh_of(grid, options)), of_grid = checked(mesh_of(grid, uniform));
+    CHECK(v.surface.euler == of_grid.surface.euler);
+    CHECK(v.surface.components == of_grid.surface.components);
+  }
+  CHECK(finer_ones > 5);
+}
+
+TEST_CASE("a body of few spacings keeps its volume to half a per cent, uniform cells stay the grid's") {
+  for (double radius : {0.8, 1.0, 1.15, 2.4, 3.0}) {
+    const BlockGrid grid = atom_grid(radius, 0.5);
+    for (auto meshed : {Options::interior, Options::both}) {
+      CAPTURE(radius, int(meshed));
+      Options options;
+      options.meshed = meshed;
+      contour::Summary summary;
+      TetMesh mesh = mesh_of(grid, options, summary);
+      CHECK(summary.halvings == (radius < 0.9 ? 2 : radius < 3 ? 1 : 0));
+      CHECK(checked(mesh).surface.euler == 2);
+      const improve::Result result = improve::improve(mesh, &grid, {});
+      CHECK(checked(mesh).surface.euler == 2);
+      CHECK(std::fabs(result.fidelity.missing) < 0.005 * result.fidelity.volume);
+      CHECK(result.fidelity.points_off == 0);
+      CHECK(result.after.min > 25);
+      CHECK(result.after.max < 140);
+    }
+    Options options;
+    options.adapt = 0;
+    contour::Summary summary;
+    mesh_of(grid, options, summary);
+    CHECK(summary.halvings == 0);
+  }
+}
+
+TEST_CASE("the grid's own cells: of large bodies, where a wall cuts the grid, and on large grids") {
+  Options options;
+  CHECK(!contour::finer_grid(atom_grid(5, 0.5), options).grid);
+  const BlockGrid small = atom_grid(1, 0.5);
+  CHECK(contour::finer_grid(small, options).grid);
+  options.box.kind = contour::BoxRequest::corners;
+  options.box.lower = {0.1, -3, -3};
+  options.box.upper = {3, 3, 3};
+  CHECK(!contour::finer_grid(small, options).grid);
+  const BlockGrid large = cube_grid(16, 0.5, [](Vec3d x) { // 7³ atoms
+    Vec3d from = x;
+    for (int a = 0; a < 3; ++a)
+      from[a] -= 4 * std::clamp(std::round(x[a] / 4), -3., 3.);
+    return std::exp(1 - norm2(from));
+  });
+  CHECK(!contour::finer_grid(large, {}).grid);
+}
