@@ -14,7 +14,7 @@ namespace molmesh::contour {
 namespace {
 
 constexpr int most_halvings = 2;
-/// Some 16,000 surface cells: a ball with as many has a radius of 29 spacings and loses 0.06 %.
+/// Some 16,000 surface cells: a ball with as many has a radius of 29 spacings and loses 0.05 %.
 constexpr int64_t most_active_points = 1 << 15;
 /// A ball with as few surface cells loses several per cent, and their areas are not what cells have on average.
 constexpr int64_t too_few_cells = 80;

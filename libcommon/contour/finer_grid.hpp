@@ -11,7 +11,7 @@ struct FinerGrid {
   int halvings = 0;              ///< of the spacing, at most two
 };
 
-/// Chords between points a spacing h apart cut h²/2r² off a ball of radius r, which is more than I8 allows up to
+/// Chords between points a spacing h apart cut some 0.4 h²/r² off a ball of radius r, more than I8 allows up to
 /// some 5 h. While they would the spacing is halved (halved_grid.hpp), but never
 /// - where the cells are to be uniform: those are the grid's,
 /// - on grids of many points, where the volume is that of large bodies,

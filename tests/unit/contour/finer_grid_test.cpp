@@ -1,6 +1,8 @@
 // finer_grid_test.cpp — half the spacing: the same values, sides and topology, and the volume of small bodies.
+#include "contour/detail/chord_items.hpp"
 #include "contour/finer_grid.hpp"
 #include "contour/halved_grid.hpp"
+#include "contour/leaves.hpp"
 #include "improve/improve.hpp"
 #include "unit/contour/checked.hpp"
 #include "unit/contour/sample_grid.hpp"
@@ -8,7 +10,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numeric>
 #include <random>
+#include <vector>
 
 using namespace molmesh;
 using namespace molmesh::test;
@@ -147,4 +151,27 @@ TEST_CASE("the grid's own cells: of large bodies, where a wall cuts the grid, an
     return std::exp(1 - norm2(from));
   });
   CHECK(!contour::finer_grid(large, {}).grid);
+}
+
+TEST_CASE("what chords of fine cells cut off a ball is the same share of h²/r² whatever its radius") {
+  for (int radius : {6, 20, 110}) { // spacings; the largest by every other cell
+    CAPTURE(radius);
+    const BlockGrid grid = cube_grid(radius + 2, 1, [=](Vec3d x) {
+      return std::exp((radius - norm(x - Vec3d{0.23, 0.54, 0.79})) / 4);
+    });
+    const contour::Lattice lattice(grid, {}, false, 2);
+    const contour::Surface surface = contour::find_surface(lattice, 2);
+    const auto n = static_cast<int64_t>(surface.cells.size());
+    std::vector<uint64_t> key;
+    for (const contour::SurfaceCell& cell : surface.cells)
+      key.push_back(cell.key);
+    std::vector<double> cut(key.size());
+    const contour::detail::CutByCells item{
+        surface.cells.data(), surface.samples.data(), key.data(), n, lattice.isovalue, cut.data()};
+    for (int64_t i = 0; i < n; ++i)
+      item(i);
+    const double share = std::accumulate(cut.begin(), cut.end(), 0.) / (4 * std::acos(-1.) / 3 * radius);
+    CHECK(share == Approx(0.355).epsilon(0.05));
+    CHECK((radius == 110) == (n > contour::detail::CutByCells::enough));
+  }
 }
