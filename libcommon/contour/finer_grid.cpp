@@ -18,9 +18,9 @@ constexpr int most_halvings = 2;
 constexpr int64_t most_active_points = 1 << 15;
 /// A ball with as few surface cells loses several per cent, and their areas are not what cells have on average.
 constexpr int64_t too_few_cells = 80;
-/// I8's share of the volume, and how many times as much as chords between samples those of tetsmooth's larger
-/// triangles cut off: 1.14 to 1.23 on ions of 1.5 to 5 spacings.
-constexpr double most_missing = 0.005, smoothed = 1.2;
+/// Share of the volume, a fifth below I8's, and how many times as much as chords between samples those of
+/// tetsmooth's larger triangles cut off: 1.14 to 1.33 on ions of 1.6 to 5 spacings.
+constexpr double most_missing = 0.004, smoothed = 1.25;
 
 int64_t active_points(const BlockGrid& grid) {
   int64_t n = 0;
