@@ -10,6 +10,7 @@
 #include "improve/dynamic_mesh.hpp"
 #include "improve/guard.hpp"
 #include "improve/parts.hpp"
+#include "improve/piece.hpp"
 #include "improve/search.hpp"
 #include "improve/sheets.hpp"
 #include "improve/spokes.hpp"
@@ -111,6 +112,12 @@ public:
   /// The closed surface of few triangles that v is on shrinks to what the target has there, in shells that get
   /// smaller by about `ratio`.
   bool nest(int32_t v, double ratio);
+  /// Near a surface vertex off the target (Target::neck).
+  bool find_neck(int32_t v, Neck& neck) const {
+    return m_.vertex[size_t(v)].kind == Kind::surface && target_ && target_->neck(m_.point[size_t(v)], neck);
+  }
+  /// The surface near v follows the target down into a neck, in such shells.
+  bool follow_neck(int32_t v, const Neck& neck, double ratio);
   /// Whether the face is a surface triangle, counted from this side, that does not keep the guard.
   bool bent(int32_t e, size_t face) const;
   /// Of a surface vertex: how far off the target, in units of a fiftieth of a spacing (what I8 allows).
@@ -200,19 +207,11 @@ private:
     Fit before;         ///< of the triangles at the vertex
   };
   bool find_side(int32_t v, Side& side) const;
-  /// A closed surface of few triangles, elements around it, and the shell that these show to the others.
-  struct Piece {
-    std::vector<int32_t> vertex, element;      ///< of the surface; inside the shell, ascending
-    std::vector<std::array<int32_t, 3>> shell; ///< seen from outside
-    int32_t region = 0;                        ///< between surface and shell
-    bool hole = false;                         ///< in the molecule
-    Vec3d centre;
-    bool has(int32_t v) const { return std::find(vertex.begin(), vertex.end(), v) != vertex.end(); }
-    bool has(const std::array<int32_t, 3>& t) const { return has(t[0]) && has(t[1]) && has(t[2]); }
-  };
   bool find_piece(int32_t v, Piece& piece);
   bool fit_piece(const Piece& piece, Vec3d& to, double& scale) const;
   bool find_shell(Piece& piece, Vec3d c);
+  bool shrink(const Piece& piece, Vec3d c, double scale, double ratio);
+  bool find_ring(int32_t v, const Neck& neck, Piece& piece);
   bool place_on_target(Vec3d& x, double length, const Fit& before, float above);
   bool search(const Vertex& k, Vec3d& x, float& best, float aim, double length, const Fit& before, float above);
   /// Moves v, star_ being its elements, as far as they stay above: all the way, or steps shorter each time.

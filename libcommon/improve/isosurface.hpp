@@ -16,6 +16,8 @@ public:
   bool probe(Vec3d p, double& distance, Vec3d& normal) const override { return view().probe(p, distance, normal); }
   /// Of up to four grid points next to each other, with all around them on the other side.
   bool pocket(Vec3d p, bool hole, Vec3d& inside) const override;
+  /// Within two spacings on each axis of the grid point next to p.
+  bool neck(Vec3d p, Neck& neck) const override;
   double spacing() const override { return frame_.spacing; }
   /// As IsosurfaceView::evaluate.
   bool evaluate(Vec3d p, double& f, Vec3d& gradient) const { return view().evaluate(p, f, gradient); }

@@ -60,6 +60,21 @@ void Mending::mend(int rounds) {
   }
 }
 
+void Mending::straighten() {
+  editor_.straighten = true;
+  editor_.bold = false;
+  editor_.loose = loose;
+  editor_.goal = pass_.goal;
+  editor_.changed.clear();
+  for (const int32_t t : slots_)
+    for (size_t f = 0; f < 4; ++f)
+      if (m_.element[size_t(t)].alive() && editor_.bent(t, f)) {
+        editor_.changed.push_back(t);
+        break;
+      }
+  flatten();
+}
+
 double Mending::deficit() const {
   double sum = 0;
   for (const int32_t t : below(FaultCount::share * pass_.goal, slots_))

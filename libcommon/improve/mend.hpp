@@ -21,6 +21,8 @@ public:
   /// What has changed since is made to fit the target.
   void flatten();
   void mend(int rounds = 6);
+  /// Bent triangles are made to fit where no element falls under the goal.
+  void straighten();
   /// Of what mending has left below the goal: operations that set out are tried on the worst elements and those
   /// next to them, each with mending after. What lowers the deficit stays, where no more points are off and no
   /// more triangles bent than `before` allows; all else is put back. trials: how many more, counted down.

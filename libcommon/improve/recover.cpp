@@ -21,8 +21,9 @@ struct Daring {
   float floor;      ///< share of the goal: what a step towards the target may leave for the mending
   bool loose;       ///< Editor::loose, while mending
   int64_t for_bent; ///< triangles that may be bent for a point that comes back
+  bool straighten;  ///< bent triangles once more, when elements are mended
 };
-constexpr Daring careful{0.01f, false, 0}, bold{1e-5f, true, 2};
+constexpr Daring careful{0.01f, false, 0, false}, bold{1e-5f, true, 2, false}, in_necks{1e-5f, true, 2, true};
 
 class Recovery {
 public:
@@ -45,8 +46,12 @@ public:
       for (const int32_t v : faults_.points_off())
         if (is_off(v))
           bring_back(v);
-      if (pass_.effort > 1)
-        try_harder();
+    }
+    if (pass_.effort > 1)
+      try_harder();
+    if (pass_.effort > 2) {
+      follow_necks();
+      try_harder();
     }
   }
 
@@ -64,6 +69,8 @@ private:
       mending_.set_out();
       mending_.flatten();
       mending_.mend();
+      if (daring_.straighten && mending_.deficit() == 0)
+        mending_.straighten();
       if (faults_.better_than(before, daring_.for_bent)) {
         nearly_.clear();
         return true;
@@ -154,6 +161,26 @@ private:
     }
     return false;
   }
+
+  // Where the target is narrow, and all else was in vain: this leaves elements as small as the neck.
+  void follow_necks() {
+    daring_ = in_necks;
+    std::vector<Neck> met;
+    for (const int32_t v : faults_.points_off()) {
+      Neck neck;
+      if (!is_off(v) || !editor_.find_neck(v, neck) || std::count(met.begin(), met.end(), neck) > 0)
+        continue;
+      met.push_back(neck);
+      const Snapshot snapshot = editor_.save(mending_.elements());
+      const Faults before = faults_();
+      for (const double ratio : {0.5, 0.35, 0.65})
+        if (attempt(snapshot, before, [&] {
+              return editor_.follow_neck(v, neck, ratio) && (step_by_step(faults_.points_off(), 0.1f), true);
+            }))
+          break;
+    }
+  }
+
   void bring_back(int32_t v) {
     const Snapshot snapshot = editor_.save(mending_.elements());
     const Faults before = faults_();

@@ -12,7 +12,7 @@ struct Pass {
   float goal = 0;  ///< quality
   double cell = 1; ///< size of the parts, in the schedule's cells
   bool worst_first = true;
-  int effort = 0;  ///< 1: merges and splits too; 2: recover() shakes what it cannot mend
+  int effort = 0;  ///< 1: merges and splits too; 2: recover() shakes what it cannot mend; 3: and follows necks
   float yield = 1; ///< Editor::yield
   Guard guard;
   bool operator==(const Pass&) const = default;

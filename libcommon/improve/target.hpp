@@ -4,6 +4,12 @@
 
 namespace molmesh::improve {
 
+/// Where what is inside or outside is narrow.
+struct Neck {
+  Vec3d at, along; ///< the narrowest place; the way through, unit
+  bool operator==(const Neck& o) const { return at == o.at; }
+};
+
 /// Read-only and safe to share between threads.
 class Target {
 public:
@@ -17,6 +23,8 @@ public:
   /// A point in the nearest closed piece of the surface that is hardly larger than the grid's cells, of holes in
   /// what is inside, or of what is not a hole. False where none is near.
   virtual bool pocket(Vec3d /*p*/, bool /*hole*/, Vec3d& /*inside*/) const { return false; }
+  /// Of what p, off the surface, is not in, near p. False where that is wide for the grid.
+  virtual bool neck(Vec3d /*p*/, Neck& /*neck*/) const { return false; }
   /// How far outside the surface that is meant points are put (Å).
   virtual double offset() const { return 0; }
   /// Length that distances are measured against: the grid spacing, or the mean edge of the surface (Å).
