@@ -3,6 +3,7 @@
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace molmesh::improve {
 namespace {
@@ -41,6 +42,29 @@ void find_flat_labels(DynamicMesh& m, const TetMesh& mesh, const std::vector<uin
       if (high[l][a] - low[l][a] <= least)
         m.labels[l].axis = a;
 }
+
+/// Corners of triangles at one vertex, joined across the edges there: one set for each fan.
+class Fans {
+public:
+  explicit Fans(const std::vector<Tri>& tri) : tri_(tri) {
+    root_.resize(3 * tri.size());
+    std::iota(root_.begin(), root_.end(), size_t{0});
+  }
+  void join(int32_t t, int32_t u, int32_t v) { root_[find(corner(t, v))] = find(corner(u, v)); }
+  size_t find(size_t corner) {
+    while (root_[corner] != corner)
+      corner = root_[corner] = root_[root_[corner]];
+    return corner;
+  }
+
+private:
+  size_t corner(int32_t t, int32_t v) const {
+    const Tri& f = tri_[size_t(t)];
+    return 3 * size_t(t) + (f[0] == v ? 0u : f[1] == v ? 1u : 2u);
+  }
+  const std::vector<Tri>& tri_;
+  std::vector<size_t> root_;
+};
 
 } // namespace
 
@@ -103,14 +127,27 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& 
   par::sort(edges, threads, [](const Edge& x, const Edge& y) {
     return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.tri < y.tri;
   });
+  Fans fans(mesh.tri);
   for (size_t i = 0, j; i < edges.size(); i = j) {
     for (j = i; j < edges.size() && edges[j].a == edges[i].a && edges[j].b == edges[i].b;)
       ++j;
     bool keep = j - i != 2;
+    if (!keep)
+      for (const int32_t v : {edges[i].a, edges[i].b})
+        fans.join(edges[i].tri, edges[i + 1].tri, v);
     if (!keep && edges[i].label == edges[i + 1].label && m.labels[edges[i].label].curved())
       keep = dot(normal(edges[i].tri), normal(edges[i + 1].tri)) < limit;
     if (keep)
       m.vertex[size_t(edges[i].a)].kind = m.vertex[size_t(edges[i].b)].kind = Kind::fixed;
+  }
+  constexpr size_t none = SIZE_MAX;
+  std::vector<size_t> fan; // where sheets touch, elements may know but one of them
+  fan.resize(m.point.size(), none);
+  for (size_t c = 0; c < 3 * mesh.tri.size(); ++c) {
+    const auto v = size_t(mesh.tri[c / 3][c % 3]);
+    if (fan[v] != none && fan[v] != fans.find(c))
+      m.vertex[v].kind = Kind::fixed;
+    fan[v] = fans.find(c);
   }
 }
 

@@ -1,4 +1,5 @@
 // kinds_test.cpp — walls are known as planes wherever the mesh lies and whatever digits its coordinates carry.
+#include "geom/predicates.hpp"
 #include "improve/dynamic_mesh.hpp"
 #include "improve/improve.hpp"
 #include "lattice_mesh.hpp"
@@ -85,4 +86,21 @@ TEST_CASE("a mesh far from the origin is improved as one at the origin is") {
   CHECK(a.before.min == Approx(b.before.min).epsilon(1e-6));
   CHECK(b.after.min > 0.95 * a.after.min);
   CHECK(b.after.below_25 <= a.after.below_25 + 1);
+}
+
+TEST_CASE("where sheets of a surface touch at a point, the point is fixed") {
+  TetMesh mesh; // two elements with one point in common
+  mesh.point = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  mesh.tet = {{0, 1, 2, 3}, {0, 4, 6, 5}};
+  mesh.region = {1, 1};
+  for (const Tet& t : mesh.tet)
+    for (size_t f = 0; f < 4; ++f)
+      mesh.tri.push_back(improve::outward_triangle(t, f));
+  mesh.boundary.assign(8, 1);
+  if (orient3d(mesh.point[0], mesh.point[4], mesh.point[6], mesh.point[5]) <= 0)
+    FAIL("the second element is turned inside out");
+  const improve::DynamicMesh m = improve::build(mesh, 180, 1);
+  CHECK(m.vertex[0].kind == improve::Kind::fixed);
+  for (size_t v = 1; v < 7; ++v)
+    CHECK(m.vertex[v].kind == improve::Kind::surface);
 }

@@ -72,3 +72,20 @@ TEST_CASE("the surface follows a passage of hundredths of a spacing") {
   CHECK(surface_shape(now).euler() == shape);
   CHECK_NOTHROW(improve::build(now, 180, 1));
 }
+
+TEST_CASE("a surface that touches itself is left alone where it does") {
+  const Field tube = pierced_ball(0.6 * h, 2 * h, {0.6, 0, 0.8}),
+              field = pierced_ball(0.05 * h, 2 * h, {0.6, 0, 0.8});
+  const BlockGrid grid = lattice_grid(tube, {0, 0, 0}, h, n);
+  TetMesh mesh = lattice_mesh(tube, {0, 0, 0}, h, n, 2); // ambiguous cells: points that two sheets share
+  improve::improve(mesh, &grid, {});
+  improve::DynamicMesh m = improve::build(mesh, 180, 1);
+  const improve::Isosurface surface(lattice_grid(field, {0, 0, 0}, h, n), 1);
+  improve::Schedule schedule(m, &surface, 32 * h, 1);
+  improve::Pass pass = recovery_pass(1);
+  for (const int effort : {1, 2, 2, 2}) {
+    pass.effort = effort;
+    schedule.recover(pass);
+  }
+  CHECK_NOTHROW(improve::build(improve::extract(m), 180, 1));
+}
