@@ -35,32 +35,36 @@ std::istream& InputFile::stream() {
   return standard_ ? std::cin : file_;
 }
 
-WrittenFile::int_type WrittenFile::overflow(int_type c) {
-  const int_type done = std::filebuf::overflow(c);
-  if (traits_type::eq_int_type(done, traits_type::eof()) && error == 0)
+void NotingBuffer::note(bool failed) {
+  if (failed && error == 0)
     error = errno;
+}
+
+NotingBuffer::int_type NotingBuffer::overflow(int_type c) {
+  if (traits_type::eq_int_type(c, traits_type::eof()))
+    return traits_type::not_eof(c);
+  const int_type done = to_->sputc(traits_type::to_char_type(c));
+  note(traits_type::eq_int_type(done, traits_type::eof()));
   return done;
 }
 
-std::streamsize WrittenFile::xsputn(const char* from, std::streamsize n) {
-  const std::streamsize done = std::filebuf::xsputn(from, n);
-  if (done < n && error == 0)
-    error = errno;
+std::streamsize NotingBuffer::xsputn(const char* from, std::streamsize n) {
+  const std::streamsize done = to_->sputn(from, n);
+  note(done < n);
   return done;
 }
 
-int WrittenFile::sync() {
-  const int done = std::filebuf::sync();
-  if (done < 0 && error == 0)
-    error = errno;
+int NotingBuffer::sync() {
+  const int done = to_->pubsync();
+  note(done < 0);
   return done;
 }
 
-OutputFile::OutputFile(const std::string& path) : path_(path), target_(path), written_(path) {
-  if (path == "-") {
-    standard_ = true;
+OutputFile::OutputFile(const std::string& path)
+    : path_(path), target_(path), written_(path), standard_(path == "-"),
+      noting_(standard_ ? std::cout.rdbuf() : &file_) {
+  if (standard_)
     return;
-  }
   std::error_code none;
   const fs::file_status status = fs::status(path, none);
   if (fs::is_symlink(fs::symlink_status(path, none)) && fs::exists(status))
@@ -75,11 +79,11 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path), wr
 }
 
 std::ostream& OutputFile::stream() {
-  return standard_ ? std::cout : stream_;
+  return stream_;
 }
 
 void OutputFile::refuse(const char* what) const {
-  const int error = file_.error ? file_.error : errno ? errno : EIO;
+  const int error = noting_.error ? noting_.error : errno ? errno : EIO;
   fail(Status::not_written, (standard_ ? "<stdout>" : path_) + ": " + what + ": " + std::strerror(error));
 }
 

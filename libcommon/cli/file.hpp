@@ -22,15 +22,20 @@ private:
   bool standard_ = false;
 };
 
-/// A file to write that knows why writing failed: streams forget errno long before anybody asks.
-class WrittenFile : public std::filebuf {
+/// Passes everything on and keeps errno of the first failure: streams forget it long before anybody asks.
+class NotingBuffer : public std::streambuf {
 public:
-  int error = 0; ///< errno of the first failure; 0: none
+  explicit NotingBuffer(std::streambuf* to) : to_(to) {}
+  int error = 0; ///< 0: no failure
 
 protected:
   int_type overflow(int_type c) override;
   std::streamsize xsputn(const char* from, std::streamsize n) override;
   int sync() override;
+
+private:
+  void note(bool failed);
+  std::streambuf* to_;
 };
 
 /// "-" is standard output. A regular file is written as PATH.tmp.PID beside it and renamed by commit(); without
@@ -49,9 +54,10 @@ private:
   [[noreturn]] void refuse(const char* what) const;
   std::string path_, target_, written_;
   std::optional<Temporary> temporary_; ///< before file_: that is closed first, then removed
-  WrittenFile file_;
-  std::ostream stream_{&file_};
+  std::filebuf file_;
   bool standard_ = false;
+  NotingBuffer noting_;
+  std::ostream stream_{&noting_};
 };
 
 } // namespace molmesh::cli

@@ -14,7 +14,9 @@ namespace molmesh::contour {
 namespace {
 
 constexpr int most_halvings = 2;
-/// Some 16,000 surface cells: a ball with as many has a radius of 29 spacings and loses 0.05 %.
+constexpr double room_to_halve = (1 << 18) - 8; ///< spacings of a box: a lattice takes twice as many
+/// With the default band some 16,000 surface cells: a ball with as many has a radius of 29 spacings and loses 0.05
+/// %.
 constexpr int64_t most_active_points = 1 << 15;
 /// A ball with as few surface cells loses several per cent, and their areas are not what cells have on average.
 constexpr int64_t too_few_cells = 80;
@@ -57,7 +59,8 @@ struct Look {
 /// halvings: of the spacing so far.
 Look look_at(const BlockGrid& grid, const Options& options, int halvings) {
   const Lattice lattice(grid, options.box, options.meshed != Options::interior, options.threads);
-  if (lattice.view().any_cut)
+  const Vec3d extent = (lattice.position(lattice.cells) - lattice.position({0, 0, 0})) / grid.frame.spacing;
+  if (lattice.view().any_cut || std::max({extent.x, extent.y, extent.z}) >= room_to_halve)
     return {};
   const Surface surface = find_surface(lattice, options.threads);
   return {one_sheet_a_cell(surface, lattice.isovalue),

@@ -15,7 +15,7 @@ struct FinerGrid {
 /// some 5 h. While they would the spacing is halved (halved_grid.hpp), but never
 /// - where the cells are to be uniform: those are the grid's,
 /// - on grids of many points, where the volume is that of large bodies,
-/// - where a wall cuts the grid,
+/// - where a wall cuts the grid, or the box would have too many of the halved spacings,
 /// - where a cell may hold more than one sheet, before or after: the trilinear functions of G, whose topology the
 ///   mesh has (I7), and of log G, of which the points between are, may differ there.
 FinerGrid finer_grid(const BlockGrid& grid, const Options& options);

@@ -12,7 +12,7 @@
 
 namespace molmesh {
 
-/// For types whose constructor would only write zeros into what is written before it is read.
+/// For types whose constructor would only write what is overwritten before it is read.
 template <class T>
 inline constexpr bool leave_untouched = false;
 

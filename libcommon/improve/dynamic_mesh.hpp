@@ -102,8 +102,7 @@ void require_slots(int64_t elements, int64_t vertices); ///< of one that grows: 
 DynamicMesh build(const TetMesh& mesh, double sharp, int threads);
 
 /// Elements, vertices and triangles in slot order, unused slots squeezed out; triangles point as they did.
-/// isovalue, source and creator are the caller's. across [4 tets]: the tetrahedron across each
-/// face, -1: none.
+/// isovalue, source and creator are the caller's. across [4 tets]: the tetrahedron beyond each face, -1: none.
 TetMesh extract(const DynamicMesh& mesh, int threads = 1, LargeArray<int32_t>* across = nullptr);
 
 } // namespace molmesh::improve

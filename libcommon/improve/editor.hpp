@@ -112,6 +112,7 @@ public:
   /// The closed surface of few triangles that v is on shrinks to what the target has there, in shells that get
   /// smaller by about `ratio`.
   bool nest(int32_t v, double ratio);
+  double spacing() const { return target_ ? target_->spacing() : 1; }
   /// Near a surface vertex off the target (Target::neck).
   bool find_neck(int32_t v, Neck& neck) const {
     return m_.vertex[size_t(v)].kind == Kind::surface && target_ && target_->neck(m_.point[size_t(v)], neck);

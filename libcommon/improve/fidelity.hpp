@@ -7,7 +7,8 @@ namespace molmesh::improve {
 
 /// Over the curved surfaces, each triangle once. Distances are to the isosurface itself, whatever the offset.
 struct Fidelity {
-  int64_t points = 0, triangles = 0;
+  int64_t points = 0; ///< free ones: where sheets touch or labels meet they stay as they came
+  int64_t triangles = 0;
   int64_t points_off = 0;        ///< further than 0.02 spacings from it, or where it is not known
   int64_t points_off_cavity = 0; ///< of these, on closed cavities: where one is smaller than the grid can show
   int64_t centroids_off = 0;     ///< further than 0.25 spacings, or not known

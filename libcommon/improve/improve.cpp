@@ -39,6 +39,8 @@ const Stage stages[] = {
     {0.97, 1, 32, true, lifted},
 };
 constexpr size_t refresh_offset = 4;
+// Where two cells a part leave fewer than this, first passes take one: a single part would be one thread's work.
+constexpr int64_t fewest_parts = 8;
 
 // The surface is made to fit in the first rounds, while elements may still be bad: what stands on it is healed
 // later, but a bent triangle between good elements has nowhere to go.
@@ -86,6 +88,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
 
   begin("improve");
   const float at_first = schedule.worst();
+  const bool small = schedule.parts_at_surface(2) < fewest_parts;
   for (int round = 0; round < options.iterations && schedule.worst() < goal; ++round) {
     const Stage& stage = stages[std::min<size_t>(size_t(round), std::size(stages) - 1)];
     Pass pass;
@@ -104,7 +107,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
       result.counts.moves += done;
     }
     for (int repeat = 0; repeat < 2; ++repeat) {
-      pass.cell = repeat == 0 && stage.cell <= 2 ? 1 : stage.cell;
+      pass.cell = repeat == 0 && small ? std::min(stage.cell, 1.) : stage.cell;
       const Counts c = schedule.run(pass);
       result.counts += c;
       done += c.total();
@@ -130,7 +133,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   for (int repeat = 0, idle = 0; density && repeat < recoveries && idle < 4; ++repeat) {
     Pass pass;
     pass.goal = goal;
-    pass.effort = idle + 1;
+    pass.effort = std::min(idle + 1, 3); // the last again, with other cubes
     pass.worst_first = repeat % 2 == 0;
     pass.cell = 0.5; // what goes wrong is taken back: parts are small
     pass.guard = released;

@@ -22,8 +22,8 @@ struct Result {
   int rounds = 0;
   Angles before, after;
   Fidelity fidelity; ///< after (with a density)
-  LargeArray<int32_t>
-      across; ///< [4 tets] what is across each face, -1: none; empty where the mesh stayed as it came
+  /// [4 tets] The tetrahedron beyond each face, -1: none; empty where the mesh stayed as it came.
+  LargeArray<int32_t> across;
 };
 
 /// Moves many points at once where no element below the pass' goal becomes worse: what a device does before each

@@ -70,14 +70,14 @@ struct IsosurfaceView {
     double f, distance, v[8];
     Vec3d u, gradient, normal;
     Vec3i c, known;
-    bool any_known = false; // the values at v are those of the cell there: most steps stay in it
+    bool whole = false; // the values at v are those of the cell there: most steps stay in it
     for (int step = 0; step < 8; ++step) {
       if (!locate(p, u, c))
         return false;
-      if (!any_known || !(c == known)) {
+      if (!whole || !(c == known)) {
         known = c;
-        any_known = values(c, v);
-        if (!any_known && !values_beside(u, c, v))
+        whole = values(c, v);
+        if (!whole && !values_beside(u, c, v))
           return false;
       }
       interpolate(u, c, v, f, gradient);

@@ -76,7 +76,7 @@ void sort_worst_first(const DynamicMesh& m, std::vector<int32_t>& list) {
 }
 
 Counts Schedule::run(const Pass& pass) {
-  last_.cell = pass.cell; // what failed in a part fails in a larger one
+  last_.cell = pass.cell; // parts of another size alone are no reason to try again
   if (pass != last_)
     since_ = time_; // what failed before may work now
   last_ = pass;

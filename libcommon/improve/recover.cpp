@@ -35,9 +35,7 @@ public:
     for (const Daring& daring : {careful, bold}) {
       if (pass_.effort > 1 && !daring.loose)
         continue; // in vain the time before
-      daring_ = daring;
-      mending_.floor = daring.floor;
-      mending_.loose = daring.loose;
+      dare(daring);
       const std::vector<int32_t> points = faults_.points_off();
       if (points.empty() || points.size() > most_points)
         return; // more than was let go here and there: that is what the rounds are for
@@ -56,6 +54,11 @@ public:
   }
 
 private:
+  void dare(const Daring& daring) {
+    daring_ = daring;
+    mending_.floor = daring.floor;
+    mending_.loose = daring.loose;
+  }
   bool is_off(int32_t v) const { return m_.incident[size_t(v)] >= 0 && editor_.off(v) > 1; }
 
   // True when the operation leaves the part better, once it is mended; nothing has changed otherwise.
@@ -162,15 +165,17 @@ private:
     return false;
   }
 
-  // Where the target is narrow, and all else was in vain: this leaves elements as small as the neck.
+  // Where the target is narrow: this leaves elements as small as the neck, so it comes last.
   void follow_necks() {
-    daring_ = in_necks;
-    std::vector<Neck> met;
+    dare(in_necks);
+    const double same = 0.1 * editor_.spacing();
+    std::vector<Vec3d> met;
     for (const int32_t v : faults_.points_off()) {
       Neck neck;
-      if (!is_off(v) || !editor_.find_neck(v, neck) || std::count(met.begin(), met.end(), neck) > 0)
+      if (!is_off(v) || !editor_.find_neck(v, neck) ||
+          std::any_of(met.begin(), met.end(), [&](Vec3d at) { return norm(at - neck.at) < same; }))
         continue;
-      met.push_back(neck);
+      met.push_back(neck.at);
       const Snapshot snapshot = editor_.save(mending_.elements());
       const Faults before = faults_();
       for (const double ratio : {0.5, 0.35, 0.65})

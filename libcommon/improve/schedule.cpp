@@ -8,7 +8,17 @@ namespace molmesh::improve {
 
 Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads)
     : m_(mesh), target_(target), cell_(cell), threads_(threads), sheets_(target ? target->spacing() : 1) {
+  std::fill(m_.restless.begin(), m_.restless.end(), uint8_t{1}); // worst_ knows none of them
   find_crowded(false);
+}
+
+int64_t Schedule::parts_at_surface(double cell) {
+  set_lattice(0, cell * cell_);
+  std::vector<uint8_t> met(static_cast<size_t>(parts_.count()));
+  for (size_t v = 0; v < m_.point.size(); ++v)
+    if (m_.incident[v] >= 0 && m_.vertex[v].kind == Kind::surface)
+      met[size_t(parts_.at(m_.point[v]))] = 1;
+  return std::count(met.begin(), met.end(), uint8_t{1});
 }
 
 void Schedule::find_crowded(bool everywhere) {

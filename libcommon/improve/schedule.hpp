@@ -38,6 +38,8 @@ public:
   /// looks anew, or everywhere from now on.
   void find_crowded(bool everywhere);
   float worst();
+  /// How many parts of that size, in the schedule's cells, hold a point of the surface.
+  int64_t parts_at_surface(double cell);
   int64_t below(float goal) const;
 
 private:

@@ -104,7 +104,8 @@ bool Editor::shrink(const Piece& piece, Vec3d c, double scale, double ratio) {
     const Element& e = m_.element[size_t(t)];
     for (size_t i = 0; i < 4; ++i) {
       const bool inside = !is_in(outer, e.v[i]);
-      if (inside && m_.vertex[size_t(e.v[i])].kind != Kind::interior && !piece.has(e.v[i]))
+      const Kind kind = m_.vertex[size_t(e.v[i])].kind;
+      if (inside && kind != Kind::interior && !(kind == Kind::surface && piece.has(e.v[i])))
         return false;
       if (inside)
         inner.push_back(e.v[i]);

@@ -7,7 +7,6 @@ namespace molmesh::improve {
 /// Where what is inside or outside is narrow.
 struct Neck {
   Vec3d at, along; ///< the narrowest place; the way through, unit
-  bool operator==(const Neck& o) const { return at == o.at; }
 };
 
 /// Read-only and safe to share between threads.

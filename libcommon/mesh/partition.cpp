@@ -12,8 +12,7 @@ namespace {
 
 static_assert(sizeof(idx_t) == sizeof(int32_t), "METIS with 32-bit indices");
 
-// METIS is serial and takes 100 bytes and 0.7 µs a tetrahedron: of a large mesh it gets clusters of this many,
-// which cut as many faces as clusters of half the size along the Morton curve.
+// METIS is serial and takes 100 bytes and 0.7 µs a tetrahedron: of a large mesh it gets clusters of this many.
 constexpr int64_t cluster_size = 32, large = 1 << 17;
 
 // Tetrahedra along the Hilbert curve of their centroids, 256 places an axis; else as they come.

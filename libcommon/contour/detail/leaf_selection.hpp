@@ -103,7 +103,8 @@ private:
       refined(level) = level > top_ ? layer(level, -1) : refine(level);
   }
 
-  /// Volume that chords may cut off on the whole, in cubed fine spacings.
+  /// Volume that chords may cut off on the whole, in cubed fine spacings. Of a halved grid tetsmooth gives back
+  /// more: its spacing is the file's.
   double allowed_cut() {
     const int64_t stretches = (surface_.n + SumSamples::stretch - 1) / SumSamples::stretch;
     auto part = m_.template array<SurfaceSums>(stretches);

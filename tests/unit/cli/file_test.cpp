@@ -5,8 +5,10 @@
 #include "unit/refusal.hpp"
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 using namespace molmesh;
 using namespace molmesh::test;
@@ -64,6 +66,11 @@ TEST_CASE("an output that cannot be opened or written is status 4") {
 TEST_CASE("the message says why, also when writing failed long before the end") {
   for (const size_t bytes : {size_t{1}, size_t{1} << 20})
     CHECK(attempt("/dev/full", bytes).second == "/dev/full: cannot write: No space left on device");
+  const Outcome o = in_child([] {
+    dup2(open("/dev/full", O_WRONLY), STDOUT_FILENO);
+    return static_cast<int>(attempt("-", 1 << 20).second != "<stdout>: cannot write: No space left on device");
+  });
+  CHECK(o.status == 0);
 }
 
 TEST_CASE("a disk that fills up is status 4 and leaves nothing") {

@@ -66,6 +66,11 @@ TEST_CASE("the surface follows a passage of hundredths of a spacing") {
   for (pass.effort = 1; pass.effort <= 3; ++pass.effort)
     counts += schedule.recover(pass);
   CHECK(counts.nestings > 0);
+  float worst = 2;
+  for (const improve::Element& e : m.element)
+    worst = e.alive() ? std::min(worst, e.q) : worst;
+  CHECK(schedule.worst() == worst); // it looks again only where something has changed
+  CHECK(improve::Schedule(m, &surface, 32 * h, 1).worst() == worst);
   CHECK(improve::measure_fidelity(m, surface, 1).points_off == 0);
   CHECK(schedule.below(static_cast<float>(improve::angle_quality(25))) == 0);
   const TetMesh now = improve::extract(m);
@@ -83,9 +88,17 @@ TEST_CASE("a surface that touches itself is left alone where it does") {
   const improve::Isosurface surface(lattice_grid(field, {0, 0, 0}, h, n), 1);
   improve::Schedule schedule(m, &surface, 32 * h, 1);
   improve::Pass pass = recovery_pass(1);
-  for (const int effort : {1, 2, 2, 2}) {
+  const std::vector<Vec3d> before = m.point;
+  std::vector<size_t> fixed;
+  for (size_t v = 0; v < m.vertex.size(); ++v)
+    if (m.vertex[v].kind == improve::Kind::fixed)
+      fixed.push_back(v);
+  REQUIRE(fixed.size() > 8); // not the box's corners alone
+  for (const int effort : {1, 2, 3, 3}) {
     pass.effort = effort;
     schedule.recover(pass);
   }
   CHECK_NOTHROW(improve::build(improve::extract(m), 180, 1));
+  for (const size_t v : fixed)
+    CHECK(m.point[v] == before[v]);
 }
