@@ -15,8 +15,7 @@ namespace {
 
 constexpr int most_halvings = 2;
 constexpr double room_to_halve = (1 << 18) - 8; ///< spacings of a box: a lattice takes twice as many
-/// With the default band some 16,000 surface cells: a ball with as many has a radius of 29 spacings and loses 0.05
-/// %.
+/// With the default band some 16,000 surface cells; a ball of as many, 29 spacings in radius, loses 0.05 %.
 constexpr int64_t most_active_points = 1 << 15;
 /// A ball with as few surface cells loses several per cent, and their areas are not what cells have on average.
 constexpr int64_t too_few_cells = 80;

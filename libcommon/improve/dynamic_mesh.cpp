@@ -159,7 +159,7 @@ void require_slots(int64_t elements, int64_t vertices) {
 
 void DynamicMesh::resize(size_t elements, size_t vertices) {
   element.resize(elements, Element{});
-  restless.resize((elements + stretch - 1) / stretch, 1);
+  restless.resize(size_t(stretches(elements)), 1);
   point.resize(vertices);
   vertex.resize(vertices);
   incident.resize(vertices, -1);
@@ -180,11 +180,11 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   m.incident.assign(m.point.size(), -1);
   m.touched.assign(m.point.size(), 0);
   with_room(m.element, mesh.tet.size());
-  m.restless.assign((mesh.tet.size() + DynamicMesh::stretch - 1) / DynamicMesh::stretch, 1);
+  m.restless.assign(size_t(DynamicMesh::stretches(mesh.tet.size())), 1);
   FirstFault fault;
-  constexpr int64_t chunk = 4096;
+  constexpr int64_t chunk = DynamicMesh::stretch;
   const auto tets = static_cast<int64_t>(mesh.tet.size());
-  par::for_n((tets + chunk - 1) / chunk, threads, 1, [&](int64_t c) {
+  par::for_n(DynamicMesh::stretches(mesh.tet.size()), threads, 1, [&](int64_t c) {
     const auto first = static_cast<size_t>(c * chunk), n = static_cast<size_t>(std::min(chunk, tets - c * chunk));
     const auto corner = [&](size_t k, size_t i) { return m.point[size_t(mesh.tet[first + k][i])]; };
     judge_each(n, corner, [&](size_t k, float q) {

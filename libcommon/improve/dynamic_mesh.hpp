@@ -69,9 +69,10 @@ struct DynamicMesh {
   std::vector<int32_t> touched;  ///< [vertices] when an element at the vertex last changed
   LargeArray<Element> element;
   std::vector<Label> labels; ///< [0] is no label
-  /// [elements / stretch, rounded up] not 0 where the quality of one may have changed since this was cleared.
+  /// [stretches] not 0 where the quality of an element may have changed since this was cleared.
   std::vector<uint8_t> restless;
-  static constexpr int64_t stretch = 4096;
+  static constexpr int64_t stretch = 4096; ///< elements
+  static int64_t stretches(size_t elements) { return (static_cast<int64_t>(elements) + stretch - 1) / stretch; }
 
   /// To so many slots; new ones are free.
   void resize(size_t elements, size_t vertices);

@@ -46,18 +46,18 @@ Fidelity add(Fidelity a, const Fidelity& b) {
 
 Fidelity measure_triangles(const DynamicMesh& m, const Isosurface& surface, int threads) {
   const auto elements = static_cast<int64_t>(m.element.size());
-  return par::reduce((elements + DynamicMesh::stretch - 1) / DynamicMesh::stretch, threads, Fidelity{},
-                     [&](int64_t s) { // few elements have a triangle
-                       Fidelity sum;
-                       for (int64_t t = s * DynamicMesh::stretch;
-                            t < std::min(elements, (s + 1) * DynamicMesh::stretch); ++t)
-                         if (const Element& e = m.element[size_t(t)]; e.alive())
-                           for (size_t f = 0; f < 4; ++f)
-                             if (m.counts_here(e, f) && m.labels[e.label[f]].curved())
-                               add_triangle(m, surface, e, f, sum);
-                       return sum;
-                     },
-                     add, 1);
+  return par::reduce(
+      DynamicMesh::stretches(m.element.size()), threads, Fidelity{},
+      [&](int64_t s) { // few elements have a triangle
+        Fidelity sum;
+        for (int64_t t = s * DynamicMesh::stretch; t < std::min(elements, (s + 1) * DynamicMesh::stretch); ++t)
+          if (const Element& e = m.element[size_t(t)]; e.alive())
+            for (size_t f = 0; f < 4; ++f)
+              if (m.counts_here(e, f) && m.labels[e.label[f]].curved())
+                add_triangle(m, surface, e, f, sum);
+        return sum;
+      },
+      add, 1);
 }
 
 } // namespace

@@ -145,9 +145,10 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& 
   fan.resize(m.point.size(), none);
   for (size_t c = 0; c < 3 * mesh.tri.size(); ++c) {
     const auto v = size_t(mesh.tri[c / 3][c % 3]);
-    if (fan[v] != none && fan[v] != fans.find(c))
+    const size_t here = fans.find(c);
+    if (fan[v] != none && fan[v] != here)
       m.vertex[v].kind = Kind::fixed;
-    fan[v] = fans.find(c);
+    fan[v] = here;
   }
 }
 

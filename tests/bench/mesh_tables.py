@@ -6,7 +6,8 @@
 BIN: folder of the tools. DATA: folder with paper/1su4.pdb.gz, paper/1htq_24chains_model1_derived.pdb.gz and
 large/4v6x.cif.gz. Seconds are those of phase `density`, of all phases of density2tet but reading and writing, and of
 tetsmooth's phases `adjacency`, `target`, `improve` and `result`. Processor: seconds of user and system of the three
-whole programs, reading and writing included, for machines that are busy with other work. The region is both; everything else as by default.
+whole programs, reading and writing included, for machines that are busy with other work. The region is both; everything
+else as by default.
 Turned: surface triangles in 1,000 whose normal is more than 45 degrees from the field's. Off: surface points in 1,000
 further than a fiftieth of a spacing from the isosurface.
 The paper: Xeon E5-1620; its SERCA pump is 1SU4 in a membrane (80,157 atoms), its 1HTQ has ten models summed."""
@@ -49,8 +50,8 @@ def main():
             text = json.load(open(report))
             return {p["name"]: p["seconds"] for p in text["phases"]}, text["counts"]
 
-        print(f"{'':6} {'':5} {'density':>9} {'mesh':>8} {'quality':>8} {'total':>8} {'processor':>9} {'V#':>9} {'E#':>10} {'ratio':>6} "
-              f"{'Joe-Liu':>7} {'dihedral':>16} {'<25 or >140':>11} {'turned':>6} {'off':>6}")
+        print(f"{'':6} {'':5} {'density':>9} {'mesh':>8} {'quality':>8} {'total':>8} {'processor':>9} "
+              f"{'V#':>9} {'E#':>10} {'ratio':>6} {'Joe-Liu':>7} {'dihedral':>16} {'<25 or >140':>11} {'turned':>6} {'off':>6}")
         for name, (file, theirs, sequential, eight, points, elements, ratio, joe_liu, angle) in STRUCTURES.items():
             if arguments.only not in (None, name):
                 continue
@@ -69,8 +70,8 @@ def main():
                 seconds = [density["density"], sum(s for n, s in mesh.items() if n not in ("read", "write")),
                            sum(smooth.get(n, 0) for n in ("adjacency", "target", "improve", "result"))]
                 after, on = counts["quality_after"], counts["surface"]
-                print(f"{name:6} {mode:5} {seconds[0]:9.2f} {seconds[1]:8.2f} {seconds[2]:8.2f} {sum(seconds):8.2f} {used:9.2f} "
-                      f"{counts['points']:9} {counts['elements']:10} {quality['edge_ratio']['max']:6.2f} "
+                print(f"{name:6} {mode:5} {seconds[0]:9.2f} {seconds[1]:8.2f} {seconds[2]:8.2f} {sum(seconds):8.2f} "
+                      f"{used:9.2f} {counts['points']:9} {counts['elements']:10} {quality['edge_ratio']['max']:6.2f} "
                       f"{quality['joe_liu_q']['min']:7.3f} {after['min_dihedral']:7.2f} {after['max_dihedral']:8.2f} "
                       f"{after['below_25'] + after['above_140']:11} {1e3 * on['turned_45'] / on['triangles']:6.2f} "
                       f"{1e3 * on['points_off'] / on['points']:6.2f}", flush=True)
