@@ -71,7 +71,7 @@ public:
       Vec3d p[4];
       for (size_t i = 0; i < 4; ++i)
         p[i] = t[i] == vertex_ ? x : r_.e.position[t[i]];
-      const float q = improve::tet_quality(p[0], p[1], p[2], p[3]);
+      const float q = improve::tet_quality(p[0], p[1], p[2], p[3], r_.shape);
       quality_[k] = q <= worst || orient3d(p[0], p[1], p[2], p[3]) <= 0 ? refused : q;
     }
     team_.sync();
@@ -98,7 +98,7 @@ private:
   }
   HD float evaluate(int32_t k, const Vec3f& y) const {
     float q;
-    improve::spoke_quality(spoke_[k], y.x, y.y, y.z, q);
+    improve::spoke_quality(spoke_[k], y.x, y.y, y.z, q, static_cast<float>(r_.shape));
     return q;
   }
   /// Of equals the first.

@@ -30,7 +30,7 @@ public:
     eights_.resize((elements_ + 7) / 8);
     moving_.resize(elements_);
     const Vec3d x = r.e.position[vertex_];
-    spokes_.clear(x);
+    spokes_.clear(x, r.shape);
     length_ = 0;
     // In three steps, so that many elements and then corners are on their way from memory at once.
     tet_.resize(elements_);
@@ -63,7 +63,7 @@ public:
       eights_[k / 8].set(k % 8, moving_[k], x);
     for (size_t g = 0; g < eights_.size(); ++g) {
       float q[8];
-      improve::qualities(eights_[g], q);
+      improve::qualities(eights_[g], q, r_->shape);
       for (size_t k = 8 * g; k < elements_ && k < 8 * g + 8; ++k) {
         if (q[k % 8] <= worst)
           return false;
@@ -111,7 +111,8 @@ struct JudgeChunk {
         [&](size_t k, float q) {
           all.quality[others[k]] = q;
           return true;
-        });
+        },
+        all.shape);
   }
 };
 

@@ -1,6 +1,5 @@
 // quality_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "improve/quality_kernel.hpp"
-#include "improve/quality.hpp"
 #include <cstring>
 
 #undef HWY_TARGET_INCLUDE
@@ -19,7 +18,7 @@ constexpr F f{};
 constexpr int lanes = static_cast<int>(HWY_MIN(8, HWY_LANES(double)));
 typedef double V __attribute__((vector_size(sizeof(double) * lanes))); // tet_quality's text is the device's too
 
-void qualities_simd(const EightElements& e, float (&quality)[8]) {
+void qualities_simd(const EightElements& e, float (&quality)[8], double shape) {
   for (int l = 0; l < 8; l += lanes) {
     Corners<V> p;
     for (int i = 0; i < 4; ++i) {
@@ -28,7 +27,7 @@ void qualities_simd(const EightElements& e, float (&quality)[8]) {
       std::memcpy(&p.z[i], e.z[i] + l, sizeof(V));
     }
     V q;
-    corners_quality(p, q);
+    corners_quality(p, q, shape);
     const hn::Rebind<float, F> to;
     hn::StoreU(hn::DemoteTo(to, hn::Load(f, reinterpret_cast<const double*>(&q))), to, quality + l);
   }
@@ -44,8 +43,8 @@ namespace molmesh::improve {
 
 HWY_EXPORT(qualities_simd);
 
-void qualities(const EightElements& e, float (&quality)[8]) {
-  HWY_DYNAMIC_DISPATCH(qualities_simd)(e, quality);
+void qualities(const EightElements& e, float (&quality)[8], double shape) {
+  HWY_DYNAMIC_DISPATCH(qualities_simd)(e, quality, shape);
 }
 
 } // namespace molmesh::improve

@@ -1,6 +1,6 @@
 // quality_kernel.hpp — tet_quality of eight elements, vectorized for the best instruction set of this machine.
 #pragma once
-#include "geom/vec.hpp"
+#include "improve/quality.hpp"
 #include <algorithm>
 #include <cstddef>
 
@@ -17,12 +17,12 @@ struct alignas(64) EightElements {
 };
 
 /// As tet_quality, to the last bit.
-void qualities(const EightElements& e, float (&quality)[8]);
+void qualities(const EightElements& e, float (&quality)[8], double shape = shape_weight);
 
 /// visit(k, quality) for the elements k in [0, n), ascending, until it says false; false then. corner(k, i): a
 /// place.
 template <class Corner, class Visit>
-bool judge_each(size_t n, Corner&& corner, Visit&& visit) {
+bool judge_each(size_t n, Corner&& corner, Visit&& visit, double shape = shape_weight) {
   EightElements eight{};
   for (size_t first = 0; first < n; first += 8) {
     const size_t end = std::min(first + 8, n);
@@ -30,7 +30,7 @@ bool judge_each(size_t n, Corner&& corner, Visit&& visit) {
       for (size_t i = 0; i < 4; ++i)
         eight.set(k - first, i, corner(k, i));
     float quality[8];
-    qualities(eight, quality);
+    qualities(eight, quality, shape);
     for (size_t k = first; k < end; ++k)
       if (!visit(k, quality[k - first]))
         return false;

@@ -24,12 +24,12 @@ HD constexpr int spoke_corner(int moving, int i) {
   return (moving == 0 ? 0x3210 : moving == 1 ? 0x2301 : moving == 2 ? 0x1032 : 0x0123) >> (4 * i) & 3;
 }
 
-/// With the vertex at x, y, z. V: the wider of S and X, of which either may be float: elements in the lanes, or
-/// places. A lane's bits are the scalar's. Vectors come and go by reference: what they look like as arguments
-/// depends on the processor.
+/// With the vertex at x, y, z; Q weighted as tet_quality has it. V: the wider of S and X, of which either may be
+/// float: elements in the lanes, or places. A lane's bits are the scalar's. Vectors come and go by reference: what
+/// they look like as arguments depends on the processor.
 template <class S, class X, class V>
 HD __attribute__((always_inline)) inline void spoke_quality(const Spoke<S>& s, const X& x, const X& y, const X& z,
-                                                            V& q) {
+                                                            V& q, float q_weight) {
   const V ax = s.ax - x, ay = s.ay - y, az = s.az - z;
   const V bx = s.bx - x, by = s.by - y, bz = s.bz - z;
   const V cx = s.cx - x, cy = s.cy - y, cz = s.cz - z;
@@ -46,7 +46,7 @@ HD __attribute__((always_inline)) inline void spoke_quality(const Spoke<S>& s, c
   const V s1 = s.ca * s.r * rv * (s.nx * vx + s.ny * vy + s.nz * vz > 0 ? w : one);
   const V s2 = s.ab * s.r * rt * (s.nx * tx + s.ny * ty + s.nz * tz > 0 ? w : one);
   const V aa = ax * ax + ay * ay + az * az, bb = bx * bx + by * by + bz * bz, cc = cx * cx + cy * cy + cz * cz;
-  const V sum = aa + bb + cc + s.ab + s.bc + s.ca, shape = static_cast<float>(shape_weight) / (sum * sum * sum);
+  const V sum = aa + bb + cc + s.ab + s.bc + s.ca, shape = q_weight / (sum * sum * sum);
   const V s3 = cc * ru * rv * (ux * vx + uy * vy + uz * vz > 0 ? w : one);
   const V s4 = bb * ru * rt * (ux * tx + uy * ty + uz * tz > 0 ? w : one);
   const V s5 = aa * rv * rt * (vx * tx + vy * ty + vz * tz > 0 ? w : one);

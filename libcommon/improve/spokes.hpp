@@ -12,9 +12,10 @@ namespace molmesh::improve {
 class Spokes {
 public:
   static constexpr int most_places = Places::most; ///< of first_above
-  /// Lengths are measured from `origin` in units of the first element's first edge.
-  void clear(Vec3d origin) {
+  /// Lengths are measured from `origin` in units of the first element's first edge. shape: as tet_quality has it.
+  void clear(Vec3d origin, double shape = shape_weight) {
     origin_ = origin;
+    shape_ = static_cast<float>(shape);
     inverse_ = 0;
     decided_ = 0;
     group_.clear();
@@ -32,12 +33,15 @@ public:
   int first_above(const Vec3d* y, int from, int n, float above, float& q);
 
 private:
-  SpokesView view() { return {group_.data(), static_cast<int32_t>(order_.size()), order_.data(), &decided_}; }
+  SpokesView view() {
+    return {group_.data(), static_cast<int32_t>(order_.size()), order_.data(), &decided_, shape_};
+  }
   Vec3f local(Vec3d x) const {
     const Vec3d u = (x - origin_) * inverse_;
     return {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z)};
   }
   Vec3d origin_;
+  float shape_ = 0;
   double inverse_ = 0; ///< of the unit of length
   int32_t decided_ = 0;
   std::vector<SpokeGroup> group_;

@@ -36,7 +36,7 @@ HWY_INLINE void evaluate(const SpokesView& s, int32_t first, const Vec3f& x, V& 
                                      &spoke.r,  &spoke.ab, &spoke.bc, &spoke.ca};
   for (int k = 0; k < SpokeGroup::fields; ++k)
     load(from + SpokeGroup::lanes * k, *to[k]);
-  spoke_quality(spoke, x.x, x.y, x.z, q);
+  spoke_quality(spoke, x.x, x.y, x.z, q, s.shape);
 }
 
 HWY_INLINE Spoke<float> one_spoke(const SpokesView& s, int32_t k) {
@@ -93,7 +93,7 @@ void judge_around_simd(const SpokesView& s, int32_t spoke, Vec3f x, float d, flo
   for (int32_t k = 0; k < 6; k += lanes) {
     V px, py, pz, q;
     load(p.x + k, px), load(p.y + k, py), load(p.z + k, pz);
-    spoke_quality(one, px, py, pz, q);
+    spoke_quality(one, px, py, pz, q, s.shape);
     hn::Store(to_highway(q), f, all + k);
   }
   std::copy_n(all, 6, out);
@@ -108,7 +108,7 @@ int first_place_above_simd(const SpokesView& s, const Places& places, int from, 
     uint32_t left = ahead(n - begin) & ~ahead(from - begin);
     for (int32_t k = 0; k < s.count && std::popcount(left) > few; ++k) {
       V at;
-      spoke_quality(one_spoke(s, s.order[k]), x, y, z, at);
+      spoke_quality(one_spoke(s, s.order[k]), x, y, z, at, s.shape);
       left &= bits_of(hn::Gt(to_highway(at), hn::Set(f, above)));
       if (left == 0 && k > 0) { // decides next time too
         const int32_t decided = s.order[k];

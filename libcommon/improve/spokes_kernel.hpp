@@ -18,6 +18,7 @@ struct SpokesView {
   int32_t count;
   int32_t* order;   ///< [count] in which elements are asked about many places: worst first is best
   int32_t* decided; ///< a lane of the group that last decided about one place: the likely one next time
+  float shape;      ///< of Q, as tet_quality has it
 };
 
 /// Smallest quality with the vertex at x, or some value ≤ above as soon as elements are no better than that.

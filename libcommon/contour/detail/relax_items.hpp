@@ -24,18 +24,19 @@ struct LatticeClasses {
   }
 };
 
-HD inline float quality_of(const ElementsView& e, int64_t t) {
-  const Tet& v = e.tet[t];
-  return improve::tet_quality(e.position[v[0]], e.position[v[1]], e.position[v[2]], e.position[v[3]]);
-}
-
 /// The lattice's own elements need no look: an edge of it with the middles of two boxes of one size.
 struct Qualities {
   ElementsView e;
   const uint8_t* lattice_class;
   int64_t known; ///< of the vertices
+  double shape;  ///< of Q, as improve::tet_quality has it
   float* quality;
-  HD void operator()(int64_t t) const { quality[t] = of_lattice(e.tet[t]) ? 1 : quality_of(e, t); }
+  HD void operator()(int64_t t) const {
+    const Tet& v = e.tet[t];
+    quality[t] = of_lattice(v) ? 1
+                               : improve::tet_quality(e.position[v[0]], e.position[v[1]], e.position[v[2]],
+                                                      e.position[v[3]], shape);
+  }
   HD bool of_lattice(const Tet& t) const {
     for (size_t c = 0; c < 4; ++c)
       if (t[c] >= known)
@@ -69,6 +70,7 @@ struct RelaxView {
   Bounds bound;
   float* quality;           ///< [tets]
   float goal;               ///< elements below it are bad
+  double shape;             ///< of Q, as improve::tet_quality has it
   const int32_t* vertex;    ///< [candidates] ascending
   const int64_t* first;     ///< [candidates + 1] into element
   const int32_t* element;   ///< ascending at each candidate

@@ -12,7 +12,7 @@ float judge(const SpokesView& s, int32_t k, Vec3f x) {
   float field[SpokeGroup::fields], q;
   for (int i = 0; i < SpokeGroup::fields; ++i)
     field[i] = s.group[k / SpokeGroup::lanes].field[i][k % SpokeGroup::lanes];
-  spoke_quality(std::bit_cast<Spoke<float>>(field), x.x, x.y, x.z, q);
+  spoke_quality(std::bit_cast<Spoke<float>>(field), x.x, x.y, x.z, q, s.shape);
   return q;
 }
 
@@ -45,10 +45,10 @@ int first_place_above(const SpokesView& s, const Places& places, int from, int n
   return n;
 }
 
-void qualities(const EightElements& e, float (&quality)[8]) {
+void qualities(const EightElements& e, float (&quality)[8], double shape) {
   for (int l = 0; l < 8; ++l)
     quality[l] = tet_quality({e.x[0][l], e.y[0][l], e.z[0][l]}, {e.x[1][l], e.y[1][l], e.z[1][l]},
-                             {e.x[2][l], e.y[2][l], e.z[2][l]}, {e.x[3][l], e.y[3][l], e.z[3][l]});
+                             {e.x[2][l], e.y[2][l], e.z[2][l]}, {e.x[3][l], e.y[3][l], e.z[3][l]}, shape);
 }
 
 } // namespace molmesh::improve
