@@ -2,6 +2,7 @@
 #pragma once
 #include "cli/cleanup.hpp"
 #include "cli/file.hpp"
+#include "density/large_array.hpp"
 #include "error.hpp"
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -73,6 +74,7 @@ template <class Options, class Describe, class RunTool>
 int run_main(const char* tool, const char* purpose, int argc, char** argv, Describe describe, RunTool run_tool) {
   try {
     guard_process();
+    keep_freed_pages();
     std::ios::sync_with_stdio(false);
     Options options;
     CLI::App app(purpose, tool);

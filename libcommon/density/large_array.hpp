@@ -4,6 +4,8 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <malloc.h>
 #include <memory>
 #include <new>
 #include <sys/mman.h>
@@ -51,6 +53,17 @@ inline void prepare_pages(void* begin, std::size_t bytes) {
     madvise(reinterpret_cast<void*>(first), end - first, MADV_POPULATE_WRITE);
 #else
   static_cast<void>(begin), static_cast<void>(bytes);
+#endif
+}
+
+/// For a program whose passes give back large arrays and ask for new ones: glibc keeps what is freed instead of
+/// returning it, so that its pages need not be fetched and zeroed again.
+inline void keep_freed_pages() {
+#ifdef M_MMAP_MAX
+  constexpr int pad = 64 << 20;
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  mallopt(M_TOP_PAD, pad);
 #endif
 }
 
