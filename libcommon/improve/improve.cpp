@@ -133,7 +133,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   for (int repeat = 0, idle = 0; density && repeat < recoveries && idle < 4; ++repeat) {
     Pass pass;
     pass.goal = goal;
-    pass.effort = std::min(idle + 1, 3); // the last again, with other cubes
+    pass.effort = idle + 1;
     pass.worst_first = repeat % 2 == 0;
     pass.cell = 0.5; // what goes wrong is taken back: parts are small
     pass.guard = released;

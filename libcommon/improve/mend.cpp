@@ -82,7 +82,7 @@ double Mending::deficit() const {
   return sum;
 }
 
-// The worst elements and those beside them.
+// The worst elements and those beside them; with effort 4 all at the worst one's corners too.
 std::vector<int32_t> Mending::worst() const {
   constexpr size_t most = 4;
   std::vector<int32_t> list = below(FaultCount::share * pass_.goal, slots_);
@@ -92,6 +92,15 @@ std::vector<int32_t> Mending::worst() const {
     for (const int32_t t : m_.element[size_t(list[i])].n)
       if (t >= 0 && editor_.owned(t) && std::find(list.begin(), list.end(), t) == list.end())
         list.push_back(t);
+  if (pass_.effort < 4 || list.empty())
+    return list;
+  const Element first = m_.element[size_t(list[0])];
+  for (const int32_t t : slots_) {
+    const Element& e = m_.element[size_t(t)];
+    if (e.alive() && std::any_of(first.v.begin(), first.v.end(), [&](int32_t v) { return e.find(v) >= 0; }) &&
+        std::find(list.begin(), list.end(), t) == list.end())
+      list.push_back(t);
+  }
   return list;
 }
 

@@ -24,8 +24,9 @@ public:
   /// Bent triangles are made to fit where no element falls under the goal.
   void straighten();
   /// Of what mending has left below the goal: operations that set out are tried on the worst elements and those
-  /// next to them, each with mending after. What lowers the deficit stays, where no more points are off and no
-  /// more triangles bent than `before` allows; all else is put back. trials: how many more, counted down.
+  /// next to them (effort 4: all round the worst one), each with mending after. What lowers the deficit stays,
+  /// where no more points are off and no more triangles bent than `before` allows; all else is put back. trials:
+  /// how many more, counted down.
   void shake(FaultCount& faults, const Faults& before, int64_t bent_for_a_point, int& trials);
 
   std::vector<int32_t> elements() const;

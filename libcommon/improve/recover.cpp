@@ -14,7 +14,7 @@ namespace {
 constexpr size_t most_points = 64;
 constexpr size_t room_for_shells = 3072; // elements, Editor::nest
 constexpr size_t most_states = 4;
-constexpr int most_trials = 300;
+constexpr int most_trials = 300, most_wide_trials = 6000; // of Mending::shake
 
 // How far a trial goes. Bold ones come second, for the points that are left.
 struct Daring {
@@ -107,7 +107,7 @@ private:
       return;
     const Snapshot snapshot = editor_.save(mending_.elements());
     const Faults before = faults_();
-    int trials = most_trials;
+    int trials = pass_.effort > 3 ? most_wide_trials : most_trials;
     for (const auto& [lacks, state] : std::exchange(nearly_, {})) {
       editor_.restore(state);
       mending_.shake(faults_, before, daring_.for_bent, trials);

@@ -12,7 +12,9 @@ struct Pass {
   float goal = 0;  ///< quality
   double cell = 1; ///< size of the parts, in the schedule's cells
   bool worst_first = true;
-  int effort = 0;  ///< 1: merges and splits too; 2: recover() shakes what it cannot mend; 3: and follows necks
+  /// 1: merges and splits too. Of recover(): 2: what cannot be mended is shaken; 3: the surface follows necks; 4:
+  /// all round the worst element is shaken.
+  int effort = 0;
   float yield = 1; ///< Editor::yield
   Guard guard;
   bool operator==(const Pass&) const = default;
