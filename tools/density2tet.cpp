@@ -121,7 +121,7 @@ Status run_tool(const Options& o, cli::Run& run) {
 
   if (summary.halvings > 0)
     run.note(std::string("bodies of few spacings: cells of ") + (summary.halvings > 1 ? "a quarter" : "half") +
-             " the grid's spacing keep their volume (--adapt 0: the grid's own)");
+             " the grid's spacing keep the volume that the grid shows; a finer --spacing shows more of the atoms'");
 
   run.phase("write");
   mesh.creator = cli::creator("density2tet");

@@ -83,18 +83,19 @@ Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls, i
   const Vec3i grid_last = frame.lower + frame.points - Vec3i{1, 1, 1};
   const bool to_grid = request.kind == BoxRequest::tight || (request.kind == BoxRequest::automatic && !walls);
   cut_allowed_ = request.kind == BoxRequest::corners;
+  const bool by_factor = request.kind == BoxRequest::factor; // of the surface: may end within the grid
 
   Vec3d lower = frame.position(frame.lower), upper = frame.position(grid_last);
   if (request.kind == BoxRequest::corners) {
     lower = request.lower;
     upper = request.upper;
   } else if (!to_grid) {
-    const double scale = request.kind == BoxRequest::factor ? request.scale : 2;
+    const double scale = by_factor ? request.scale : 2;
     const Vec3d centre = 0.5 * (frame.position(surface.lower) + frame.position(surface.upper));
     const Vec3d half = 0.5 * scale * (frame.position(surface.upper) - frame.position(surface.lower));
-    for (int a = 0; a < 3; ++a) { // never through the grid unasked
-      lower[a] = std::min(lower[a], centre[a] - half[a]);
-      upper[a] = std::max(upper[a], centre[a] + half[a]);
+    for (int a = 0; a < 3; ++a) {
+      lower[a] = by_factor ? centre[a] - half[a] : std::min(lower[a], centre[a] - half[a]);
+      upper[a] = by_factor ? centre[a] + half[a] : std::max(upper[a], centre[a] + half[a]);
     }
   }
   for (int a = 0; a < 3; ++a)
@@ -153,7 +154,7 @@ bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
   for (int side = 0; side < 2; ++side) {
     const double wall = side ? high : low;
     Cut& cut = cut_[static_cast<size_t>(a)][static_cast<size_t>(side)];
-    cut.cuts = cut_allowed_ && wall > first && wall < last;
+    cut.cuts = exact && wall > first && wall < last;
     cut.plane = static_cast<int32_t>(std::floor(wall));
     cut.share = wall - cut.plane;
   }

@@ -46,6 +46,15 @@ TEST_CASE("boxes: exact walls, a cut through the molecule, few elements far away
     options.meshed = Options::exterior;
     CHECK_THROWS_WITH(mesh_of(grid, options), Catch::Contains("nothing to mesh"));
   }
+  SECTION("a near box, within the grid") {
+    options.box.kind = contour::BoxRequest::factor;
+    options.box.scale = 1.1;
+    v = checked(mesh_of(grid, options));
+    CHECK(v.high.x - v.low.x == Approx(1.1 * 6));
+    const double before = region_volume(v, molecule);
+    options.box.scale = 3;
+    CHECK(before == Approx(region_volume(checked(mesh_of(grid, options)), molecule)).epsilon(0.01));
+  }
   SECTION("a far box") {
     options.box.kind = contour::BoxRequest::factor;
     options.box.scale = 3;
