@@ -1,14 +1,13 @@
 // adjacency.cpp — faces are grouped by their three points.
 #include "mesh/adjacency.hpp"
-#include "mesh/sorted_triangle.hpp"
+#include "mesh/face_groups.hpp"
 
 namespace molmesh {
 
 LargeArray<int32_t> face_neighbors(const TetMesh& m, int threads) {
   const auto faces = static_cast<int64_t>(4 * m.tet.size());
   LargeArray<int32_t> across(static_cast<size_t>(faces), no_face);
-  const auto key = [&](int64_t face) { return triangle_key(face_points(m, face)); };
-  for_each_group(faces, static_cast<int64_t>(m.point.size()), threads, key, [&](const uint32_t* face, int n) {
+  for_each_face(m.tet, {}, static_cast<int64_t>(m.point.size()), threads, [&](const uint32_t* face, int n, bool) {
     if (n == 2) {
       across[face[0]] = static_cast<int32_t>(face[1]);
       across[face[1]] = static_cast<int32_t>(face[0]);
