@@ -3,9 +3,10 @@
 #include "error.hpp"
 #include "geom/hilbert.hpp" // clusters follow the curve
 #include "mesh/adjacency.hpp"
-#include "par/par.hpp"
+#include "par/pages.hpp"
+#include <algorithm>
+#include <array>
 #include <metis.h>
-#include <utility>
 
 namespace molmesh {
 namespace {
@@ -44,7 +45,40 @@ struct Graph {
   std::vector<idx_t> begin, neighbor, node_weight, edge_weight;
 };
 
-Graph dual_graph(const TetMesh& m, int threads, LargeArray<int32_t> across) {
+/// Values that come many times over, at most `most` in all.
+class FewValues {
+public:
+  static constexpr size_t most = 4 * cluster_size;
+  void clear() { size_ = 0, table_ = {}; }
+  void add(int32_t value) {
+    size_t at = (uint32_t(value) * 0x9E3779B9u >> 16) % table_.size();
+    while (table_[at].n > 0 && table_[at].value != value)
+      at = (at + 1) % table_.size();
+    if (table_[at].n++ == 0) {
+      table_[at].value = value;
+      used_[size_++] = static_cast<uint16_t>(at);
+    }
+  }
+  size_t size() const { return size_; } ///< each once
+  /// f(value, how often), ascending.
+  template <class F>
+  void for_each(F&& f) {
+    std::sort(used_.begin(), used_.begin() + size_,
+              [&](uint16_t a, uint16_t b) { return table_[a].value < table_[b].value; });
+    for (size_t i = 0; i < size_; ++i)
+      f(table_[used_[i]].value, table_[used_[i]].n);
+  }
+
+private:
+  struct Count {
+    int32_t value, n;
+  };
+  std::array<Count, 2 * most> table_{}; ///< by open addressing
+  std::array<uint16_t, most> used_{};
+  size_t size_ = 0;
+};
+
+Graph dual_graph(const TetMesh& m, int threads, const LargeArray<int32_t>& across) {
   const auto n = static_cast<int64_t>(m.tet.size()), size = n < large ? 1 : cluster_size;
   const int64_t nodes = (n + size - 1) / size;
   LargeArray<uint32_t> order;
@@ -56,52 +90,53 @@ Graph dual_graph(const TetMesh& m, int threads, LargeArray<int32_t> across) {
   g.node_weight.resize(size_t(nodes));
   g.begin.assign(size_t(nodes + 1), 0);
   par::for_n(n, threads, [&](int64_t k) { g.cluster[size_t(tet_at(k))] = static_cast<int32_t>(k / size); });
-  // f(of the tetrahedron across) for the faces of a node's tetrahedra, while it says so.
-  const auto each_face = [&](int64_t node, auto&& f) {
-    for (int64_t k = node * size, end = std::min(n, k + size); k < end; ++k)
-      for (int64_t face = 4 * tet_at(k), last = face + 4; face < last; ++face)
-        if (!f(across[size_t(face)]))
-          return;
+  struct Edges {
+    std::vector<idx_t> neighbor, weight;
   };
-  // A node's neighbours, ascending, one for every face, then -1: in place of its tetrahedra's own.
-  par::for_n(nodes, threads, [&](int64_t node) {
-    std::array<int32_t, 4 * cluster_size> near;
-    size_t count = 0, placed = 0;
-    each_face(node, [&](int32_t other) {
-      if (other >= 0 && g.cluster[size_t(other)] != node)
-        near[count++] = g.cluster[size_t(other)];
-      return true;
-    });
-    std::sort(near.begin(), near.begin() + count);
-    each_face(node, [&](int32_t& other) {
-      other = placed < count ? near[placed] : -1;
-      return placed++ < count;
-    });
-    g.begin[size_t(node)] = static_cast<idx_t>(std::unique(near.begin(), near.begin() + count) - near.begin());
-    g.node_weight[size_t(node)] = static_cast<idx_t>(std::min(n, (node + 1) * size) - node * size);
+  constexpr int64_t chunk = 1024; // nodes
+  std::vector<Edges> part(size_t((nodes + chunk - 1) / chunk));
+  par::for_n(static_cast<int64_t>(part.size()), threads, 1, [&](int64_t c) {
+    FewValues near;
+    std::array<int32_t, FewValues::most + 1> beyond;
+    Edges& edges = part[size_t(c)];
+    for (int64_t node = c * chunk; node < std::min(nodes, (c + 1) * chunk); ++node) {
+      const int64_t first = node * size, last = std::min(n, first + size);
+      size_t count = 0;
+      for (int64_t k = first; k < last; ++k)
+        for (int64_t face = 4 * tet_at(k), end = face + 4; face < end; ++face) {
+          const int32_t other = across[size_t(face)];
+          beyond[count] = other < 0 ? static_cast<int32_t>(node) : g.cluster[size_t(other)];
+          count += beyond[count] != node; // no branch: which it is is a guess
+        }
+      near.clear();
+      for (size_t i = 0; i < count; ++i)
+        near.add(beyond[i]);
+      near.for_each([&](int32_t neighbor, int32_t faces) {
+        edges.neighbor.push_back(neighbor);
+        edges.weight.push_back(faces);
+      });
+      g.begin[size_t(node)] = static_cast<idx_t>(near.size());
+      g.node_weight[size_t(node)] = static_cast<idx_t>(last - first);
+    }
   });
   const auto edges = size_t(par::exclusive_scan(g.begin));
   g.neighbor.resize(edges);
   g.edge_weight.resize(edges);
-  par::for_n(nodes, threads, [&](int64_t node) {
-    auto at = size_t(g.begin[size_t(node)]) - 1;
-    int32_t last = -1;
-    each_face(node, [&](int32_t other) {
-      if (other < 0)
-        return false;
-      if (other != last)
-        g.neighbor[++at] = last = other;
-      ++g.edge_weight[at];
-      return true;
-    });
+  par::for_n(static_cast<int64_t>(part.size()), threads, 1, [&](int64_t c) {
+    const Edges& own = part[size_t(c)];
+    std::copy(own.neighbor.begin(), own.neighbor.end(), g.neighbor.begin() + g.begin[size_t(c * chunk)]);
+    std::copy(own.weight.begin(), own.weight.end(), g.edge_weight.begin() + g.begin[size_t(c * chunk)]);
   });
   return g;
 }
 
 } // namespace
 
-std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeArray<int32_t> across) {
-  std::vector<int32_t> part(m.tet.size(), 0);
+std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeArray<int32_t> across,
+                               const std::function<void()>& meanwhile) {
+  std::vector<int32_t> part;
+  par::reserve_pages(part, m.tet.size(), 0, threads);
+  part.resize(m.tet.size());
   if (std::min<int64_t>(parts, int64_t(m.tet.size())) <= 1)
     return part;
   if (across.empty()) {
@@ -109,7 +144,7 @@ std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeAr
     for (int32_t& f : across)
       f = f < 0 ? -1 : f / 4;
   }
-  Graph g = dual_graph(m, threads, std::move(across));
+  Graph g = dual_graph(m, threads, across);
   auto n = static_cast<idx_t>(g.node_weight.size());
   idx_t k = std::min<idx_t>(parts, n);
   std::vector<idx_t> part_of(size_t(n), 0);
@@ -117,9 +152,18 @@ std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeAr
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = 1;
   options[METIS_OPTION_NUMBERING] = 0;
-  const int status =
-      METIS_PartGraphKway(&n, &constraints, g.begin.data(), g.neighbor.data(), g.node_weight.data(), nullptr,
-                          g.edge_weight.data(), &k, nullptr, nullptr, options, &cut, part_of.data());
+  int status = METIS_OK;
+  par::for_n(2, threads, 1, [&](int64_t i) { // METIS is serial
+    if (i == 0) {
+      status =
+          METIS_PartGraphKway(&n, &constraints, g.begin.data(), g.neighbor.data(), g.node_weight.data(), nullptr,
+                              g.edge_weight.data(), &k, nullptr, nullptr, options, &cut, part_of.data());
+      return;
+    }
+    across = {};
+    if (meanwhile)
+      meanwhile();
+  });
   if (status != METIS_OK)
     fail(Status::failed, "METIS cannot partition this mesh (status " + std::to_string(status) + ")");
   par::for_n(int64_t(part.size()), threads,

@@ -24,8 +24,11 @@ TEST_CASE("parts are even and compact, the same at any number of threads") {
     cut += across[f] >= 0 && part[f / 4] != part[static_cast<size_t>(across[f]) / 4];
   // Eight octants would cut three planes of n x n squares, two triangles each, seen from both sides.
   CHECK(cut / 2 < static_cast<size_t>(2 * 3 * n * n * 2));
-  for (int threads : {1, 5})
-    CHECK(partition(m, 8, threads) == part);
+  for (int threads : {1, 5}) {
+    int calls = 0;
+    CHECK(partition(m, 8, threads, {}, [&] { ++calls; }) == part);
+    CHECK(calls == 1);
+  }
 }
 
 TEST_CASE("one part, and more parts than tetrahedra") {
