@@ -123,7 +123,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   if (grid)
     run.counts["surface"] = json(result.fidelity);
   run.phase("partition");
-  mesh.part = partition(mesh, o.parts, threads, std::move(result.across));
+  mesh.part = partition(mesh, o.parts, threads, std::move(result.across), [&] { result.work.reset(); });
   arrays.put_into(mesh, threads);
   if (!arrays.empty())
     run.note("carried from the nearest element before: " + arrays.names());

@@ -103,7 +103,7 @@ private:
     const Column x = column(points, static_cast<uint64_t>(p.points) * 3, false);
     if (points.components != 3)
       d_.refuse(points.line, "R3", "Points with " + std::to_string(points.components) + " components, expected 3");
-    m_.point.reserve(first_point + static_cast<size_t>(p.points));
+    reserve(m_.point, first_point + static_cast<size_t>(p.points));
     for (size_t i = 0; i < static_cast<size_t>(p.points); ++i) {
       const Vec3d v{x.real(3 * i), x.real(3 * i + 1), x.real(3 * i + 2)};
       for (int k = 0; k < 3; ++k)
@@ -114,6 +114,12 @@ private:
       m_.point.push_back(v);
     }
     read_cells(p, static_cast<int32_t>(first_point));
+  }
+
+  // And room, untouched, for a mesh that takes this one's place and is somewhat larger.
+  template <class Vector>
+  static void reserve(Vector& v, size_t n) {
+    v.reserve(n + n / 16);
   }
 
   void read_cells(const Piece& p, int32_t first_point) {
@@ -130,8 +136,8 @@ private:
     size_t tets = m_.tet.size();
     for (size_t c = 0; c < cells; ++c)
       tets += types.integer(c) == 10;
-    m_.tet.reserve(tets);
-    m_.region.reserve(tets);
+    reserve(m_.tet, tets);
+    reserve(m_.region, tets);
     if (part.tag)
       m_.part.reserve(tets);
     std::vector<uint8_t> kept(arrays_ == CellArrays::keep ? cells : 0, 0); // 1: tetrahedron, 2: triangle

@@ -25,20 +25,29 @@ Angles of_element(const DynamicMesh& m, const Element& e) {
   return a;
 }
 
+Angles both(Angles a, const Angles& b) {
+  a.min = std::min(a.min, b.min);
+  a.max = std::max(a.max, b.max);
+  a.below_25 += b.below_25;
+  a.above_140 += b.above_140;
+  return a;
+}
+
 Angles measure_up_to(const DynamicMesh& m, float quality, int threads) {
+  constexpr int64_t grain = 16;
   return par::reduce(
-      static_cast<int64_t>(m.element.size()), threads, Angles{},
-      [&](int64_t t) {
-        const Element& e = m.element[size_t(t)];
-        return e.q <= quality && e.alive() ? of_element(m, e) : Angles{};
-      },
-      [](Angles a, const Angles& b) {
-        a.min = std::min(a.min, b.min);
-        a.max = std::max(a.max, b.max);
-        a.below_25 += b.below_25;
-        a.above_140 += b.above_140;
+      static_cast<int64_t>(m.restless.size()), threads, Angles{},
+      [&](int64_t s) {
+        Angles a;
+        if (!m.restless[size_t(s)] && m.worst[size_t(s)] > quality)
+          return a;
+        m.for_stretch(s, [&](int64_t t) {
+          if (const Element& e = m.element[size_t(t)]; e.q <= quality && e.alive())
+            a = both(a, of_element(m, e));
+        });
         return a;
-      });
+      },
+      both, grain);
 }
 
 } // namespace

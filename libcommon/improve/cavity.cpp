@@ -157,12 +157,15 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
     x.n[f] = b;
     y.n[g] = a;
     x.label[f] = y.label[g] = x.region == y.region ? uint8_t{0} : label;
+    if (x.label[f] != 0)
+      m_.note_label(a), m_.note_label(b);
   };
   const auto bare = [&](int32_t a, size_t f) {
     Element& e = m_.element[size_t(a)];
     e.n[f] = -1;
     if (e.label[f] == 0)
       e.label[f] = outside;
+    m_.note_label(a);
     if (sheets_ && m_.labels[e.label[f]].curved() && crowded(outward_triangle(e.v, f)))
       changed_sheets_.insert(sheet_triangle(m_.point, outward_triangle(e.v, f), 4 * int64_t(a) + int64_t(f)));
   };

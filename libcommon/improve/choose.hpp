@@ -1,6 +1,7 @@
 // choose.hpp — which of many slots a pass works on, each looked at once.
 #pragma once
 #include "par/par.hpp"
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -12,7 +13,7 @@ template <class Keep, class MayHave>
 std::vector<int32_t> choose(int64_t n, int threads, int64_t grain, MayHave&& may_have, Keep&& keep) {
   const int64_t chunks = (n + grain - 1) / grain;
   std::vector<std::vector<int32_t>> found(static_cast<size_t>(chunks));
-  par::for_n(chunks, threads, 1, [&](int64_t c) {
+  par::for_n(chunks, threads, std::max<int64_t>(1, (1 << 13) / grain), [&](int64_t c) {
     if (!may_have(c))
       return;
     for (int64_t i = c * grain, end = std::min(n, i + grain); i < end; ++i)

@@ -4,8 +4,9 @@
 #include "geom/predicates.hpp" // exact sign of the volumes that come in
 #include "improve/kinds.hpp"
 #include "improve/quality_kernel.hpp"
+#include "mesh/face_groups.hpp"
 #include "mesh/sorted_triangle.hpp"
-#include "par/par.hpp"
+#include "par/pages.hpp"
 #include <algorithm>
 #include <map>
 #include <mutex>
@@ -50,42 +51,6 @@ private:
   std::string text_;
 };
 
-// Faces meet the face on their other side and their triangle.
-void link(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, int threads) {
-  const auto faces = static_cast<int64_t>(4 * mesh.tet.size()), triangles = static_cast<int64_t>(mesh.tri.size());
-  const auto key = [&](int64_t i) {
-    return triangle_key(i < faces ? face_at(mesh, i) : mesh.tri[size_t(i - faces)]);
-  };
-  FirstFault fault;
-  for_each_group(
-      faces + triangles, static_cast<int64_t>(mesh.point.size()), threads, key, [&](const uint32_t* item, int n) {
-        const auto sides = static_cast<int>(std::lower_bound(item, item + n, faces) - item);
-        if (sides == 2 &&
-            sorted_triangle(face_at(mesh, item[0])).odd == sorted_triangle(face_at(mesh, item[1])).odd)
-          fault.found(item[0], [&] {
-            return name("tetrahedron", item[0] / 4) + " overlaps " + name("tetrahedron", item[1] / 4) +
-                   ", expected one on each side of a face";
-          });
-        if (sides > 2)
-          fault.found(item[0], [&] {
-            return name("tetrahedron", item[0] / 4) + " has a face shared by three, expected two at most";
-          });
-        if (sides == 0)
-          fault.found(item[0], [&] { return name("triangle", item[0] - faces) + " is no face of a tetrahedron"; });
-        if (sides > 0 && n > sides + 1)
-          fault.found(item[sides + 1],
-                      [&] { return name("triangle", item[sides + 1] - faces) + " is a duplicate"; });
-        for (int i = 0; i < sides && sides <= 2; ++i) {
-          Element& e = m.element[item[i] / 4];
-          if (sides == 2)
-            e.n[item[i] % 4] = static_cast<int32_t>(item[1 - i] / 4);
-          if (n > sides)
-            e.label[item[i] % 4] = label[size_t(item[sides] - faces)];
-        }
-      });
-  fault.fail_if_any();
-}
-
 // Labels in the order of their first triangles; the index of each triangle's.
 std::vector<uint8_t> set_labels(DynamicMesh& m, const TetMesh& mesh, std::vector<int64_t>& first) {
   m.labels.assign(1, {});
@@ -105,40 +70,65 @@ std::vector<uint8_t> set_labels(DynamicMesh& m, const TetMesh& mesh, std::vector
   return label;
 }
 
-void check_labels(const DynamicMesh& m, const TetMesh& mesh, int threads) {
-  const auto is_border = [&](const Element& e, size_t face) { // the input's regions lie closer together
-    return e.n[face] < 0 || mesh.region[size_t(e.n[face])] != e.region;
-  };
-  FirstFault fault;
-  par::for_n(static_cast<int64_t>(m.element.size()), threads, [&](int64_t e) {
-    const Element& el = m.element[size_t(e)];
-    for (size_t i = 0; i < 4; ++i)
-      if (is_border(el, i) != (el.label[i] != 0))
-        fault.found(4 * e + int64_t(i), [&] {
-          return name("tetrahedron", e) + (is_border(el, i)
-                                               ? " has a face between regions or on the outside without a triangle"
-                                               : " has a triangle inside its region");
-        });
-  });
-  fault.fail_if_any();
-}
-
-// Which way the first triangle of each label points.
-void set_directions(DynamicMesh& m, const TetMesh& mesh, const std::vector<int64_t>& first, int threads) {
-  std::vector<SortedTriangle> wanted(1);
-  for (size_t l = 1; l < first.size(); ++l)
-    wanted.push_back(sorted_triangle(mesh.tri[size_t(first[l])]));
-  par::for_n(static_cast<int64_t>(m.element.size()), threads, [&](int64_t e) {
-    const Element& el = m.element[size_t(e)];
-    for (size_t i = 0; i < 4; ++i) {
-      const uint8_t l = el.label[i];
-      if (!m.counts_here(el, i))
-        continue;
-      const SortedTriangle s = sorted_triangle(face_at(mesh, 4 * e + int64_t(i)));
-      if (s.v == wanted[l].v) // one face of the mesh for each label
-        m.labels[l].reversed = s.odd != wanted[l].odd;
+// Faces meet the face on their other side and their triangle; the first triangle of each label tells which way its
+// triangles point.
+void link(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, const std::vector<int64_t>& first,
+          int threads) {
+  const auto faces = static_cast<int64_t>(4 * mesh.tet.size());
+  FirstFault fault, mislabelled; // the one comes before the other
+  const auto join = [&](const uint32_t* face, int sides, bool has_triangle) {
+    for (int i = 0; i < sides; ++i) {
+      Element& e = m.element[face[i] / 4];
+      if (sides == 2)
+        e.n[face[i] % 4] = static_cast<int32_t>(face[1 - i] / 4);
+      if (has_triangle) {
+        e.label[face[i] % 4] = label[size_t(face[sides] - faces)];
+        m.note_label(static_cast<int32_t>(face[i] / 4));
+      }
     }
-  });
+  };
+  const auto set_direction = [&](const uint32_t* face, int sides) {
+    const auto t = static_cast<int64_t>(face[sides]) - faces;
+    const uint8_t l = label[size_t(t)];
+    if (first[l] != t)
+      return;
+    const bool second = sides == 2 && mesh.region[face[1] / 4] < mesh.region[face[0] / 4];
+    m.labels[l].reversed =
+        sorted_triangle(face_at(mesh, face[second ? 1 : 0])).odd != sorted_triangle(mesh.tri[size_t(t)]).odd;
+  };
+  for_each_face(mesh.tet, mesh.tri, static_cast<int64_t>(mesh.point.size()), threads,
+                [&](const uint32_t* face, int n, bool same_side) {
+                  const auto sides = static_cast<int>(std::lower_bound(face, face + n, faces) - face);
+                  if (sides == 2 && same_side)
+                    fault.found(face[0], [&] {
+                      return name("tetrahedron", face[0] / 4) + " overlaps " + name("tetrahedron", face[1] / 4) +
+                             ", expected one on each side of a face";
+                    });
+                  if (sides > 2)
+                    fault.found(face[0], [&] {
+                      return name("tetrahedron", face[0] / 4) + " has a face shared by three, expected two at most";
+                    });
+                  if (sides == 0)
+                    fault.found(face[0],
+                                [&] { return name("triangle", face[0] - faces) + " is no face of a tetrahedron"; });
+                  if (sides > 0 && n > sides + 1)
+                    fault.found(face[sides + 1],
+                                [&] { return name("triangle", face[sides + 1] - faces) + " is a duplicate"; });
+                  if (sides == 0 || sides > 2)
+                    return;
+                  const bool border = sides == 1 || mesh.region[face[0] / 4] != mesh.region[face[1] / 4];
+                  if (border != (n > sides))
+                    mislabelled.found(face[0], [&] {
+                      return name("tetrahedron", face[0] / 4) +
+                             (border ? " has a face between regions or on the outside without a triangle"
+                                     : " has a triangle inside its region");
+                    });
+                  join(face, sides, n > sides);
+                  if (n > sides)
+                    set_direction(face, sides);
+                });
+  fault.fail_if_any();
+  mislabelled.fail_if_any();
 }
 
 } // namespace
@@ -160,6 +150,8 @@ void require_slots(int64_t elements, int64_t vertices) {
 void DynamicMesh::resize(size_t elements, size_t vertices) {
   element.resize(elements, Element{});
   restless.resize(size_t(stretches(elements)), 1);
+  worst.resize(restless.size(), 2);
+  labelled.resize(restless.size(), 0);
   point.resize(vertices);
   vertex.resize(vertices);
   incident.resize(vertices, -1);
@@ -170,34 +162,44 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   require_size(static_cast<int64_t>(mesh.tet.size()), static_cast<int64_t>(mesh.tri.size()),
                static_cast<int64_t>(mesh.point.size()));
   DynamicMesh m;
-  const auto with_room = [](auto& v, size_t n) { // what it will grow by, untouched till then: no second copy
-    v.reserve(n + n / 8);
-    v.resize(n);
+  const size_t points = mesh.point.size(), elements = mesh.tet.size();
+  const auto with_room = [&](auto& v, size_t n) { // what it will grow by, untouched till then: no second copy
+    par::reserve_pages(v, n, n / 8, threads);
   };
-  with_room(m.point, mesh.point.size());
-  std::copy(mesh.point.begin(), mesh.point.end(), m.point.begin());
-  m.vertex.resize(m.point.size());
-  m.incident.assign(m.point.size(), -1);
-  m.touched.assign(m.point.size(), 0);
-  with_room(m.element, mesh.tet.size());
-  m.restless.assign(size_t(DynamicMesh::stretches(mesh.tet.size())), 1);
+  with_room(m.point, points);
+  m.point.assign(mesh.point.begin(), mesh.point.end());
+  with_room(m.vertex, points);
+  m.vertex.resize(points);
+  with_room(m.incident, points);
+  m.incident.assign(points, -1);
+  with_room(m.touched, points);
+  m.touched.assign(points, 0);
+  m.element.reserve(elements + elements / 8);
+  m.element.resize(elements);
+  m.restless.assign(size_t(DynamicMesh::stretches(mesh.tet.size())), 0);
+  m.worst.assign(m.restless.size(), 2);
+  m.labelled.assign(m.restless.size(), 0);
   FirstFault fault;
   constexpr int64_t chunk = DynamicMesh::stretch;
   const auto tets = static_cast<int64_t>(mesh.tet.size());
-  par::for_n(DynamicMesh::stretches(mesh.tet.size()), threads, 1, [&](int64_t c) {
+  par::for_n(DynamicMesh::stretches(mesh.tet.size()), threads, 8, [&](int64_t c) {
+    float worst = 2;
     const auto first = static_cast<size_t>(c * chunk), n = static_cast<size_t>(std::min(chunk, tets - c * chunk));
+    prepare_pages(&m.element[first], n * sizeof(Element));
     const auto corner = [&](size_t k, size_t i) { return m.point[size_t(mesh.tet[first + k][i])]; };
     judge_each(n, corner, [&](size_t k, float q) {
       Element& e = m.element[first + k] = {};
       e.v = mesh.tet[first + k];
       e.region = mesh.region[first + k];
       e.q = std::max(q, 0.f);
+      worst = std::min(worst, e.q);
       if (q < 1e-6f && orient3d(corner(k, 0), corner(k, 1), corner(k, 2), corner(k, 3)) <= 0)
         fault.found(static_cast<int64_t>(first + k), [&] {
           return name("tetrahedron", static_cast<int64_t>(first + k)) + " has no positive volume";
         });
       return true;
     });
+    m.worst[size_t(c)] = worst;
     for (size_t e = first + n; e-- > first;) // downwards: most find a higher one there
       for (const int32_t v : mesh.tet[e])
         raise_to(m.incident[size_t(v)], static_cast<int32_t>(e));
@@ -205,9 +207,7 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   fault.fail_if_any();
   std::vector<int64_t> first;
   const std::vector<uint8_t> label = set_labels(m, mesh, first);
-  link(m, mesh, label, threads);
-  check_labels(m, mesh, threads);
-  set_directions(m, mesh, first, threads);
+  link(m, mesh, label, first, threads);
   set_kinds(m, mesh, label, sharp, threads);
   return m;
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include "improve/quality.hpp"
 #include "mesh/tet_mesh.hpp"
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -71,7 +72,10 @@ struct DynamicMesh {
   std::vector<Label> labels; ///< [0] is no label
   /// [stretches] not 0 where the quality of an element may have changed since this was cleared.
   std::vector<uint8_t> restless;
-  static constexpr int64_t stretch = 4096; ///< elements
+  std::vector<float> worst; ///< [stretches] lowest quality where not restless; 2 where nothing is alive
+  /// [stretches] not 0 where a face of an element may be labelled.
+  std::vector<uint8_t> labelled;
+  static constexpr int64_t stretch = 512; ///< elements
   static int64_t stretches(size_t elements) { return (static_cast<int64_t>(elements) + stretch - 1) / stretch; }
 
   /// To so many slots; new ones are free.
@@ -79,6 +83,22 @@ struct DynamicMesh {
   /// Of the element's quality. From any thread.
   void note_change(int32_t e) {
     std::atomic_ref(restless[size_t(e / stretch)]).store(1, std::memory_order_relaxed);
+  }
+
+  /// A face of it is labelled. From any thread.
+  void note_label(int32_t e) { std::atomic_ref(labelled[size_t(e / stretch)]).store(1, std::memory_order_relaxed); }
+  /// f(e) for the slots of stretch s.
+  template <class F>
+  void for_stretch(int64_t s, F&& f) const {
+    for (int64_t e = s * stretch, end = std::min(static_cast<int64_t>(element.size()), e + stretch); e < end; ++e)
+      f(e);
+  }
+  /// f(e) for the slots of all stretches that may hold labelled faces, ascending.
+  template <class F>
+  void for_labelled(F&& f) const {
+    for (size_t s = 0; s < labelled.size(); ++s)
+      if (labelled[s])
+        for_stretch(static_cast<int64_t>(s), f);
   }
 
   /// Whether the face is labelled and this side's to count: the lower region's.
@@ -103,7 +123,8 @@ void require_slots(int64_t elements, int64_t vertices); ///< of one that grows: 
 DynamicMesh build(const TetMesh& mesh, double sharp, int threads);
 
 /// Elements, vertices and triangles in slot order, unused slots squeezed out; triangles point as they did.
-/// isovalue, source and creator are the caller's. across [4 tets]: the tetrahedron beyond each face, -1: none.
-TetMesh extract(const DynamicMesh& mesh, int threads = 1, LargeArray<int32_t>* across = nullptr);
+/// across [4 tets]: the tetrahedron beyond each face, -1: none. `out` lends its memory; isovalue, source and
+/// creator stay as they are there.
+TetMesh extract(const DynamicMesh& mesh, int threads = 1, LargeArray<int32_t>* across = nullptr, TetMesh out = {});
 
 } // namespace molmesh::improve

@@ -20,23 +20,51 @@ void number_neighbors(const DynamicMesh& m, const LargeArray<int32_t>& alive, in
   });
 }
 
+// 4 element + face, ascending: what has a triangle.
+std::vector<int64_t> labelled_faces(const DynamicMesh& m, int threads) {
+  std::vector<std::vector<int64_t>> part(m.labelled.size());
+  par::for_n(static_cast<int64_t>(part.size()), threads, 16, [&](int64_t s) {
+    if (m.labelled[size_t(s)])
+      m.for_stretch(s, [&](int64_t t) {
+        const Element& e = m.element[size_t(t)];
+        for (int64_t f = 0; f < 4 && e.alive(); ++f)
+          if (m.counts_here(e, size_t(f)))
+            part[size_t(s)].push_back(4 * t + f);
+      });
+  });
+  std::vector<int64_t> all;
+  for (const auto& p : part)
+    all.insert(all.end(), p.begin(), p.end());
+  return all;
+}
+
+// In memory at hand where there is enough of it.
+template <class Vector>
+void resize_as_new(Vector& v, size_t n) {
+  if (v.capacity() < n)
+    v = {};
+  v.resize(n);
+}
+
 } // namespace
 
-TetMesh extract(const DynamicMesh& m, int threads, LargeArray<int32_t>* across) {
-  TetMesh out;
+TetMesh extract(const DynamicMesh& m, int threads, LargeArray<int32_t>* across, TetMesh out) {
+  out.part.clear();
+  out.cell_array.clear();
+  out.named_text.clear();
   const auto slots = static_cast<int64_t>(m.element.size());
   const auto used = par::select(static_cast<int64_t>(m.point.size()), threads,
                                 [&](int64_t v) { return m.incident[size_t(v)] >= 0; });
   LargeArray<int32_t> id(m.point.size());
-  out.point.resize(used.size());
+  resize_as_new(out.point, used.size());
   par::for_n(static_cast<int64_t>(used.size()), threads, [&](int64_t k) {
     const auto v = size_t(used[size_t(k)]);
     id[v] = static_cast<int32_t>(k);
     out.point[size_t(k)] = m.point[v];
   });
   const auto alive = par::select(slots, threads, [&](int64_t e) { return m.element[size_t(e)].alive(); });
-  out.tet.resize(alive.size());
-  out.region.resize(alive.size());
+  resize_as_new(out.tet, alive.size());
+  resize_as_new(out.region, alive.size());
   par::for_n(static_cast<int64_t>(alive.size()), threads, [&](int64_t t) {
     const Element& e = m.element[size_t(alive[size_t(t)])];
     for (size_t i = 0; i < 4; ++i)
@@ -45,12 +73,9 @@ TetMesh extract(const DynamicMesh& m, int threads, LargeArray<int32_t>* across) 
   });
   if (across)
     number_neighbors(m, alive, threads, *across);
-  const auto faces = par::select<int64_t>(4 * slots, threads, [&](int64_t f) {
-    const Element& e = m.element[size_t(f / 4)];
-    return e.alive() && m.counts_here(e, size_t(f % 4));
-  });
-  out.tri.resize(faces.size());
-  out.boundary.resize(faces.size());
+  const auto faces = labelled_faces(m, threads);
+  resize_as_new(out.tri, faces.size());
+  resize_as_new(out.boundary, faces.size());
   par::for_n(static_cast<int64_t>(faces.size()), threads, [&](int64_t t) {
     const Element& e = m.element[size_t(faces[size_t(t)] / 4)];
     const size_t face = size_t(faces[size_t(t)] % 4);

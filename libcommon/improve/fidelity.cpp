@@ -44,46 +44,88 @@ Fidelity add(Fidelity a, const Fidelity& b) {
   return a;
 }
 
+// Elements of one sum: with others it would be another one in its last digits.
+constexpr int64_t chunk = 4096;
+static_assert(chunk % DynamicMesh::stretch == 0);
+constexpr int64_t stretches = chunk / DynamicMesh::stretch;
+
+// add(f(stretch), …) in a fixed order.
+template <class T, class F, class Add>
+T sum_of_chunks(const DynamicMesh& m, int threads, F&& f, Add&& add_to) {
+  const auto all = static_cast<int64_t>(m.labelled.size());
+  return par::reduce((all + stretches - 1) / stretches, threads, T{},
+                     [&](int64_t c) {
+                       T sum{};
+                       for (int64_t s = c * stretches; s < std::min(all, (c + 1) * stretches); ++s)
+                         f(s, sum);
+                       return sum;
+                     },
+                     add_to, 1);
+}
+
 Fidelity measure_triangles(const DynamicMesh& m, const Isosurface& surface, int threads) {
-  const auto elements = static_cast<int64_t>(m.element.size());
-  return par::reduce(
-      DynamicMesh::stretches(m.element.size()), threads, Fidelity{},
-      [&](int64_t s) { // few elements have a triangle
-        Fidelity sum;
-        for (int64_t t = s * DynamicMesh::stretch; t < std::min(elements, (s + 1) * DynamicMesh::stretch); ++t)
+  return sum_of_chunks<Fidelity>(
+      m, threads,
+      [&](int64_t s, Fidelity& sum) {
+        if (!m.labelled[size_t(s)])
+          return;
+        m.for_stretch(s, [&](int64_t t) {
           if (const Element& e = m.element[size_t(t)]; e.alive())
             for (size_t f = 0; f < 4; ++f)
               if (m.counts_here(e, f) && m.labels[e.label[f]].curved())
                 add_triangle(m, surface, e, f, sum);
-        return sum;
+        });
       },
-      add, 1);
+      add);
+}
+
+/// What an element's region is compared to.
+struct Regions {
+  int32_t lowest = INT32_MAX;  ///< the molecule, or what an exterior mesh has
+  std::vector<int32_t> cavity; ///< points in it
+};
+
+Regions find_regions(const DynamicMesh& m, int threads) {
+  const auto all = static_cast<int64_t>(m.labelled.size());
+  std::vector<Regions> part(size_t((all + stretches - 1) / stretches));
+  par::for_n(static_cast<int64_t>(part.size()), threads, 1, [&](int64_t c) {
+    Regions& r = part[size_t(c)];
+    for (int64_t s = c * stretches; s < std::min(all, (c + 1) * stretches); ++s)
+      m.for_stretch(s, [&](int64_t t) {
+        const Element& e = m.element[size_t(t)];
+        if (!e.alive())
+          return;
+        r.lowest = std::min(r.lowest, e.region);
+        if (e.region == cavity)
+          r.cavity.insert(r.cavity.end(), e.v.begin(), e.v.end());
+      });
+  });
+  Regions sum;
+  for (const Regions& r : part) {
+    sum.lowest = std::min(sum.lowest, r.lowest);
+    sum.cavity.insert(sum.cavity.end(), r.cavity.begin(), r.cavity.end());
+  }
+  return sum;
 }
 
 } // namespace
 
 Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int threads) {
   Fidelity sum = measure_triangles(m, surface, threads);
-  int32_t lowest = INT32_MAX; // the molecule, or what an exterior mesh has
-  for (const Element& e : m.element)
-    if (e.alive())
-      lowest = std::min(lowest, e.region);
-  sum = add(sum, par::reduce(
-                     static_cast<int64_t>(m.element.size()), threads, Fidelity{},
-                     [&](int64_t t) {
-                       Fidelity one;
-                       const Element& e = m.element[size_t(t)];
-                       if (e.alive() && e.region == lowest)
-                         one.volume = tet_volume(m.point[size_t(e.v[0])], m.point[size_t(e.v[1])],
-                                                 m.point[size_t(e.v[2])], m.point[size_t(e.v[3])]);
-                       return one;
-                     },
-                     add));
+  const Regions regions = find_regions(m, threads);
+  sum.volume += sum_of_chunks<double>(
+      m, threads,
+      [&](int64_t s, double& volume) {
+        m.for_stretch(s, [&](int64_t t) {
+          if (const Element& e = m.element[size_t(t)]; e.alive() && e.region == regions.lowest)
+            volume += tet_volume(m.point[size_t(e.v[0])], m.point[size_t(e.v[1])], m.point[size_t(e.v[2])],
+                                 m.point[size_t(e.v[3])]);
+        });
+      },
+      [](double a, double b) { return a + b; });
   std::vector<uint8_t> in_cavity(m.point.size());
-  for (const Element& e : m.element)
-    if (e.alive() && e.region == cavity)
-      for (const int32_t v : e.v)
-        in_cavity[size_t(v)] = 1;
+  for (const int32_t v : regions.cavity)
+    in_cavity[size_t(v)] = 1;
   return add(sum, par::reduce(
                       static_cast<int64_t>(m.point.size()), threads, Fidelity{},
                       [&](int64_t v) {
@@ -112,18 +154,22 @@ double mean_surface_edge(const DynamicMesh& m, int threads) {
     int64_t n = 0;
     double area = 0;
   };
-  const auto sum = par::reduce(
-      static_cast<int64_t>(m.element.size()), threads, Triangles{},
-      [&](int64_t t) {
-        Triangles own;
-        const Element& e = m.element[size_t(t)];
-        for (size_t f = 0; f < 4 && e.alive(); ++f)
-          if (m.counts_here(e, f) && m.labels[e.label[f]].curved()) {
-            const auto v = outward_triangle(e.v, f);
-            own.area += norm(tri_normal(m.point[size_t(v[0])], m.point[size_t(v[1])], m.point[size_t(v[2])])) / 2;
-            ++own.n;
-          }
-        return own;
+  const auto sum = sum_of_chunks<Triangles>(
+      m, threads,
+      [&](int64_t s, Triangles& part) {
+        if (!m.labelled[size_t(s)])
+          return;
+        m.for_stretch(s, [&](int64_t t) {
+          double area = 0;
+          const Element& e = m.element[size_t(t)];
+          for (size_t f = 0; f < 4 && e.alive(); ++f)
+            if (m.counts_here(e, f) && m.labels[e.label[f]].curved()) {
+              const auto v = outward_triangle(e.v, f);
+              area += norm(tri_normal(m.point[size_t(v[0])], m.point[size_t(v[1])], m.point[size_t(v[2])])) / 2;
+              ++part.n;
+            }
+          part.area += area;
+        });
       },
       [](Triangles a, Triangles b) {
         return Triangles{a.n + b.n, a.area + b.area};

@@ -104,6 +104,8 @@ bool Editor::hand_over(int32_t v) {
     e.region = side.to;
     for (size_t f = 0; f < 4; ++f) {
       Element& beyond = m_.element[size_t(e.n[f])];
+      if (e.v[f] == v)
+        m_.note_label(t), m_.note_label(e.n[f]);
       for (size_t g = 0; g < 4; ++g)
         if (beyond.n[g] == t)
           beyond.label[g] = e.label[f] = e.v[f] == v ? side.label : uint8_t{0};

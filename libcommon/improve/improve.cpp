@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 namespace molmesh::improve {
 namespace {
@@ -62,7 +63,8 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   };
   Result result;
   begin("adjacency");
-  DynamicMesh m = build(mesh, density ? 180 : options.sharp, options.threads);
+  auto work = std::make_shared<DynamicMesh>(build(mesh, density ? 180 : options.sharp, options.threads));
+  DynamicMesh& m = *work;
   result.before = result.after = measure_angles(m, options.threads);
   if (options.iterations == 0 || mesh.tet.empty())
     return result;
@@ -151,11 +153,8 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   }
   begin("result");
   result.after = measure_angles(m, options.threads);
-  TetMesh out = extract(m, options.threads, &result.across);
-  out.isovalue = mesh.isovalue;
-  out.source = mesh.source;
-  out.creator = mesh.creator;
-  mesh = std::move(out);
+  mesh = extract(m, options.threads, &result.across, std::move(mesh));
+  result.work = std::move(work);
   return result;
 }
 

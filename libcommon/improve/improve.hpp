@@ -6,6 +6,7 @@
 #include "improve/schedule.hpp"
 #include "mesh/tet_mesh.hpp"
 #include <functional>
+#include <memory>
 #include <string>
 
 namespace molmesh::improve {
@@ -24,6 +25,7 @@ struct Result {
   Fidelity fidelity; ///< after (with a density)
   /// [4 tets] The tetrahedron beyond each face, -1: none; empty where the mesh stayed as it came.
   LargeArray<int32_t> across;
+  std::shared_ptr<void> work; ///< memory that was worked in, for the caller to give back
 };
 
 /// Moves many points at once where no element below the pass' goal becomes worse: what a device does before each

@@ -75,6 +75,22 @@ void sort_worst_first(const DynamicMesh& m, std::vector<int32_t>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
+namespace {
+
+// The elements at a surface vertex: all of them hang together by their faces.
+void add_star(const DynamicMesh& m, int32_t v, std::vector<int32_t>& list) {
+  const auto first = static_cast<std::ptrdiff_t>(list.size());
+  list.push_back(m.incident[size_t(v)]);
+  for (size_t i = size_t(first); i < list.size(); ++i)
+    for (size_t f = 0; f < 4; ++f) {
+      const Element& e = m.element[size_t(list[i])];
+      if (e.v[f] != v && e.n[f] >= 0 && std::find(list.begin() + first, list.end(), e.n[f]) == list.end())
+        list.push_back(e.n[f]);
+    }
+}
+
+} // namespace
+
 Counts Schedule::run(const Pass& pass) {
   last_.cell = pass.cell; // parts of another size alone are no reason to try again
   if (pass != last_)
@@ -95,7 +111,7 @@ Counts Schedule::run(const Pass& pass) {
   find_worst();
   const std::vector<int32_t> items = choose(
       static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::stretch,
-      [&](int64_t s) { return worst_[size_t(s)] < pass.goal; },
+      [&](int64_t s) { return m_.worst[size_t(s)] < pass.goal; },
       [&](int64_t e) { return worthwhile(static_cast<int32_t>(e)); });
   if (items.empty())
     return {};
@@ -126,19 +142,21 @@ Counts Schedule::straighten(const Pass& pass) {
   time_ += sweeps;
   PartRoom none;
   const Editor look(m_, target_, nullptr, parts_, stamp_, none, pass.guard);
-  std::vector<uint8_t> off(m_.point.size());
-  par::for_n(static_cast<int64_t>(off.size()), threads_, [&](int64_t v) {
-    off[size_t(v)] = m_.incident[size_t(v)] >= 0 && look.off(static_cast<int32_t>(v)) > 1;
-  });
-  const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
-    const Element& e = m_.element[size_t(t)];
-    if (!e.alive())
-      return false;
-    bool misfit = off[size_t(e.v[0])] || off[size_t(e.v[1])] || off[size_t(e.v[2])] || off[size_t(e.v[3])];
-    for (size_t i = 0; !misfit && i < 4; ++i)
-      misfit = e.label[i] != 0 && look.bent(static_cast<int32_t>(t), i);
-    return misfit;
-  });
+  std::vector<int32_t> items = choose(
+      static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::stretch,
+      [&](int64_t s) { return m_.labelled[size_t(s)] != 0; },
+      [&](int64_t t) {
+        const Element& e = m_.element[size_t(t)];
+        bool bent = false;
+        for (size_t i = 0; e.alive() && !bent && i < 4; ++i)
+          bent = e.label[i] != 0 && look.bent(static_cast<int32_t>(t), i);
+        return bent;
+      });
+  for (const int32_t v : choose(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t i) {
+         return m_.incident[size_t(i)] >= 0 && look.off(static_cast<int32_t>(i)) > 1;
+       }))
+    add_star(m_, v, items);
+  par::sort_unique(items, threads_);
   return for_parts(items, parts_of(items), pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
     editor.goal = pass.goal;
     editor.worst_first = pass.worst_first;

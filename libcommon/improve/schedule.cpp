@@ -1,6 +1,6 @@
 // schedule.cpp — parts, their reserved slots, and the sheets near them.
 #include "improve/schedule.hpp"
-#include "par/par.hpp"
+#include "par/pages.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,9 @@ namespace molmesh::improve {
 
 Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads)
     : m_(mesh), target_(target), cell_(cell), threads_(threads), sheets_(target ? target->spacing() : 1) {
-  std::fill(m_.restless.begin(), m_.restless.end(), uint8_t{1}); // worst_ knows none of them
+  const auto with_room = [&](auto& v, size_t n) { par::reserve_pages(v, n, n / 8, threads_); };
+  with_room(stamp_, m_.element.size());
+  with_room(parts_.owner, m_.point.size());
   find_crowded(false);
 }
 
@@ -26,12 +28,12 @@ void Schedule::find_crowded(bool everywhere) {
     return;
   watching_ = everywhere;
   Sheets all(2 * target_->spacing());
-  for (size_t e = 0; e < m_.element.size(); ++e)
-    for (size_t f = 0; f < 4; ++f) {
-      const Element& el = m_.element[e];
+  m_.for_labelled([&](int64_t e) {
+    const Element& el = m_.element[size_t(e)];
+    for (size_t f = 0; f < 4; ++f)
       if (el.alive() && el.n[f] < 0 && m_.labels[el.label[f]].curved())
-        all.insert(sheet_triangle(m_.point, outward_triangle(el.v, f), 4 * int64_t(e) + int64_t(f)));
-    }
+        all.insert(sheet_triangle(m_.point, outward_triangle(el.v, f), 4 * e + int64_t(f)));
+  });
   sheets_ = Sheets(target_->spacing());
   const std::vector<SheetTriangle>& triangle = all.triangles();
   std::vector<uint8_t> crowded(triangle.size());
@@ -56,22 +58,22 @@ void Schedule::find_crowded(bool everywhere) {
 }
 
 void Schedule::find_worst() {
-  const auto elements = static_cast<int64_t>(m_.element.size());
-  worst_.resize(m_.restless.size());
-  par::for_n(static_cast<int64_t>(worst_.size()), threads_, 1, [&](int64_t s) {
+  par::for_n(static_cast<int64_t>(m_.restless.size()), threads_, 16, [&](int64_t s) {
     if (!m_.restless[size_t(s)])
       return;
     m_.restless[size_t(s)] = 0;
-    worst_[size_t(s)] = 2;
-    for (int64_t e = s * DynamicMesh::stretch; e < std::min(elements, (s + 1) * DynamicMesh::stretch); ++e)
+    float worst = 2;
+    m_.for_stretch(s, [&](int64_t e) {
       if (const Element& el = m_.element[size_t(e)]; el.alive())
-        worst_[size_t(s)] = std::min(worst_[size_t(s)], el.q);
+        worst = std::min(worst, el.q);
+    });
+    m_.worst[size_t(s)] = worst;
   });
 }
 
 float Schedule::worst() {
   find_worst();
-  return worst_.empty() ? 2 : *std::min_element(worst_.begin(), worst_.end());
+  return m_.worst.empty() ? 2 : *std::min_element(m_.worst.begin(), m_.worst.end());
 }
 
 int64_t Schedule::below(float goal) const {

@@ -49,7 +49,7 @@ private:
   /// Each part keeps slots_per_item and `slots` more for new elements.
   Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
                    const Work& work, double slots_per_item = 2, size_t slots = 64);
-  void find_worst(); ///< of the restless stretches
+  void find_worst(); ///< DynamicMesh::worst of the restless stretches
   void set_lattice(int shift, double cell);
   void set_parts(int shift, double cell); ///< its cells
   /// A cube of about that size around each of the points, where there is room for it beside the others' cubes.
@@ -69,8 +69,7 @@ private:
   Parts parts_;
   std::vector<uint32_t> stamp_; ///< of the editors
   uint32_t last_stamp_ = 0;
-  std::vector<float> worst_; ///< of each stretch of elements, when it last was restless
-  Sheets sheets_;            ///< where the mesh ends in curved surfaces
+  Sheets sheets_; ///< where the mesh ends in curved surfaces
   std::vector<int32_t> free_element_, free_vertex_;
 };
 

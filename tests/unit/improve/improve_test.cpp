@@ -126,8 +126,10 @@ void ruffle(improve::DynamicMesh& m) {
     for (const size_t e : star[v])
       if (m.quality(m.element[e].v) < 1e-3f)
         m.point[v] = from;
-    for (const size_t e : star[v])
+    for (const size_t e : star[v]) {
       m.element[e].q = m.quality(m.element[e].v);
+      m.note_change(static_cast<int32_t>(e));
+    }
   }
 }
 

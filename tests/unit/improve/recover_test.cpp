@@ -39,8 +39,10 @@ struct Case {
       if (m.vertex[v].kind != improve::Kind::surface || v % 20 != 0 || !surface.probe(m.point[v], distance, normal))
         continue;
       m.point[v] += h * (0.05 + 0.01 * double(v % 16)) * (v % 40 == 0 ? 1. : -1.) * normal;
-      for (const int32_t e : star(static_cast<int32_t>(v)))
+      for (const int32_t e : star(static_cast<int32_t>(v))) {
         m.element[size_t(e)].q = m.quality(m.element[size_t(e)].v);
+        m.note_change(e);
+      }
       ++pushed;
     }
     return pushed;
@@ -82,8 +84,10 @@ TEST_CASE("one pass has room around every point, wherever the lattice of the par
         !c.surface.probe(c.m.point[v], distance, normal))
       continue;
     c.m.point[v] += 0.05 * h * normal;
-    for (const int32_t e : c.star(static_cast<int32_t>(v)))
+    for (const int32_t e : c.star(static_cast<int32_t>(v))) {
       c.m.element[size_t(e)].q = c.m.quality(c.m.element[size_t(e)].v);
+      c.m.note_change(e);
+    }
     REQUIRE(improve::measure_fidelity(c.m, c.surface, 1).points_off == 1);
     ++pushed;
     schedule.recover(pass);
@@ -196,16 +200,25 @@ TEST_CASE("a surface point that leaves the surface leaves a surface behind") {
   editor.goal = 1e-4f;
   int gone = 0;
   double volume = improve::measure_fidelity(c.m, c.surface, 1).volume;
+  LargeArray<improve::Element> before = c.m.element;
   for (size_t v = 0; v < parts.owner.size() && gone < 40; ++v) {
+    std::fill(c.m.labelled.begin(), c.m.labelled.end(), uint8_t{0});
     if (!editor.hand_over(static_cast<int32_t>(v)))
       continue;
     ++gone;
+    for (size_t e = 0; e < before.size(); ++e)
+      for (size_t f = 0; f < 4; ++f)
+        if (c.m.element[e].label[f] > before[e].label[f])
+          REQUIRE(c.m.labelled[e / size_t(improve::DynamicMesh::stretch)]);
+    before = c.m.element;
+    std::fill(c.m.labelled.begin(), c.m.labelled.end(), uint8_t{1});
     CHECK(c.m.vertex[v].kind == improve::Kind::interior);
     const double now = improve::measure_fidelity(c.m, c.surface, 1).volume;
     CHECK(now != volume);
     volume = now;
   }
   CHECK(gone > 2);
+  std::fill(c.m.labelled.begin(), c.m.labelled.end(), uint8_t{1});
   const TetMesh mesh = improve::extract(c.m);
   CHECK(surface_shape(mesh).euler() == 2);
   const improve::DynamicMesh again = improve::build(mesh, 180, 1); // throws when faces or labels are wrong
