@@ -93,7 +93,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   TetMesh mesh = formats::read_vtu(input.stream(), input.name(), nullptr, formats::CellArrays::keep);
   const CarriedArrays arrays(mesh);
   run.counts.update({{"elements_before", mesh.tet.size()}, {"points_before", mesh.point.size()}});
-  improve::Options options{.iterations = o.iterations, .threads = threads};
+  improve::Options options{.iterations = o.iterations, .threads = threads, .measure_later = true};
   options.min_dihedral = std::max(options.min_dihedral, o.min_dihedral);
   options.max_dihedral = std::min(options.max_dihedral, o.max_dihedral);
   if (mesh.creator.rfind("density2tet", 0) == 0)
@@ -109,6 +109,8 @@ Status run_tool(const Options& o, cli::Run& run) {
   } catch (const Error& e) {
     fail(e.status, input.name() + ": " + e.what());
   }
+  run.phase("partition");
+  mesh.part = partition(mesh, o.parts, threads, std::move(result.across), [&] { result.measure(); });
   const improve::Counts& c = result.counts;
   run.counts.update({{"elements", mesh.tet.size()}, {"points", mesh.point.size()}, {"rounds", result.rounds}});
   run.counts.update({{"moves", c.moves},
@@ -122,8 +124,6 @@ Status run_tool(const Options& o, cli::Run& run) {
                      {"quality_after", json(result.after)}});
   if (grid)
     run.counts["surface"] = json(result.fidelity);
-  run.phase("partition");
-  mesh.part = partition(mesh, o.parts, threads, std::move(result.across), [&] { result.work.reset(); });
   arrays.put_into(mesh, threads);
   if (!arrays.empty())
     run.note("carried from the nearest element before: " + arrays.names());

@@ -143,8 +143,6 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     idle = c.total() > 0 ? std::min(idle, 1) : idle + 1;
     result.counts += c;
   }
-  if (density)
-    result.fidelity = measure_fidelity(m, *isosurface, options.threads);
   if (result.counts.total() == 0 || schedule.worst() < at_first) { // the file that came in, in its own order
     result.counts = {};
     if (density)
@@ -152,9 +150,15 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     return result;
   }
   begin("result");
-  result.after = measure_angles(m, options.threads);
   mesh = extract(m, options.threads, &result.across, std::move(mesh));
-  result.work = std::move(work);
+  result.rest = [work = std::move(work), surface = std::shared_ptr<Isosurface>(std::move(isosurface)),
+                 threads = options.threads](Result& r) {
+    r.after = measure_angles(*work, threads);
+    if (surface)
+      r.fidelity = measure_fidelity(*work, *surface, threads);
+  };
+  if (!options.measure_later)
+    result.measure();
   return result;
 }
 

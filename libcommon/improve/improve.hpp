@@ -6,8 +6,8 @@
 #include "improve/schedule.hpp"
 #include "mesh/tet_mesh.hpp"
 #include <functional>
-#include <memory>
 #include <string>
+#include <utility>
 
 namespace molmesh::improve {
 
@@ -16,6 +16,8 @@ struct Options {
   int iterations = 15;                            ///< rounds at most; 0 leaves the mesh as it is
   double sharp = 50; ///< degrees; without a density, edges of the surface that bend by more are kept
   int threads = 1;
+  /// Result::measure() is left to the caller, to run beside what is serial. It needs the density still.
+  bool measure_later = false;
 };
 
 struct Result {
@@ -25,7 +27,12 @@ struct Result {
   Fidelity fidelity; ///< after (with a density)
   /// [4 tets] The tetrahedron beyond each face, -1: none; empty where the mesh stayed as it came.
   LargeArray<int32_t> across;
-  std::shared_ptr<void> work; ///< memory that was worked in, for the caller to give back
+  /// Where it was put off: what sets `after` and `fidelity`, and gives the memory worked in back.
+  std::function<void(Result&)> rest;
+  void measure() {
+    if (rest)
+      std::exchange(rest, {})(*this);
+  }
 };
 
 /// Moves many points at once where no element below the pass' goal becomes worse: what a device does before each

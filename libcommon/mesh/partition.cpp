@@ -137,8 +137,11 @@ std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeAr
   std::vector<int32_t> part;
   par::reserve_pages(part, m.tet.size(), 0, threads);
   part.resize(m.tet.size());
-  if (std::min<int64_t>(parts, int64_t(m.tet.size())) <= 1)
+  if (std::min<int64_t>(parts, int64_t(m.tet.size())) <= 1) {
+    if (meanwhile)
+      meanwhile();
     return part;
+  }
   if (across.empty()) {
     across = face_neighbors(m, threads);
     for (int32_t& f : across)

@@ -56,7 +56,13 @@ TEST_CASE("the improved mesh comes with its neighbours and its own extreme angle
     return a;
   };
   const improve::Angles before = extremes(mesh);
-  const improve::Result result = improve::improve(mesh, &grid, {});
+  improve::Options options;
+  options.measure_later = GENERATE(false, true);
+  improve::Result result = improve::improve(mesh, &grid, options);
+  CHECK(bool(result.rest) == options.measure_later);
+  result.measure();
+  CHECK(!result.rest);
+  CHECK(result.fidelity.points > 0);
   const improve::Angles after = extremes(mesh);
   LargeArray<int32_t> across = face_neighbors(mesh, 1);
   for (int32_t& f : across)

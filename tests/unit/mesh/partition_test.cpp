@@ -33,7 +33,9 @@ TEST_CASE("parts are even and compact, the same at any number of threads") {
 
 TEST_CASE("one part, and more parts than tetrahedra") {
   const TetMesh m = cubes(1, all_molecule);
-  CHECK(partition(m, 1, 1) == std::vector<int32_t>(6, 0));
+  int calls = 0;
+  CHECK(partition(m, 1, 1, {}, [&] { ++calls; }) == std::vector<int32_t>(6, 0));
+  CHECK(calls == 1);
   for (int32_t p : partition(m, 100, 1))
     CHECK((p >= 0 && p < 6));
   CHECK(partition(TetMesh{}, 4, 1).empty());
