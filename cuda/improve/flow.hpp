@@ -71,7 +71,8 @@ public:
                {},
                pass.guard,
                pass.goal,
-               pass.worst_first};
+               pass.worst_first,
+               mesh.walls};
     if (surface_)
       m.surface = surface_->view();
     const Array<uint32_t> order = around.by_valence();

@@ -53,6 +53,7 @@ struct FlowMesh {
   improve::Guard guard;
   float goal;
   bool worst_first;
+  improve::Walls walls;
 
   HD float lack(float q) const { return improve::lack(q, goal, worst_first, guard); }
 };
@@ -145,7 +146,8 @@ struct ProposeMove {
   HD bool constrain(int64_t v, Vec3d& y, double length) const {
     const improve::Vertex& k = m.vertex[v];
     if (k.kind == improve::Kind::surface)
-      return m.surface.project(y, m.guard.reach * length);
+      return m.surface.project(y, m.guard.reach * length) &&
+             m.walls.allow(point[v], y, improve::apart_from_walls * m.surface.spacing());
     for (int a = 0; a < 3; ++a)
       if (k.frozen >> a & 1)
         y[a] = point[v][a];

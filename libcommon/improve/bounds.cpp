@@ -37,10 +37,10 @@ bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) cons
   case Kind::surface:
     // The distance to first order means nothing where the gradient vanishes, and that is where points must leave.
     if (target_ && guard_.lift > 0)
-      return norm(x - from) <= guard_.lift * target_->spacing();
+      return norm(x - from) <= guard_.lift * target_->spacing() && inside_walls(from, x);
     if (target_ && loose)
-      return norm(x - from) <= reach && off_at(x).value_or(1) <= 0.9;
-    return target_ && target_->project(x, reach);
+      return norm(x - from) <= reach && off_at(x).value_or(1) <= 0.9 && inside_walls(from, x);
+    return target_ && target_->project(x, reach) && inside_walls(from, x);
   case Kind::sliding:
     for (int a = 0; a < 3; ++a)
       if (k.frozen >> a & 1)

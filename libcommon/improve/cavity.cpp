@@ -80,14 +80,34 @@ bool Editor::match(const std::vector<int32_t>& old, const std::vector<Candidate>
   return gained == 0 || lost > 0;
 }
 
-// Triangles that come to lie where the mesh ends go to rim_.
-void Editor::list_rim(const std::vector<Candidate>& now) {
-  uint8_t outside = 0;
+// Of the triangles that go where the mesh ends; 0 when none does.
+uint8_t Editor::lost_label() const {
+  uint8_t label = 0;
   for (const int32_t i : used_) {
     const FaceEntry& x = table_[size_t(i)];
     if (x.outer && x.element < 0 && x.first < 0)
-      outside = x.label;
+      label = x.label;
   }
+  return label;
+}
+
+// Whether a triangle that comes to lie where the mesh ends is on a curved label and in a wall: the walls' points
+// are all there for it, and nothing on its other side is in its way.
+bool Editor::rim_in_wall() const {
+  const uint8_t lost = lost_label();
+  if (lost == 0 || !m_.labels[lost].curved())
+    return false;
+  return std::any_of(used_.begin(), used_.end(), [&](int32_t i) {
+    const FaceEntry& x = table_[size_t(i)];
+    const bool fresh = !x.outer && x.second < 0, bared = x.outer && x.element >= 0 && x.first < 0;
+    const auto p = [&](size_t k) { return m_.point[size_t(x.v[k])]; };
+    return (fresh || bared) && m_.walls.hold(p(0), p(1), p(2));
+  });
+}
+
+// Triangles that come to lie where the mesh ends go to rim_.
+void Editor::list_rim(const std::vector<Candidate>& now) {
+  const uint8_t outside = lost_label();
   for (const int32_t i : used_) {
     const FaceEntry& x = table_[size_t(i)];
     const bool kept = x.outer && x.element < 0 && x.first >= 0, fresh = !x.outer && x.second < 0;
@@ -103,7 +123,7 @@ void Editor::list_rim(const std::vector<Candidate>& now) {
 
 bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface,
                      bool rim_moved) {
-  if (!match(old, now, surface))
+  if (!match(old, now, surface) || (surface && rim_in_wall()))
     return false;
   if ((surface || rim_moved) && sheets_) {
     list_rim(now);

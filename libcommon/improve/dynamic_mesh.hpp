@@ -1,6 +1,7 @@
 // dynamic_mesh.hpp — tetrahedra that know their neighbours, labelled faces and constrained vertices.
 #pragma once
 #include "improve/quality.hpp"
+#include "improve/walls.hpp"
 #include "mesh/tet_mesh.hpp"
 #include <algorithm>
 #include <array>
@@ -70,6 +71,7 @@ struct DynamicMesh {
   std::vector<int32_t> touched;  ///< [vertices] when an element at the vertex last changed
   LargeArray<Element> element;
   std::vector<Label> labels; ///< [0] is no label
+  Walls walls;
   /// [stretches] not 0 where the quality of an element may have changed since this was cleared.
   std::vector<uint8_t> restless;
   std::vector<float> worst; ///< [stretches] lowest quality where not restless; 2 where nothing is alive

@@ -158,13 +158,17 @@ private:
   bool judge(Candidate& c, float above) const;
   bool is_above(const Candidate& c, float above) const; ///< by the quality that it has
   bool match(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface);
-  /// False, and nothing changed, when faces do not match or the surface would cross itself. rim_: triangles that
-  /// have moved with the operation already; surface: the operation may change them.
+  /// False, and nothing changed, when faces do not match or the surface would cross itself or lie in a wall. rim_:
+  /// triangles that have moved with the operation already; surface: the operation may change them.
   bool replace(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface,
                bool rim_moved = false);
   void list_rim(const std::vector<Candidate>& now);
   void list_rim(const std::vector<int32_t>& elements, int32_t v, int32_t without);
   bool crowded(const std::array<int32_t, 3>& t) const;
+  uint8_t lost_label() const;
+  bool rim_in_wall() const;
+  /// Of a surface vertex that goes from one place to another.
+  bool inside_walls(Vec3d from, Vec3d to) const { return m_.walls.allow(from, to, apart_from_walls * spacing()); }
   bool rim_crosses(bool stamped_go);
   void move_rim();
   bool has_room(size_t old, size_t now) const { return now <= old + room_.element.size(); }

@@ -78,7 +78,7 @@ bool Editor::hand_over(int32_t v) {
     for (const int32_t t : star2_)
       for (const int32_t w : m_.element[size_t(t)].v)
         length += norm(m_.point[size_t(w)] - home) / (3. * double(star2_.size()));
-    if (!target_->project(m_.point[size_t(u)], length))
+    if (!target_->project(m_.point[size_t(u)], length) || !inside_walls(home, m_.point[size_t(u)]))
       return back();
     for (const int32_t t : star2_) {
       now_.push_back({m_.element[size_t(t)].v, 0, 0, {}});

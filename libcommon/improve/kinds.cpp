@@ -8,23 +8,30 @@
 namespace molmesh::improve {
 namespace {
 
-// How far apart points of one plane may lie: some units in the last place of the largest coordinate, by the digits
-// that the coordinates carry, and no less than a share of the mesh's size.
-double rounding(const TetMesh& mesh) {
+struct Extent {
   Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  /// How far apart points of one plane may lie: some units in the last place of the largest coordinate, by the
+  /// digits that the coordinates carry, and no less than a share of the mesh's size.
+  double rounding = 0;
+};
+
+Extent extent(const TetMesh& mesh) {
+  Extent all;
   double largest = 0;
   bool single = true; // from a program or a file of 32-bit coordinates
   for (const Vec3d& p : mesh.point)
     for (int a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], p[a]);
-      high[a] = std::max(high[a], p[a]);
+      all.low[a] = std::min(all.low[a], p[a]);
+      all.high[a] = std::max(all.high[a], p[a]);
       largest = std::max(largest, std::abs(p[a]));
       single = single && double(static_cast<float>(p[a])) == p[a];
     }
-  return std::max(1e-12 * norm(high - low), largest * (single ? 0x1p-22 : 0x1p-50));
+  all.rounding = std::max(1e-12 * norm(all.high - all.low), largest * (single ? 0x1p-22 : 0x1p-50));
+  return all;
 }
 
-// A label is flat when all its triangles lie in one plane normal to an axis, up to rounding.
+// A label is flat when all its triangles lie in one plane normal to an axis, up to rounding, and a wall where the
+// mesh ends there.
 void find_flat_labels(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label) {
   std::vector<Vec3d> low(m.labels.size(), Vec3d{1e300, 1e300, 1e300}),
       high(m.labels.size(), Vec3d{-1e300, -1e300, -1e300});
@@ -36,11 +43,18 @@ void find_flat_labels(DynamicMesh& m, const TetMesh& mesh, const std::vector<uin
         high[l][a] = std::max(high[l][a], mesh.point[size_t(v)][a]);
       }
   }
-  const double least = rounding(mesh);
+  const Extent all = extent(mesh);
+  m.walls.rounding = all.rounding;
   for (size_t l = 1; l < m.labels.size(); ++l)
-    for (int a = 0; a < 3; ++a)
-      if (high[l][a] - low[l][a] <= least)
-        m.labels[l].axis = a;
+    for (int a = 0; a < 3; ++a) {
+      if (high[l][a] - low[l][a] > all.rounding)
+        continue;
+      m.labels[l].axis = a;
+      if (low[l][a] - all.low[a] <= all.rounding)
+        m.walls.low[a] = all.low[a];
+      else if (all.high[a] - high[l][a] <= all.rounding)
+        m.walls.high[a] = all.high[a];
+    }
 }
 
 /// Corners of triangles at one vertex, joined across the edges there: one set for each fan.

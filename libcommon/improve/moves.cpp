@@ -64,7 +64,7 @@ bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double le
 bool Editor::place_on_target(Vec3d& x, double length, const Fit& before, float above) {
   const Vec3d from = x;
   float best = above;
-  const auto bind = [&](Vec3d& y) { return target_->project(y, guard_.reach * length); };
+  const auto bind = [&](Vec3d& y) { return target_->project(y, guard_.reach * length) && inside_walls(from, y); };
   const auto accept = [&](Vec3d y) { return sails_fit(y, before); };
   for (int k = 0; k < 27; ++k) {
     const Vec3d d{k / 9 - 1., k / 3 % 3 - 1., k % 3 - 1.};
@@ -127,6 +127,10 @@ void Editor::gather(const std::vector<int32_t>& star, int32_t v, double& length,
 
 // v is at its new place: takes it when every element of the star is above.
 bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above, float allowed) {
+  if (m_.vertex[size_t(v)].kind == Kind::surface && !inside_walls(from, m_.point[size_t(v)])) {
+    m_.point[size_t(v)] = from;
+    return false;
+  }
   now_.clear();
   const auto corner = [&](size_t k, size_t i) { return m_.point[size_t(m_.element[size_t(elements[k])].v[i])]; };
   const auto keep = [&](size_t k, float q) {

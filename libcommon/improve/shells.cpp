@@ -131,10 +131,18 @@ bool Editor::shrink(const Piece& piece, Vec3d c, double scale, double ratio) {
           c + std::pow(scale, double(layer) / double(layers)) * (m_.point[size_t(w)] - c);
       m_.vertex[size_t(image(w, layer))] = is_in(on_surface, w) ? m_.vertex[size_t(w)] : Vertex{};
     }
+  const auto leaves_walls = [&](int32_t w, Vec3d from) {
+    return m_.vertex[size_t(w)].kind == Kind::surface && !inside_walls(from, m_.point[size_t(w)]);
+  };
+  bool out = false;
+  for (const int32_t w : on_surface)
+    for (size_t layer = 1; layer <= layers; ++layer)
+      out = out || leaves_walls(image(w, layer), m_.point[size_t(w)]);
   std::vector<Vec3d> home;
   for (const int32_t w : inner) {
     home.push_back(m_.point[size_t(w)]);
     m_.point[size_t(w)] = c + scale * (home.back() - c);
+    out = out || leaves_walls(w, home.back());
   }
   now_.clear();
   for (const int32_t t : piece.element) {
@@ -151,7 +159,7 @@ bool Editor::shrink(const Piece& piece, Vec3d c, double scale, double ratio) {
       }
   old_ = piece.element;
   rim_.clear();
-  if (!std::all_of(now_.begin(), now_.end(), [&](Candidate& e) { return judge(e, 0); }) ||
+  if (out || !std::all_of(now_.begin(), now_.end(), [&](Candidate& e) { return judge(e, 0); }) ||
       !replace(old_, now_, piece.through, true)) {
     for (size_t i = 0; i < inner.size(); ++i)
       m_.point[size_t(inner[i])] = home[i];

@@ -60,6 +60,8 @@ bool Editor::split(int32_t e, int i, int j) {
   search(kind, x, best, std::max(goal, aim), length, fit, above);
   if (straighten ? !sails_fit(x, fit) : best < aim)
     return false;
+  if (kind.kind == Kind::surface && !m_.walls.clear(x, apart_from_walls * spacing()))
+    return false; // the middle may lie in a wall: it sets no measure
   m_.vertex[size_t(v)] = kind;
   m_.point[size_t(v)] = x;
   for (Candidate& c : now_)
