@@ -16,6 +16,7 @@ namespace {
 
 struct Options : cli::Common {
   std::string format = "auto";
+  std::vector<std::string> outputs() const override;
 };
 
 /// By the ending of the output's name. Those of several files are named by any of them.
@@ -59,17 +60,26 @@ std::string stem(const Options& o, const std::string& format) {
   return o.output.substr(0, o.output.size() - (known ? end.size() : 0));
 }
 
+std::vector<std::string> Options::outputs() const {
+  const std::string f = format_of(*this);
+  if (f != "tetgen" && f != "xdmf")
+    return {output};
+  const std::string name = stem(*this, f);
+  return f == "xdmf" ? std::vector{name + ".xdmf", name + ".h5"}
+                     : std::vector{name + ".node", name + ".ele", name + ".face"};
+}
+
 void write_several(const Options& o, const std::string& format, const TetMesh& m) {
-  const std::string name = stem(o, format);
+  const std::vector<std::string> names = o.outputs();
   if (format == "tetgen") {
-    cli::OutputFile node(name + ".node"), ele(name + ".ele"), face(name + ".face");
+    cli::OutputFile node(names[0]), ele(names[1]), face(names[2]);
     formats::write_tetgen(node.stream(), ele.stream(), face.stream(), m);
     node.commit();
     ele.commit();
     face.commit();
   } else {
-    cli::OutputFile xdmf(name + ".xdmf"), h5(name + ".h5");
-    formats::write_xdmf(xdmf.stream(), h5.stream(), name.substr(name.rfind('/') + 1) + ".h5", m);
+    cli::OutputFile xdmf(names[0]), h5(names[1]);
+    formats::write_xdmf(xdmf.stream(), h5.stream(), names[1].substr(names[1].rfind('/') + 1), m);
     h5.commit(); // first: an .xdmf without it would be of no use
     xdmf.commit();
   }

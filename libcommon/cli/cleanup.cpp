@@ -19,11 +19,15 @@ struct Slot {
 Slot table[slots];
 static_assert(std::atomic<bool>::is_always_lock_free);
 
+constexpr int deadly[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2};
+
+// A second signal waits until all are gone, or finds another thread, which removes them all itself before it ends
+// the process.
 void die_clean(int signal) {
   for (const Slot& slot : table)
     if (slot.watched)
       unlink(slot.path);
-  // SA_RESETHAND: the second delivery ends the process, and the caller sees which signal it was.
+  std::signal(signal, SIG_DFL); // delivered when this returns: the caller sees which signal it was
   raise(signal);
 }
 
@@ -42,8 +46,9 @@ void guard_process() {
   std::signal(SIGXFSZ, SIG_IGN);
   struct sigaction action {};
   action.sa_handler = die_clean;
-  action.sa_flags = SA_RESETHAND;
-  for (int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM}) {
+  for (int signal : deadly)
+    sigaddset(&action.sa_mask, signal);
+  for (int signal : deadly) {
     struct sigaction before {};
     sigaction(signal, nullptr, &before);
     if (before.sa_handler != SIG_IGN)

@@ -13,6 +13,23 @@
 namespace molmesh::cli {
 namespace fs = std::filesystem;
 
+bool same_file(const std::string& a, const std::string& b) {
+  if (a.empty() || b.empty() || a == "-" || b == "-")
+    return false;
+  std::error_code none;
+  const auto device = [&](const std::string& path) {
+    const fs::file_status status = fs::status(path, none);
+    return fs::exists(status) && !fs::is_regular_file(status);
+  };
+  if (device(a) || device(b))
+    return false;
+  if (fs::equivalent(a, b, none))
+    return true;
+  const fs::path x = fs::weakly_canonical(fs::absolute(a, none), none),
+                 y = fs::weakly_canonical(fs::absolute(b, none), none);
+  return !x.empty() && x == y;
+}
+
 InputFile::InputFile(const std::string& path) : name_(path) {
   if (path == "-") {
     static bool asked_for = false;
@@ -67,7 +84,7 @@ OutputFile::OutputFile(const std::string& path)
     return;
   std::error_code none;
   const fs::file_status status = fs::status(path, none);
-  if (fs::is_symlink(fs::symlink_status(path, none)) && fs::exists(status))
+  if (fs::is_symlink(fs::symlink_status(path, none)) && fs::is_regular_file(status))
     target_ = fs::canonical(path).string();
   errno = 0;
   if (!fs::exists(status) || fs::is_regular_file(status)) {

@@ -8,6 +8,9 @@
 
 namespace molmesh::cli {
 
+/// Do two paths name one regular file, one that exists or one to be written? Standard streams and devices do not.
+bool same_file(const std::string& a, const std::string& b);
+
 /// "-" is standard input. Throws Error(bad_input) when the file cannot be opened or is a directory.
 class InputFile {
 public:

@@ -116,7 +116,7 @@ std::string help(const CLI::App& app) {
   const auto options = app.get_options();
   for (const CLI::Option* o : options)
     if (o->get_positional())
-      out << " [" << o->get_name(true) << ']';
+      out << (o->get_required() ? " " + o->get_name(true) : " [" + o->get_name(true) + ']');
   out << '\n';
   for (const CLI::Option* o : options)
     if (o->get_positional())
@@ -130,8 +130,11 @@ std::string help(const CLI::App& app) {
   return out.str();
 }
 
-void check_numbers(const CLI::App& app) {
+void check_values(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& text : option->results())
+      if (text.empty() && values(*option).unit == "FILE")
+        throw CLI::ValidationError(option->get_name(), "found '', expected a file");
     if (!values(*option).number)
       continue;
     for (const std::string& text : option->results()) {
@@ -141,6 +144,24 @@ void check_numbers(const CLI::App& app) {
         throw CLI::ValidationError(option->get_name(), "found '" + text + "', expected a finite decimal number");
     }
   }
+}
+
+std::string plain_error(const CLI::App& app, const CLI::ParseError& e) {
+  const std::string text = e.what();
+  if (!dynamic_cast<const CLI::ValidationError*>(&e) && !dynamic_cast<const CLI::ConversionError*>(&e))
+    return text;
+  try {
+    check_values(app);
+  } catch (const CLI::ValidationError& value) {
+    return value.what();
+  }
+  for (const CLI::Option* option : app.get_options()) {
+    const Values v = values(*option);
+    const std::string name = option->get_name();
+    if (v.number && !v.range.empty() && !option->results().empty() && text.rfind(name + ": ", 0) == 0)
+      return name + ": found '" + option->results().back() + "', expected " + v.range;
+  }
+  return text;
 }
 
 } // namespace molmesh::cli

@@ -154,23 +154,42 @@ int parse(CLI::App& app, int argc, char** argv) {
   };
   try {
     app.parse(argc, argv);
-    check_numbers(app);
+    check_values(app);
     return -1;
   } catch (const CLI::CallForHelp&) {
     return print(help(app));
   } catch (const CLI::CallForVersion&) {
     return print(app.version() + '\n');
   } catch (const CLI::ParseError& e) {
-    std::cerr << app.get_name() << ": " << one_line(e.what()) << " (see " << app.get_name() << " --help)\n";
+    std::cerr << app.get_name() << ": " << one_line(plain_error(app, e)) << " (see " << app.get_name()
+              << " --help)\n";
     return static_cast<int>(Status::usage);
   }
 }
 
-std::unique_ptr<OutputFile> open_report(const Common& o) {
+std::unique_ptr<OutputFile> open_report(const CLI::App& app, const Common& o) {
+  std::vector<std::string> inputs;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_name();
+    if (name != "--output" && name != "--report" && name != "input" &&
+        (option->get_positional() || option->get_type_name() == "FILE"))
+      inputs.insert(inputs.end(), option->results().begin(), option->results().end());
+  }
+  if (o.keep_input)
+    inputs.push_back(o.input);
+  for (const std::string& output : o.outputs())
+    for (const std::string& input : inputs)
+      if (same_file(output, input))
+        fail(Status::usage, "-o: found " + output + ", which is an input, expected another file");
   if (o.report.empty())
     return nullptr;
-  if (o.report == o.output)
-    fail(Status::usage, "--report: found " + o.report + ", expected another file than the output");
+  inputs.push_back(o.input);
+  for (const std::string& input : inputs)
+    if (same_file(o.report, input))
+      fail(Status::usage, "--report: found " + o.report + ", expected another file than the input");
+  for (const std::string& output : o.outputs())
+    if (o.report == output || same_file(o.report, output))
+      fail(Status::usage, "--report: found " + o.report + ", expected another file than the output");
   return std::make_unique<OutputFile>(o.report);
 }
 

@@ -22,6 +22,12 @@ struct Common {
   std::string report;       ///< empty: none
   bool quiet = false, verbose = false;
 
+  virtual ~Common() = default;
+  /// The files written. None may be one of the files that options of type FILE and further arguments name, nor the
+  /// report, nor, where the output is not what the input is, the input.
+  virtual std::vector<std::string> outputs() const { return {output}; }
+  bool keep_input = false;
+
   /// Set by tools that have a cuda mode: throws Error(mode_unavailable) where there is no device for it.
   void (*require_device)() = nullptr;
   bool on_device() const { return mode == "cuda"; }
@@ -63,7 +69,8 @@ void describe_common(CLI::App& app, Common& o);
 /// Exit status when the run stops here (help, version, usage), else -1.
 int parse(CLI::App& app, int argc, char** argv);
 /// Opened before the run, so that a report that cannot be written stops it before any work. Null without --report.
-std::unique_ptr<OutputFile> open_report(const Common& o);
+/// Throws Error(usage) for files that would be written over.
+std::unique_ptr<OutputFile> open_report(const CLI::App& app, const Common& o);
 int finish(const CLI::App& app, const Common& o, Run& run, OutputFile* report, Status status);
 int failed(const std::string& tool, const std::exception& e);
 } // namespace detail
@@ -83,7 +90,7 @@ int run_main(const char* tool, const char* purpose, int argc, char** argv, Descr
     if (const int status = detail::parse(app, argc, argv); status >= 0)
       return status;
     options.resolved_threads(); // a mode that is not here stops before any file is touched
-    const std::unique_ptr<OutputFile> report = detail::open_report(options);
+    const std::unique_ptr<OutputFile> report = detail::open_report(app, options);
     Run run;
     run.tool = tool;
     run.quiet = options.quiet;

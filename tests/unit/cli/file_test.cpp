@@ -95,7 +95,7 @@ TEST_CASE("an output through a symbolic link reaches the file behind it") {
 }
 
 TEST_CASE("a signal removes the temporary file and still ends the process") {
-  for (int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM}) {
+  for (int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2}) {
     const Folder folder;
     const Outcome o = in_child([&] {
       const rlimit no_core{0, 0};
@@ -109,6 +109,44 @@ TEST_CASE("a signal removes the temporary file and still ends the process") {
     CHECK(o.signal == signal);
     CHECK(folder.files() == 0);
   }
+}
+
+TEST_CASE("a second signal waits until the temporary files are gone") {
+  const Outcome o = in_child([] {
+    cli::guard_process();
+    struct sigaction action {};
+    sigaction(SIGINT, nullptr, &action);
+    for (int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2})
+      if (!sigismember(&action.sa_mask, signal))
+        return 1;
+    return (action.sa_flags & (SA_RESETHAND | SA_NODEFER)) != 0 ? 2 : 0;
+  });
+  CHECK(o.status == 0);
+}
+
+TEST_CASE("a pipe is written directly, also behind a link") {
+  const Folder folder;
+  const Outcome o = in_child([&] { return static_cast<int>(write("/dev/stdout", 3)); },
+                             [&] {
+                               int ends[2];
+                               if (pipe(ends) != 0 || dup2(ends[1], STDOUT_FILENO) < 0)
+                                 _exit(99);
+                             });
+  CHECK(o.status == 0);
+}
+
+TEST_CASE("files are the same however they are spelled, also before they exist") {
+  const Folder folder;
+  std::filesystem::create_directory(folder / "sub");
+  std::ofstream(folder / "real") << "x";
+  std::filesystem::create_symlink("real", folder / "link");
+  CHECK(cli::same_file(folder / "real", folder / "sub/../link"));
+  CHECK(cli::same_file(folder / "absent", folder / "./sub/../absent"));
+  CHECK(cli::same_file("absent", "./absent"));
+  CHECK(cli::same_file("absent", std::filesystem::absolute("absent").string()));
+  CHECK_FALSE(cli::same_file(folder / "absent", folder / "real"));
+  CHECK_FALSE(cli::same_file("-", "-"));
+  CHECK_FALSE(cli::same_file("/dev/null", "/dev/null"));
 }
 
 TEST_CASE("nohup stays in force") {
