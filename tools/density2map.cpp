@@ -9,23 +9,41 @@ using namespace molmesh;
 namespace {
 
 struct Options : cli::Common {
-  std::string format = "ccp4";
+  std::string format = "auto";
 };
 
+/// By the ending of the output's name.
+std::string format_of(const Options& o) {
+  const size_t name = o.output.rfind('/') + 1, dot = o.output.rfind('.');
+  if (o.format != "auto")
+    return o.format;
+  const std::string ending = dot == std::string::npos || dot <= name ? "" : o.output.substr(dot);
+  if (ending == ".dx")
+    return "dx";
+  if (ending.empty() || ending == ".map" || ending == ".ccp4" || ending == ".mrc")
+    return "ccp4";
+  fail(Status::usage,
+       "-o: found " + o.output + ", expected a name that ends in one of .map, .ccp4, .mrc, .dx, or --format");
+}
+
 void describe(CLI::App& app, Options& o) {
-  app.add_option("--format", o.format, "ccp4: CCP4/MRC map, binary; dx: OpenDX, text")
-      ->check(CLI::IsMember({"ccp4", "dx"}));
+  app.add_option(
+         "--format", o.format,
+         "ccp4: CCP4/MRC map, binary; dx: OpenDX, text; auto: by the output's name, ccp4 where it has no ending")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"auto", "ccp4", "dx"}));
 }
 
 Status run(const Options& o, cli::Run& r) {
   const int threads = o.resolved_threads();
+  const std::string format = format_of(o);
   cli::InputFile in(o.input);
   cli::OutputFile out(o.output);
   r.phase("read");
   const BlockGrid grid = formats::read_vdb(in.stream(), in.name(), threads);
   r.counts["grid_points"] = {grid.frame.points.x, grid.frame.points.y, grid.frame.points.z};
   r.phase("write");
-  (o.format == "dx" ? formats::write_dx : formats::write_ccp4)(out.stream(), grid, in.name());
+  (format == "dx" ? formats::write_dx : formats::write_ccp4)(out.stream(), grid, in.name());
   out.commit();
   return Status::good;
 }
