@@ -31,7 +31,8 @@ std::vector<uint8_t> touch(const Selection& selection, const Arrangement& a);
 /// than the rest of its residue (or chain, where domains hold chains); or a part that touches nothing.
 void assign_domains(Arrangement& a, const gemmi::Structure& st, const std::string& file, const PdbOptions& options);
 
-/// Sets the exponents: the defaults, then rule after rule. Throws Error(bad_input) for a rule that touches nothing.
+/// Sets the exponents: the defaults, then rule after rule. Throws Error(bad_input) for a rule that touches nothing
+/// or sets no level of the hierarchy.
 void assign_exponents(Arrangement& a, const PdbOptions& options, PdbReport& report);
 
 /// Sets the order in which groups of all levels are contiguous; otherwise that of the file.

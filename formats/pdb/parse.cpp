@@ -97,9 +97,12 @@ bool is_atom_record(std::string_view line) {
 }
 
 std::string in_quotes(std::string_view text) {
+  size_t length = std::min<size_t>(text.size(), 40);
+  while (length > 0 && length < text.size() && (text[length] & 0xC0) == 0x80) // whole characters of UTF-8
+    --length;
   std::string s = "'";
-  for (const char c : text.substr(0, 40))
-    s += c >= ' ' && c < 0x7F ? c : '?';
+  for (const char c : text.substr(0, length))
+    s += static_cast<unsigned char>(c) >= 0x20 && c != 0x7F ? c : '?';
   return s + "'";
 }
 

@@ -44,6 +44,8 @@ void read_lines(std::istream& in, const std::string& file,
     const std::string where = file + ":" + std::to_string(number);
     if (line.find('\0') != std::string::npos)
       fail_input(where + ": found a NUL byte, expected text");
+    if (number == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0) // a byte order mark
+      line.erase(0, 3);
     if (!line.empty() && line.back() == '\r')
       line.pop_back();
     const std::string_view record = trimmed(line);

@@ -59,6 +59,8 @@ TEST_CASE("files of rules and domains have comments, and errors have lines") {
   REQUIRE(parts.size() == 2);
   CHECK(parts[1].name == "right");
   CHECK(parts[1].selection == "//C");
+  std::istringstream marked("\xEF\xBB\xBFleft //A\n");
+  CHECK(read_domains(marked, "domains").at(0).name == "left");
 
   const auto refused = [](auto read_file, const std::string& text) {
     std::istringstream in(text);
