@@ -15,6 +15,8 @@ static_assert(sizeof(idx_t) == sizeof(int32_t), "METIS with 32-bit indices");
 
 // METIS is serial and takes 100 bytes and 0.7 µs a tetrahedron: of a large mesh it gets clusters of this many.
 constexpr int64_t cluster_size = 32, large = 1 << 17;
+// With fewer nodes a part METIS leaves parts empty, and says so on standard output where it has nothing to bisect.
+constexpr int64_t fewest_nodes = 20;
 
 // Tetrahedra along the Hilbert curve of their centroids, 256 places an axis; else as they come.
 LargeArray<uint32_t> along_curve(const TetMesh& m, int threads) {
@@ -78,8 +80,8 @@ private:
   size_t size_ = 0;
 };
 
-Graph dual_graph(const TetMesh& m, int threads, const LargeArray<int32_t>& across) {
-  const auto n = static_cast<int64_t>(m.tet.size()), size = n < large ? 1 : cluster_size;
+Graph dual_graph(const TetMesh& m, int64_t size, int threads, const LargeArray<int32_t>& across) {
+  const auto n = static_cast<int64_t>(m.tet.size());
   const int64_t nodes = (n + size - 1) / size;
   LargeArray<uint32_t> order;
   if (size > 1)
@@ -130,6 +132,36 @@ Graph dual_graph(const TetMesh& m, int threads, const LargeArray<int32_t>& acros
   return g;
 }
 
+// Runs of equal length along the curve.
+std::vector<int32_t> cut_curve(const TetMesh& m, int64_t parts, int threads) {
+  const LargeArray<uint32_t> order = along_curve(m, threads);
+  const auto n = static_cast<int64_t>(order.size());
+  std::vector<int32_t> part(order.size());
+  par::for_n(n, threads, [&](int64_t k) { part[order[size_t(k)]] = static_cast<int32_t>(k * parts / n); });
+  return part;
+}
+
+// An empty part takes the second half of the largest along the curve.
+void fill_empty_parts(const TetMesh& m, std::vector<int32_t>& part, int32_t parts, int threads) {
+  std::vector<int64_t> size(size_t(parts), 0);
+  for (const int32_t p : part)
+    ++size[size_t(p)];
+  if (std::find(size.begin(), size.end(), 0) == size.end())
+    return;
+  const LargeArray<uint32_t> order = along_curve(m, threads);
+  for (int32_t p = 0; p < parts; ++p) {
+    if (size[size_t(p)] > 0)
+      continue;
+    const auto largest = static_cast<int32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+    int64_t kept = (size[size_t(largest)] + 1) / 2;
+    for (const uint32_t t : order)
+      if (part[t] == largest && kept-- <= 0) {
+        part[t] = p;
+        ++size[size_t(p)], --size[size_t(largest)];
+      }
+  }
+}
+
 } // namespace
 
 std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeArray<int32_t> across,
@@ -142,14 +174,23 @@ std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeAr
       meanwhile();
     return part;
   }
+  const auto tets = static_cast<int64_t>(m.tet.size());
+  auto k = static_cast<idx_t>(std::min<int64_t>(parts, tets));
+  int64_t size = tets < large ? 1 : cluster_size;
+  while (size > 1 && tets < fewest_nodes * size * k)
+    size /= 2;
+  if (tets < fewest_nodes * k) {
+    if (meanwhile)
+      meanwhile();
+    return cut_curve(m, k, threads);
+  }
   if (across.empty()) {
     across = face_neighbors(m, threads);
     for (int32_t& f : across)
       f = f < 0 ? -1 : f / 4;
   }
-  Graph g = dual_graph(m, threads, across);
+  Graph g = dual_graph(m, size, threads, across);
   auto n = static_cast<idx_t>(g.node_weight.size());
-  idx_t k = std::min<idx_t>(parts, n);
   std::vector<idx_t> part_of(size_t(n), 0);
   idx_t options[METIS_NOPTIONS], constraints = 1, cut = 0;
   METIS_SetDefaultOptions(options);
@@ -171,6 +212,7 @@ std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeAr
     fail(Status::failed, "METIS cannot partition this mesh (status " + std::to_string(status) + ")");
   par::for_n(int64_t(part.size()), threads,
              [&](int64_t t) { part[size_t(t)] = part_of[size_t(g.cluster[size_t(t)])]; });
+  fill_empty_parts(m, part, k, threads);
   return part;
 }
 

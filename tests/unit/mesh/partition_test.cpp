@@ -1,6 +1,7 @@
 // partition_test.cpp — parts are even, few faces lie between them, threads do not matter.
 #include "mesh/partition.hpp"
 #include "meshes.hpp"
+#include "unit/cli/child.hpp"
 #include <catch2/catch.hpp>
 #include <numeric>
 
@@ -36,7 +37,29 @@ TEST_CASE("one part, and more parts than tetrahedra") {
   int calls = 0;
   CHECK(partition(m, 1, 1, {}, [&] { ++calls; }) == std::vector<int32_t>(6, 0));
   CHECK(calls == 1);
-  for (int32_t p : partition(m, 100, 1))
-    CHECK((p >= 0 && p < 6));
+  std::vector<int32_t> part = partition(m, 100, 1, {}, [&] { ++calls; });
+  CHECK(calls == 2);
+  std::sort(part.begin(), part.end());
+  CHECK(part == std::vector<int32_t>{0, 1, 2, 3, 4, 5});
   CHECK(partition(TetMesh{}, 4, 1).empty());
+}
+
+TEST_CASE("no part is empty, however many are asked for, and METIS says nothing") {
+  const int n = GENERATE(2, 9, 30);
+  const TetMesh m = cubes(n, all_molecule);
+  const auto tets = static_cast<int>(m.tet.size());
+  const test::Outcome quiet = test::in_child([&] {
+    for (const int parts : {2, 8, 37, 1000, 2000, tets / 25, tets / 20, tets / 4, tets - 1, tets}) {
+      const int expected = std::clamp(parts, 1, tets);
+      std::vector<size_t> size(static_cast<size_t>(expected));
+      for (const int32_t p : partition(m, expected, 1)) // a child of a process with threads has one
+        ++size.at(static_cast<size_t>(p));
+      if (std::find(size.begin(), size.end(), size_t{0}) != size.end())
+        return 1;
+    }
+    return 0;
+  });
+  CHECK(quiet.status == 0);
+  CHECK(quiet.out.empty());
+  CHECK(partition(m, tets / 3, 1) == partition(m, tets / 3, 5));
 }
