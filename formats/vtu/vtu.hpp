@@ -10,7 +10,8 @@ struct VtuNotes {
   int64_t dropped_cells = 0;     ///< vertices and lines
   int64_t dropped_triangles = 0; ///< of a file without `boundary`: triangles are rebuilt from the tetrahedra
   bool region_missing = false;   ///< region 1 for all
-  bool boundary_missing = false; ///< label 1 for all
+  bool isovalue_missing = false; ///< 1
+  bool boundary_missing = false; ///< label 1, of several regions also walls of the box
 };
 
 /// What becomes of cell arrays beyond region, boundary and part, and of texts beyond source and creator.

@@ -256,6 +256,7 @@ private:
       }
       return s;
     };
+    notes_.isovalue_missing = !find(d_.field, "isovalue");
     if (const ArrayTag* a = find(d_.field, "isovalue")) {
       const Column c = decoder_.decode(*a);
       if (c.size() != 1 || !std::isfinite(c.real(0)))
@@ -332,6 +333,7 @@ TetMesh read_vtu(std::istream& in, const std::string& file, VtuNotes* notes, Cel
   TetMesh mesh = Reader(document, n, arrays).read();
   if (n.boundary_missing) {
     rebuild_triangles(mesh);
+    label_walls(mesh);
     for (CellArray& a : mesh.cell_array) { // nothing is known of the new triangles
       const size_t cells = mesh.tet.size() + mesh.tri.size();
       a.real.resize(a.real.empty() ? 0 : cells, 0);

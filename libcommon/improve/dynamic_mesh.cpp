@@ -51,6 +51,11 @@ private:
   std::string text_;
 };
 
+void require_labels(size_t before) {
+  if (before == 256)
+    fail_input("more than 255 different boundary labels");
+}
+
 // Labels in the order of their first triangles; the index of each triangle's.
 std::vector<uint8_t> set_labels(DynamicMesh& m, const TetMesh& mesh, std::vector<int64_t>& first) {
   m.labels.assign(1, {});
@@ -60,8 +65,7 @@ std::vector<uint8_t> set_labels(DynamicMesh& m, const TetMesh& mesh, std::vector
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
     const auto [entry, fresh] = index.try_emplace(mesh.boundary[t], static_cast<uint8_t>(m.labels.size()));
     if (fresh) {
-      if (m.labels.size() == 256)
-        fail_input("more than 255 different boundary labels");
+      require_labels(m.labels.size());
       m.labels.push_back({mesh.boundary[t], -1});
       first.push_back(int64_t(t));
     }
@@ -70,10 +74,14 @@ std::vector<uint8_t> set_labels(DynamicMesh& m, const TetMesh& mesh, std::vector
   return label;
 }
 
-// Faces meet the face on their other side and their triangle; the first triangle of each label tells which way its
-// triangles point.
-void link(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, const std::vector<int64_t>& first,
-          int threads) {
+// Of a triangle: it points into the lower of the two regions, or into the mesh; it is of the molecular surface but
+// a face of another region alone, and so looks into it (VTUv1) where those between two regions look out of the
+// lower.
+enum : uint8_t { reversed = 1, lone = 2 };
+
+// Faces meet the face on their other side and their triangle.
+std::vector<uint8_t> link(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, int threads) {
+  std::vector<uint8_t> way(mesh.tri.size(), 0);
   const auto faces = static_cast<int64_t>(4 * mesh.tet.size());
   FirstFault fault, mislabelled; // the one comes before the other
   const auto join = [&](const uint32_t* face, int sides, bool has_triangle) {
@@ -87,14 +95,14 @@ void link(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label
       }
     }
   };
-  const auto set_direction = [&](const uint32_t* face, int sides) {
-    const auto t = static_cast<int64_t>(face[sides]) - faces;
-    const uint8_t l = label[size_t(t)];
-    if (first[l] != t)
-      return;
-    const bool second = sides == 2 && mesh.region[face[1] / 4] < mesh.region[face[0] / 4];
-    m.labels[l].reversed =
-        sorted_triangle(face_at(mesh, face[second ? 1 : 0])).odd != sorted_triangle(mesh.tri[size_t(t)]).odd;
+  const auto set_way = [&](const uint32_t* face, int sides) {
+    const auto t = size_t(static_cast<int64_t>(face[sides]) - faces);
+    const int32_t region = mesh.region[face[0] / 4];
+    const bool second = sides == 2 && mesh.region[face[1] / 4] < region;
+    if (sorted_triangle(face_at(mesh, face[second ? 1 : 0])).odd != sorted_triangle(mesh.tri[t]).odd)
+      way[t] |= reversed;
+    if (sides == 1 && mesh.boundary[t] == Boundary::surface && region != Region::molecule)
+      way[t] |= lone;
   };
   for_each_face(mesh.tet, mesh.tri, static_cast<int64_t>(mesh.point.size()), threads,
                 [&](const uint32_t* face, int n, bool same_side) {
@@ -125,10 +133,37 @@ void link(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label
                     });
                   join(face, sides, n > sides);
                   if (n > sides)
-                    set_direction(face, sides);
+                    set_way(face, sides);
                 });
   fault.fail_if_any();
   mislabelled.fail_if_any();
+  return way;
+}
+
+// A molecular surface of both kinds becomes two labels of one name: each has its own direction.
+void split_surface(DynamicMesh& m, const std::vector<uint8_t>& way, std::vector<uint8_t>& label,
+                   std::vector<int64_t>& first) {
+  const auto surface = static_cast<uint8_t>(
+      std::find_if(m.labels.begin(), m.labels.end(), [](const Label& l) { return l.name == Boundary::surface; }) -
+      m.labels.begin());
+  int64_t first_lone = -1, first_other = -1;
+  for (size_t t = way.size(); t-- > 0;)
+    if (label[t] == surface)
+      (way[t] & lone ? first_lone : first_other) = int64_t(t);
+  if (first_lone < 0 || first_other < 0)
+    return;
+  require_labels(m.labels.size());
+  const auto added = static_cast<uint8_t>(m.labels.size());
+  m.labels.push_back(m.labels[surface]);
+  first[surface] = first_other;
+  first.push_back(first_lone);
+  for (size_t t = 0; t < way.size(); ++t)
+    if (way[t] & lone)
+      label[t] = added;
+  for (Element& e : m.element)
+    for (size_t i = 0; i < 4; ++i)
+      if (e.label[i] == surface && e.n[i] < 0 && e.region != Region::molecule)
+        e.label[i] = added;
 }
 
 } // namespace
@@ -206,8 +241,11 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   });
   fault.fail_if_any();
   std::vector<int64_t> first;
-  const std::vector<uint8_t> label = set_labels(m, mesh, first);
-  link(m, mesh, label, first, threads);
+  std::vector<uint8_t> label = set_labels(m, mesh, first);
+  const std::vector<uint8_t> way = link(m, mesh, label, threads);
+  split_surface(m, way, label, first);
+  for (size_t l = 1; l < first.size(); ++l) // as the first of its triangles
+    m.labels[l].reversed = way[size_t(first[l])] & reversed;
   set_kinds(m, mesh, label, sharp, threads);
   return m;
 }

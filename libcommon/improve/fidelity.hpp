@@ -20,6 +20,9 @@ struct Fidelity {
 
 Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int threads);
 
+/// Do more triangles of the curved surfaces face into the isosurface than out of it?
+bool runs_against(const DynamicMesh& m, const Isosurface& surface, int threads);
+
 /// Chords enclose less than the surface they hang on: how far their points must lie outside it (Å, from where they
 /// are now) to make up for that, at most 0.0175 spacings in all (I8 allows 0.02).
 double chord_offset(const DynamicMesh& m, const Isosurface& surface, int threads);

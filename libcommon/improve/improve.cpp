@@ -1,6 +1,7 @@
 // improve.cpp — the order of passes: settle on the surface, raise the goal by steps, release the guard at the very
 // end.
 #include "improve/improve.hpp"
+#include "error.hpp"
 #include "improve/reference_surface.hpp"
 #include "improve/schedule.hpp"
 #include "par/par.hpp"
@@ -76,6 +77,8 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     isosurface = std::make_unique<Isosurface>(*density, options.threads);
   else
     input_surface = std::make_unique<ReferenceSurface>(mesh, curved_triangles(m, mesh));
+  if (density && runs_against(m, *isosurface, options.threads))
+    fail_input("most of the surface runs against the isosurface, expected the lower region's inside in its own");
   const Target* target = density ? static_cast<const Target*>(isosurface.get()) : input_surface.get();
   const double h = target->spacing(), edge = mean_surface_edge(m, options.threads); // 4 h and more in merged cells
   Schedule schedule(m, target, std::clamp(21 * edge, 32 * h, 256 * h), options.threads);

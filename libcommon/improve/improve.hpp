@@ -43,7 +43,8 @@ using FlowPass = std::function<int64_t(DynamicMesh&, const Isosurface*, const Pa
 /// Improves the mesh in place. With a density, points of the curved boundary labels are put on G = isovalue;
 /// without, they move on the surface that came in, whose sharp edges are kept. Regions, labels
 /// and the topology of every surface stay; the worst element never becomes worse (I9). Same result for any number
-/// of threads. phase(name), when given, is told what begins. Throws Error(bad_input) for a mesh that is not valid.
+/// of threads. phase(name), when given, is told what begins. Throws Error(bad_input) for a mesh that is not valid
+/// or whose surface runs against the isosurface.
 Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
                const std::function<void(const std::string&)>& phase = {}, const FlowPass& flow = {});
 

@@ -1,6 +1,7 @@
 // adjacency.cpp — faces are grouped by their three points.
 #include "mesh/adjacency.hpp"
 #include "mesh/face_groups.hpp"
+#include <algorithm>
 
 namespace molmesh {
 
@@ -47,6 +48,37 @@ void rebuild_triangles(TetMesh& m, int threads) {
     m.tri.push_back(t);
   }
   m.boundary.assign(m.tri.size(), Boundary::surface);
+}
+
+void label_walls(TetMesh& m, int threads) {
+  if (std::all_of(m.region.begin(), m.region.end(), [&](int32_t r) { return r == m.region[0]; }))
+    return;
+  Vec3d low = m.point[static_cast<size_t>(m.tet[0][0])], high = low;
+  for (const Tet& t : m.tet)
+    for (int32_t v : t)
+      for (int a = 0; a < 3; ++a) {
+        low[a] = std::min(low[a], m.point[static_cast<size_t>(v)][a]);
+        high[a] = std::max(high[a], m.point[static_cast<size_t>(v)][a]);
+      }
+  const auto wall = [&](const Tri& t, int side) {
+    return std::all_of(t.begin(), t.end(), [&](int32_t v) {
+      return m.point[static_cast<size_t>(v)][side / 2] == (side % 2 == 0 ? low : high)[side / 2];
+    });
+  };
+  const LargeArray<int32_t> across = face_neighbors(m, threads);
+  size_t next = 0; // as rebuild_triangles counts them
+  for (int64_t face : boundary_faces(m, across, threads)) {
+    const int32_t region = m.region[static_cast<size_t>(face / 4)], other = region_across(m, across, face);
+    if (other != 0 && region >= other)
+      continue;
+    const size_t t = next++;
+    for (int side = 0; side < 6 && across[static_cast<size_t>(face)] == no_face; ++side)
+      if (wall(m.tri[t], side)) {
+        m.tri[t] = face_points(m, face);
+        m.boundary[t] = Boundary::box_x0 + side;
+        break;
+      }
+  }
 }
 
 } // namespace molmesh

@@ -48,4 +48,8 @@ inline bool triangle_looks_out(int32_t region, int32_t other, int32_t boundary) 
 /// Triangles anew: every face between regions and every face with one tetrahedron, ordered by tetrahedron, label 1.
 void rebuild_triangles(TetMesh& m, int threads = 1);
 
+/// Rebuilt triangles of a mesh of several regions: those with one tetrahedron in an outermost plane of x, y or z
+/// get the box's labels and point out of it. Planes are exact.
+void label_walls(TetMesh& m, int threads = 1);
+
 } // namespace molmesh

@@ -3,6 +3,9 @@
 #include "improve/dynamic_mesh.hpp"
 #include "improve/improve.hpp"
 #include "lattice_mesh.hpp"
+#include "mesh/adjacency.hpp"
+#include "mesh/validity.hpp"
+#include "unit/refusal.hpp"
 #include <catch2/catch.hpp>
 
 using namespace molmesh;
@@ -103,4 +106,34 @@ TEST_CASE("where sheets of a surface touch at a point, the point is fixed") {
   CHECK(m.vertex[0].kind == improve::Kind::fixed);
   for (size_t v = 1; v < 7; ++v)
     CHECK(m.vertex[v].kind == improve::Kind::surface);
+}
+
+TEST_CASE("a mesh without labels of its own stays valid: every triangle keeps its rule's direction") {
+  TetMesh mesh = ball_in_a_box();
+  const bool walls = GENERATE(false, true);
+  const auto number = GENERATE(std::pair{1, 2}, std::pair{5, 7}, std::pair{7, 5}, std::pair{2, 3});
+  for (int32_t& r : mesh.region)
+    r = r == Region::molecule ? number.first : number.second;
+  rebuild_triangles(mesh);
+  if (walls)
+    label_walls(mesh);
+  CHECK(std::count(mesh.boundary.begin(), mesh.boundary.end(), Boundary::box_z1) == (walls ? 2 * 9 * 9 : 0));
+  REQUIRE(check_validity(mesh, 1).valid());
+  improve::Options options;
+  options.iterations = 2;
+  REQUIRE(improve::improve(mesh, nullptr, options).counts.total() > 0);
+  CHECK(check_validity(mesh, 1).valid());
+}
+
+TEST_CASE("a surface that runs against the isosurface is refused") {
+  const Field field = [](Vec3d p) { return std::exp(-0.3 * (norm2(p - Vec3d{2.6, 2.5, 2.4}) - 1.44)); };
+  const BlockGrid grid = lattice_grid(field, {0, 0, 0}, 0.5, 10);
+  TetMesh mesh = ball_in_a_box(), turned = mesh;
+  for (int32_t& r : turned.region)
+    r = 3 - r;
+  rebuild_triangles(turned);
+  label_walls(turned);
+  CHECK(improve::improve(mesh, &grid, {}).fidelity.turned == 0);
+  CHECK(refusal(Status::bad_input, [&] { improve::improve(turned, &grid, {}); }).find("isosurface") !=
+        std::string::npos);
 }
