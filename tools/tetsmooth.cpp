@@ -11,10 +11,10 @@
 #include "improve/improve.hpp"
 #include "mesh/carry.hpp"
 #include "mesh/partition.hpp"
+#include "mesh/same_source.hpp"
 #include "mesh/worst.hpp"
 #include "molecule/nearest.hpp"
 #include <optional>
-#include <sstream>
 #include <utility>
 
 using namespace molmesh;
@@ -36,16 +36,10 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("FILE");
   app.add_option("--iterations", o.iterations, "rounds at most; 0 leaves the mesh as it is")
       ->check(CLI::Range(0, 1000));
-  app.add_option("--parts", o.parts, "METIS parts that the elements are numbered by in the output")
+  app.add_option("--parts", o.parts,
+                 "parts (METIS) that the elements are numbered by in the output, one an element at most")
       ->check(CLI::Range(1, 1000000));
   cli::add_dihedral_limits(app, o.min_dihedral, o.max_dihedral);
-}
-
-std::string text(const improve::Angles& a) {
-  std::ostringstream s;
-  s.precision(4);
-  s << a.min << "° to " << a.max << "°, " << a.below_25 << " elements under 25°, " << a.above_140 << " over 140°";
-  return s.str();
 }
 
 nlohmann::ordered_json json(const improve::Angles& a) {
@@ -64,18 +58,6 @@ nlohmann::ordered_json json(const improve::Fidelity& f) {
           {"volume_missing", f.missing}};
 }
 
-std::string text(const WorstTet& t, const std::optional<Hierarchy>& h) {
-  std::ostringstream s;
-  s.precision(4);
-  s << "element " << t.tet << " has " << t.min << "° to " << t.max << "°, at ";
-  s.precision(6), s << t.centre.x << ' ' << t.centre.y << ' ' << t.centre.z;
-  if (h) {
-    const int64_t atom = nearest_atom(*h, t.centre);
-    s << ", nearest to " << groups_of(*h, atom) << ' ' << h->names[h->atom[size_t(atom)].name];
-  }
-  return s.str();
-}
-
 Status run_tool(const Options& o, cli::Run& run) {
   const int threads = o.resolved_threads();
   run.phase("read");
@@ -90,7 +72,10 @@ Status run_tool(const Options& o, cli::Run& run) {
     hierarchy = formats::read_hier(file.stream(), file.name());
   }
   cli::InputFile input(o.input);
-  TetMesh mesh = formats::read_vtu(input.stream(), input.name(), nullptr, formats::CellArrays::keep);
+  formats::VtuNotes notes;
+  TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes, formats::CellArrays::keep);
+  if (grid)
+    require_same_source(mesh, !notes.isovalue_missing, grid->info, o.density);
   const CarriedArrays arrays(mesh);
   run.counts.update({{"elements_before", mesh.tet.size()}, {"points_before", mesh.point.size()}});
   improve::Options options{.iterations = o.iterations, .threads = threads, .measure_later = true};
@@ -112,8 +97,10 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.phase("partition");
   mesh.part = partition(mesh, o.parts, threads, std::move(result.across), [&] { result.measure(); });
   const improve::Counts& c = result.counts;
-  run.counts.update({{"elements", mesh.tet.size()}, {"points", mesh.point.size()}, {"rounds", result.rounds}});
-  run.counts.update({{"moves", c.moves},
+  run.counts.update({{"elements", mesh.tet.size()},
+                     {"points", mesh.point.size()},
+                     {"rounds", result.rounds},
+                     {"moves", c.moves},
                      {"edge_removals", c.edge_removals},
                      {"surface_flips", c.surface_flips},
                      {"face_swaps", c.face_swaps},
@@ -124,6 +111,8 @@ Status run_tool(const Options& o, cli::Run& run) {
                      {"quality_after", json(result.after)}});
   if (grid)
     run.counts["surface"] = json(result.fidelity);
+  if (size_t(o.parts) > mesh.tet.size() && o.parts != Options().parts)
+    run.note("--parts: one for each of the " + std::to_string(mesh.tet.size()) + " elements, there are no more");
   arrays.put_into(mesh, threads);
   if (!arrays.empty())
     run.note("carried from the nearest element before: " + arrays.names());
@@ -133,12 +122,14 @@ Status run_tool(const Options& o, cli::Run& run) {
   formats::write_vtu(output.stream(), mesh);
   output.commit();
   if (run.verbose)
-    run.note("dihedral angles " + text(result.before) + "; now " + text(result.after));
+    run.note("dihedral angles " + improve::text(result.before) + "; now " + improve::text(result.after));
   if (result.after.min >= o.min_dihedral && result.after.max <= o.max_dihedral)
     return Status::good;
-  run.note("below the quality asked for: dihedral angles " + text(result.after));
-  for (const WorstTet& t : worst_tets(mesh, {o.min_dihedral, o.max_dihedral}, 10, threads))
-    run.note(text(t, hierarchy));
+  const AngleLimits limits{o.min_dihedral, o.max_dihedral};
+  run.note("below the quality asked for: " + std::to_string(count_beyond(mesh, limits, threads)) +
+           " elements beyond it, dihedral angles " + range_text(result.after.min, result.after.max));
+  for (const WorstTet& t : worst_tets(mesh, limits, 10, threads))
+    run.note(described(t) + (hierarchy ? ", nearest to " + nearest_name(*hierarchy, t.centre) : ""));
   return Status::below_quality;
 }
 

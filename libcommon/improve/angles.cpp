@@ -1,5 +1,6 @@
 // angles.cpp — the angles of elements of low quality, among which are the extremes.
 #include "improve/angles.hpp"
+#include "mesh/worst.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
@@ -57,6 +58,11 @@ Angles measure_angles(const DynamicMesh& m, int threads) {
   const auto enough = static_cast<float>(1.001 * std::max(angle_quality(27), angle_quality(137)));
   const Angles a = measure_up_to(m, enough, threads);
   return a.min < 27 && a.max > 137 ? a : measure_up_to(m, 2, threads);
+}
+
+std::string text(const Angles& a) {
+  return range_text(a.min, a.max) + ", " + std::to_string(a.below_25) + " elements under 25°, " +
+         std::to_string(a.above_140) + " over 140°";
 }
 
 } // namespace molmesh::improve

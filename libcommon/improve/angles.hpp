@@ -1,6 +1,7 @@
 // angles.hpp — dihedral angles of a whole mesh.
 #pragma once
 #include "improve/dynamic_mesh.hpp"
+#include <string>
 
 namespace molmesh::improve {
 
@@ -11,5 +12,8 @@ struct Angles {
 
 /// Elements have their qualities. Same result for any number of threads.
 Angles measure_angles(const DynamicMesh& mesh, int threads);
+
+/// "24.1° to 142.3°, 2 elements under 25°, 1 over 140°"
+std::string text(const Angles& a);
 
 } // namespace molmesh::improve

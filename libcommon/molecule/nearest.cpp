@@ -28,4 +28,9 @@ std::string groups_of(const Hierarchy& h, int64_t atom) {
   return text;
 }
 
+std::string nearest_name(const Hierarchy& h, Vec3d p) {
+  const int64_t atom = nearest_atom(h, p);
+  return groups_of(h, atom) + ' ' + h.names[h.atom[size_t(atom)].name];
+}
+
 } // namespace molmesh

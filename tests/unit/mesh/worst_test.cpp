@@ -24,6 +24,8 @@ TEST_CASE("the worst tetrahedra come first, and only those beyond the limits") {
         Approx(std::atan(std::sqrt(8.) * (1 - 0.0004 * 1999)) * 180 / 3.14159265358979).epsilon(1e-6));
   CHECK(worst[0].centre.x == Approx(3. * double(worst[0].tet) + 0.5));
   CHECK(worst_tets(m, {0, 180}, 5, 1).empty());
+  CHECK(count_beyond(m, {30, 180}, 2) == static_cast<int64_t>(worst_tets(m, {30, 180}, m.tet.size(), 1).size()));
+  CHECK(count_beyond(m, {0, 180}, 2) == 0);
   CHECK(worst_tets(m, {30, 180}, 5, 1).back().tet == worst.back().tet);
 }
 

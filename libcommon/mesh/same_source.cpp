@@ -1,0 +1,28 @@
+// same_source.cpp — the sums of the structures, the values of the surfaces.
+#include "mesh/same_source.hpp"
+#include "error.hpp"
+#include <cmath>
+#include <sstream>
+
+namespace molmesh {
+namespace {
+
+std::string sum_of(const std::string& source) {
+  const size_t at = source.find("sha256:");
+  return at == std::string::npos ? "" : source.substr(at, source.find_first_of(" \t\n", at) - at);
+}
+
+} // namespace
+
+void require_same_source(const TetMesh& m, bool has_isovalue, const FieldInfo& field, const std::string& density) {
+  const std::string mesh_sum = sum_of(m.source), field_sum = sum_of(field.source);
+  if (!mesh_sum.empty() && !field_sum.empty() && mesh_sum != field_sum)
+    fail_input(density + ": the density of " + field.source + ", expected the mesh's " + m.source);
+  if (!has_isovalue || m.source.empty() || std::abs(m.isovalue - field.isovalue) <= 1e-9 * std::abs(field.isovalue))
+    return;
+  std::ostringstream s;
+  s << density << ": the isovalue " << field.isovalue << ", expected the mesh's " << m.isovalue;
+  fail_input(s.str());
+}
+
+} // namespace molmesh

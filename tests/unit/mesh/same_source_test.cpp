@@ -1,0 +1,29 @@
+// same_source_test.cpp — a density of another structure or isovalue is refused, one that says nothing is not.
+#include "mesh/same_source.hpp"
+#include "unit/refusal.hpp"
+#include <catch2/catch.hpp>
+
+using namespace molmesh;
+
+TEST_CASE("a density belongs to a mesh where sums and isovalues that both name are the same") {
+  TetMesh m;
+  m.source = "1crn.pdb sha256:69ed";
+  m.isovalue = 1;
+  FieldInfo field;
+  field.source = "1ubq.pdb sha256:1f46";
+  const auto refused = [&](bool has_isovalue) {
+    return test::refusal(Status::bad_input, [&] { require_same_source(m, has_isovalue, field, "c.vdb"); });
+  };
+  const auto passes = [&](bool has_isovalue) { require_same_source(m, has_isovalue, field, "c.vdb"); };
+  CHECK(refused(true) == "c.vdb: the density of 1ubq.pdb sha256:1f46, expected the mesh's 1crn.pdb sha256:69ed");
+  field.source = "other name sha256:69ed";
+  passes(true);
+  field.isovalue = 0.5;
+  CHECK(refused(true) == "c.vdb: the isovalue 0.5, expected the mesh's 1");
+  passes(false);
+  m.source = ""; // of another program
+  passes(true);
+  m.source = "by hand";
+  field.isovalue = 1;
+  passes(true);
+}
