@@ -86,7 +86,8 @@ Radii read_radii(std::istream& in, const std::string& file) {
     if (!radius || *radius <= 0)
       fail_input(where + ": found radius '" + std::string(word.back()) + "', expected a number > 0 (Å)");
     if (word.size() == 3 && word[1].find('.') != std::string_view::npos && decimal(word[1]))
-      fail_input(where + ": found atom '" + std::string(word[1]) + "', expected ELEMENT RADIUS or RESIDUE ATOM RADIUS");
+      fail_input(where + ": found atom '" + std::string(word[1]) +
+                 "', expected ELEMENT RADIUS or RESIDUE ATOM RADIUS");
     if (word.size() == 2)
       radii.set_element(word[0], *radius);
     else
