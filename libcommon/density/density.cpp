@@ -3,9 +3,27 @@
 #include "density/frame.hpp"
 #include "density/selection.hpp"
 #include "error.hpp"
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstdio>
 
 namespace molmesh::density {
+namespace {
+
+/// Every active value is a number in the file.
+void check_values(const Band& band) {
+  for (const BandBlock& b : band.block) {
+    int64_t n = 0;
+    for (const uint64_t word : b.active)
+      n += std::popcount(word);
+    if (!std::all_of(b.value, b.value + n, [](float v) { return std::isfinite(v); }))
+      fail(Status::usage, "next to the surface the field is above 3.4e38, beyond the file's single precision: "
+                          "expected a smaller --spacing, --decay or exponent");
+  }
+}
+
+} // namespace
 
 Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const BandFinder& find) {
   SearchOptions s;
@@ -40,6 +58,8 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
         o.band_lower, o.band_upper, h);
     fail(Status::failed, text);
   }
+  if (f.ln_highest > 88)
+    check_values(band);
   band.info.source = hierarchy.source;
   for (const Level& l : hierarchy.level)
     band.info.levels += (band.info.levels.empty() ? "" : " ") + l.name;

@@ -1,8 +1,10 @@
 // field.cpp — clusters and cutoff distances from a hierarchy.
 #include "density/field.hpp"
+#include "error.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numeric>
 
@@ -69,7 +71,7 @@ void measure_cluster(Field& f, size_t c) {
   for (size_t a = begin; a < end; ++a)
     sum += std::exp(f.peak[a] - largest);
   f.box[c] = b;
-  f.ln_peak[c] = largest + std::log(sum);
+  f.ln_peak[c] = largest < infinity ? largest + std::log(sum) : largest;
 }
 
 void add_clusters(Field& f, const Hierarchy& h, int threads) {
@@ -111,15 +113,11 @@ void add_clusters(Field& f, const Hierarchy& h, int threads) {
   par::for_n(f.clusters(), threads, [&](int64_t c) { measure_cluster(f, static_cast<size_t>(c)); });
 }
 
-/// For every innermost group the logarithm of the largest change of its sum that changes G by at most `allowed`.
-std::vector<double> allowed_change(const Field& f, double allowed) {
-  // Largest possible ln of each group's sum, anywhere; only exponents above 1 need it.
-  std::vector<std::vector<double>> largest(f.level.size());
-  const bool steep = std::any_of(f.level.begin(), f.level.end(), [](const FieldLevel& l) {
-    return std::any_of(l.exponent.begin(), l.exponent.end(), [](double p) { return p > 1; });
-  });
-  for (size_t l = 0; steep && l < f.level.size(); ++l) {
-    largest[l].assign(f.level[l].exponent.size(), -infinity);
+/// Per level and group the logarithm of the largest its sum can be, anywhere; last that of G.
+std::vector<std::vector<double>> largest_sums(const Field& f) {
+  std::vector<std::vector<double>> largest(f.level.size() + 1);
+  for (size_t l = 0; l <= f.level.size(); ++l) {
+    largest[l].assign(l < f.level.size() ? f.level[l].exponent.size() : 1, -infinity);
     if (l == 0)
       for (size_t c = 0; c < f.group.size(); ++c) {
         double& sum = largest[0][static_cast<size_t>(f.group[c])];
@@ -127,10 +125,38 @@ std::vector<double> allowed_change(const Field& f, double allowed) {
       }
     else
       for (size_t g = 0; g < f.level[l - 1].exponent.size(); ++g) {
-        double& sum = largest[l][static_cast<size_t>(f.level[l - 1].parent[g])];
+        double& sum = largest[l][l < f.level.size() ? static_cast<size_t>(f.level[l - 1].parent[g]) : 0];
         sum = log_add(sum, f.level[l - 1].exponent[g] * largest[l - 1][g]);
       }
   }
+  return largest;
+}
+
+/// Field::ln_highest: from the largest term, the largest exponents and the number of groups where that suffices.
+double highest_logarithm(const Field& f) {
+  double top = *std::max_element(f.ln_peak.begin(), f.ln_peak.end()) + std::log(double(f.clusters())),
+         highest = std::max(top, 0.0);
+  for (const FieldLevel& l : f.level) {
+    top = std::max(top, 0.0) * *std::max_element(l.exponent.begin(), l.exponent.end()) +
+          std::log(double(l.exponent.size()));
+    highest = std::max(highest, top);
+  }
+  if (highest <= Field::single_ln)
+    return highest;
+  const std::vector<std::vector<double>> largest = largest_sums(f);
+  highest = largest.back()[0];
+  for (size_t l = 0; l < f.level.size(); ++l)
+    for (size_t g = 0; g < largest[l].size(); ++g)
+      highest = std::max(highest, std::max(1.0, f.level[l].exponent[g]) * largest[l][g]);
+  return highest;
+}
+
+/// For every innermost group the logarithm of the largest change of its sum that changes G by at most `allowed`.
+std::vector<double> allowed_change(const Field& f, double allowed) {
+  const bool steep = std::any_of(f.level.begin(), f.level.end(), [](const FieldLevel& l) {
+    return std::any_of(l.exponent.begin(), l.exponent.end(), [](double p) { return p > 1; });
+  });
+  const std::vector<std::vector<double>> largest = steep ? largest_sums(f) : std::vector<std::vector<double>>();
   std::vector<double> outer, change;
   for (size_t l = f.level.size(); l-- > 0;) {
     change.resize(f.level[l].exponent.size());
@@ -181,6 +207,14 @@ Field make_field(const Hierarchy& h, double decay, double far_error, int threads
   add_levels(f, h);
   add_clusters(f, h, threads);
   f.steepest = steepest_path(f);
+  f.ln_highest = highest_logarithm(f);
+  if (!(f.ln_highest < 1e8)) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "the field's logarithm reaches %g, expected less than 1e8: a smaller --decay, radius or exponent",
+                  f.ln_highest);
+    fail(Status::usage, text);
+  }
   for (size_t l = 1; l < f.level.size(); ++l)
     for (const double p : f.level[l].exponent)
       f.plain_above = f.plain_above && p == 1;

@@ -47,13 +47,18 @@ struct Field {
   std::vector<FieldLevel> level; ///< innermost first, at least one: no level is one group with P = 1
   double steepest = 1;           ///< Q: the largest product of exponents from an innermost group to the root
   bool plain_above = true;       ///< every exponent above the innermost level is 1
+  double ln_highest = 0;         ///< no sum or power on the way to the root, and not G, has a larger logarithm
 
   int64_t clusters() const { return static_cast<int64_t>(group.size()); }
   int64_t atoms() const { return static_cast<int64_t>(x.size()); }
+  /// Something on the way to the root may be larger than single precision holds (ln: 88).
+  bool beyond_single() const { return ln_highest > single_ln; }
+  static constexpr double single_ln = 80;
   Box bounds() const; ///< of all centres
 };
 
-/// far_error: bound on what all clusters beyond their cutoff2 together add to G anywhere (no unit).
+/// far_error: bound on what all clusters beyond their cutoff2 together add to G anywhere (no unit). Throws
+/// Error(usage) when ln_highest is 1e8 or more.
 Field make_field(const Hierarchy& h, double decay, double far_error, int threads = 1);
 
 /// The groups above the innermost level that are open while innermost groups pass by in ascending order.

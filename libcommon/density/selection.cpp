@@ -14,7 +14,8 @@ constexpr double log2e = std::numbers::log2e;
 } // namespace
 
 Arithmetic arithmetic_for(const Field& f, double tolerance) {
-  const bool coarse = tolerance >= 4e-5 * std::max(1.0, f.steepest);
+  const bool coarse = tolerance >= 4e-5 * std::max(1.0, f.steepest) && !f.beyond_single();
+  constexpr double margin = 10;
   if (f.plain_above)
     return coarse ? Arithmetic::in_single : Arithmetic::in_double;
   // The smallest term of a group above the innermost level that can matter, as cutoffs see it.
@@ -23,8 +24,7 @@ Arithmetic arithmetic_for(const Field& f, double tolerance) {
     const double p = f.level[0].exponent[static_cast<size_t>(f.group[c])];
     least = std::min(least, p * (f.ln_peak[c] - f.decay * f.cutoff2[c]));
   }
-  constexpr double margin = 10;
-  if (least < -700 + margin)
+  if (least < -700 + margin || f.ln_highest > 700 - margin)
     return Arithmetic::in_logarithms;
   return least < -87 + margin || !coarse ? Arithmetic::in_double : Arithmetic::in_single;
 }
@@ -36,9 +36,11 @@ Selection::Selection(const Field& f, const Budget& budget, double lower, double 
   double gentlest = infinity;
   for (const double p : f.level[0].exponent)
     gentlest = std::min(gentlest, p);
+  for (const double peak : f.ln_peak)
+    largest_peak_ = std::max(largest_peak_, peak);
   for (const double c2 : f.cutoff2)
     reach_ = std::max(reach_, std::sqrt(c2));
-  scaled_ = !f.plain_above || gentlest * 100 < -std::log2(budget.block / 1e3);
+  scaled_ = !f.plain_above || f.beyond_single() || gentlest * 100 < -std::log2(budget.block / 1e3);
 }
 
 LocalBox Selection::local(Vec3d middle, Vec3d half) const {
@@ -50,9 +52,20 @@ LocalBox Selection::local(Vec3d middle, Vec3d half) const {
   return b;
 }
 
+/// Logarithms in bounds, κr² and 2κδ·(m - c), are wrong by some 2^-23 of what they are; positions relative to a
+/// node's middle by 2^-24 of its size, which is multiplied with 2κr.
+double Selection::blur(double h) const {
+  constexpr double rounding = 1.0 / (1 << 19);
+  const double q = std::max(1.0, f_.steepest),
+               b = q * rounding * (largest_peak_ + 7 * std::sqrt(f_.decay * largest_peak_) * h);
+  return b < 0.5 * single * q ? 0 : b;
+}
+
 bool Selection::narrow(Vec3d middle, double h) {
   part_middle_ = middle;
   h_ = h;
+  blur_ = blur(h);
+  blurred_ = std::exp(std::min(blur_, 700.0));
   octants_bounded_ = false;
   dropped_in_part_ = 0;
   const LocalBox part = local(middle, 7.5 * h * Vec3d{1, 1, 1});
@@ -97,10 +110,11 @@ void Selection::find_effects() {
 /// Drops units of small effect while their total is within the budget. A bound on the total.
 double Selection::drop(double budget) {
   float left;
+  budget /= blurred_;
   if (kept_.size() < static_cast<size_t>(near_.n) + 16)
     kept_.resize(2 * static_cast<size_t>(near_.n) + 16);
   units = keep_large(effect_.data(), near_.n, static_cast<float>(budget), kept_.data(), &left);
-  return budget - left;
+  return blurred_ * (budget - left);
 }
 
 /// block_units. False when single precision does not hold for their sums here.
@@ -133,9 +147,9 @@ bool Selection::take_atoms() {
   for (size_t i = 0; i < static_cast<size_t>(n); ++i)
     u.root[i] = effect_[static_cast<size_t>(kept_[i])] <= rough ? 0.0f : 2.0f;
   const auto take = [&](bool absolute) {
-    return take_units(local_, near_, kept_.data(), n, box, static_cast<float>(log2e * f_.decay),
-                      absolute ? log2_upper_ : nullptr,
-                      static_cast<float>(absolute ? 2 * (budget_.within + budget_.block) - dropped_ : within_), u);
+    return take_units(
+        local_, near_, kept_.data(), n, box, static_cast<float>(log2e * f_.decay), absolute ? log2_upper_ : nullptr,
+        static_cast<float>((absolute ? 2 * (budget_.within + budget_.block) - dropped_ : within_) / blurred_), u);
   };
   const bool absolute = f_.plain_above && budget_.within > 0;
   bool holds = take(absolute);
@@ -145,7 +159,7 @@ bool Selection::take_atoms() {
   }
   if (!holds && absolute && arithmetic == Arithmetic::in_single)
     take(false); // few blocks, of coarse grids: better too many atoms
-  added += 0.5 * static_cast<double>(u.dropped);
+  added += 0.5 * blurred_ * static_cast<double>(u.dropped);
   atoms = u.begin[static_cast<size_t>(n)];
   return holds;
 }

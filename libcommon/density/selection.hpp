@@ -69,7 +69,8 @@ private:
   void bound_octants_of_part(int alone);
   void take_octant(int octant, bool classify);
   double upper_bound();
-  bool surely_outside() { return (1 + slack_) * upper_bound() + 2 * budget_.total() < lower_; }
+  double blur(double h) const;
+  bool surely_outside() { return (1 + slack_) * blurred_ * upper_bound() + 2 * budget_.total() < lower_; }
   double drop(double budget);
   bool take_atoms();
   bool place_exactly(Vec3d middle);
@@ -83,9 +84,12 @@ private:
   const double lower_, upper_, within_;
   const double slack_; ///< what single precision can do to an upper bound of G, relative
   const float rough_root_error_ = rough_root_error();
-  const Arithmetic least_; ///< what was asked for
-  double reach_ = 0;       ///< Å, the largest cutoff
-  bool scaled_;            ///< upper bounds need more range than single precision has
+  const Arithmetic least_;  ///< what was asked for
+  double reach_ = 0;        ///< Å, the largest cutoff
+  double largest_peak_ = 0; ///< ln
+  double blur_ = 0;         ///< what single precision can do to ln of a bound; 0 where slack_ covers that
+  double blurred_ = 1;      ///< e^blur_
+  bool scaled_;             ///< upper bounds need more range than single precision has
   Vec3d node_middle_, part_middle_;
   double h_ = 0;
   double dropped_in_part_ = 0, dropped_ = 0; ///< bounds on what goes with groups dropped in the part, in the block

@@ -50,7 +50,7 @@ bool Selection::place_exactly(Vec3d middle) {
       widest = std::max(widest, std::max(1.0, p) * most(slope));
     }
   }
-  return widest < 850 && highest < 1000;
+  return widest < 500 && highest < 1000; // what multiplies a power, and the power, may both be as large
 }
 
 } // namespace molmesh::density

@@ -129,7 +129,7 @@ bool Selection::surely_inside(Vec3d middle, Vec3d half) {
   }
   const Vec3d g = root.gradient;
   const double least =
-      root.middle - (std::abs(g.x) * half.x + std::abs(g.y) * half.y + std::abs(g.z) * half.z) - bend;
+      root.middle - (std::abs(g.x) * half.x + std::abs(g.y) * half.y + std::abs(g.z) * half.z) - bend - blur_;
   const double total = budget_.total();
   return std::exp(least) * (1 - 4 * total - 1e-3) > upper_ + 4 * total;
 }

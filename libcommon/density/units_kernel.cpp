@@ -144,7 +144,7 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
         y = hn::Sub(y, cy);
         z = hn::Sub(z, cz);
       }
-      const V swing = direct ? hn::Add(along(x, y, z), weight) : hn::Mul(along(x, y, z), steepness);
+      const V swing = hn::Mul(direct ? hn::Add(along(x, y, z), weight) : along(x, y, z), steepness);
       widest = hn::Max(widest, hn::IfThenElseZero(keep, swing));
       hn::StoreU(hn::Compress(x, keep), f, x_to + kept);
       hn::StoreU(hn::Compress(y, keep), f, y_to + kept);
