@@ -36,7 +36,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--decay", o.decay, "decay rate of an atom's term")->type_name("Å⁻²")->check(CLI::PositiveNumber);
   app.add_option("--isovalue", o.isovalue, "the surface is where the field has this value")
       ->check(CLI::PositiveNumber);
-  app.add_option("--band", o.band, "limits of the band to keep, in multiples of the isovalue, 0 < LO <= 1 <= HI")
+  app.add_option("--band", o.band, "limits of the band to keep, in multiples of the isovalue, 0 < LO < 1 < HI")
       ->type_name("LO,HI");
   app.add_option("--tolerance", o.tolerance, "largest error of a value G, in units of max(1, G)")
       ->check(CLI::Range(1e-6, 1e-2));
@@ -49,8 +49,8 @@ void describe(CLI::App& app, Options& o) {
 density::Options density_options(const Options& o) {
   density::Options d;
   const std::vector<double> band = cli::numbers("--band", o.band, 2);
-  if (!(band[0] > 0 && band[0] <= 1 && band[1] >= 1))
-    fail(Status::usage, "--band: found '" + o.band + "', expected LO,HI with 0 < LO <= 1 <= HI");
+  if (!(band[0] > 0 && band[0] < 1 && band[1] > 1))
+    fail(Status::usage, "--band: found '" + o.band + "', expected LO,HI with 0 < LO < 1 < HI");
   if (o.grid > 0 && o.grid < 4)
     fail(Status::usage, "--grid: found " + std::to_string(o.grid) + ", expected 4 or more");
   d.spacing = o.spacing;

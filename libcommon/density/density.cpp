@@ -11,6 +11,26 @@
 namespace molmesh::density {
 namespace {
 
+/// What I2 and the floats of the file ask of the band (field.md §5).
+void check_band(const Options& o) {
+  const double off = o.tolerance * std::max(1.0, o.isovalue),
+               room = std::min(o.band_upper - o.isovalue, o.isovalue - o.band_lower);
+  char text[200];
+  if (!(o.band_upper <= 1e38)) {
+    std::snprintf(text, sizeof text, "the band reaches up to %g, expected at most 1e38: a lower --isovalue",
+                  o.band_upper);
+    fail(Status::usage, text);
+  }
+  if (off <= room * (1 + 1e-12))
+    return;
+  std::snprintf(
+      text, sizeof text,
+      "--tolerance: found %g, expected at most %g, the band's reach from the isovalue of %g: a wider --band "
+      "or a larger --isovalue would do, too",
+      o.tolerance, room / std::max(1.0, o.isovalue), o.isovalue);
+  fail(Status::usage, text);
+}
+
 /// Every active value is a number in the file.
 void check_values(const Band& band) {
   for (const BandBlock& b : band.block) {
@@ -26,6 +46,7 @@ void check_values(const Band& band) {
 } // namespace
 
 Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const BandFinder& find) {
+  check_band(o);
   SearchOptions s;
   s.isovalue = o.isovalue;
   s.band_lower = o.band_lower;

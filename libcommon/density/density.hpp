@@ -27,8 +27,8 @@ struct Counts {
 using BandFinder = std::function<Band(const Field&, const GridFrame&, const SearchOptions&, SearchCounts&)>;
 
 /// Everything of the band but info.creator. Throws Error(failed) when the wall of a grid with the caller's margin
-/// cuts the surface or nothing reaches the band, Error(usage) when the grid is too large to index, or a value
-/// too large for a float.
+/// cuts the surface or nothing reaches the band, Error(usage) when the grid is too large to index, the band too
+/// narrow for the tolerance (field.md §5) or a value too large for a float.
 Band compute(const Hierarchy& h, const Options& options, Counts& counts, const BandFinder& find = find_band);
 
 } // namespace molmesh::density

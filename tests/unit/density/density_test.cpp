@@ -231,3 +231,21 @@ TEST_CASE("a value that a float does not hold is refused where the file would ne
   o.decay = 1e6;
   CHECK(test::refusal(Status::usage, [&] { compute(h, o); }).find("--decay") != std::string::npos);
 }
+
+TEST_CASE("a band narrower than the tolerance is refused") {
+  Hierarchy h;
+  h.atom.push_back({{0, 0, 0}, 2.0});
+  const auto with = [&](double isovalue, double tolerance) {
+    density::Options o;
+    o.isovalue = isovalue;
+    o.band_lower = 0.9 * isovalue;
+    o.band_upper = 1.1 * isovalue;
+    o.tolerance = tolerance;
+    return test::refusal(Status::usage, [&] { compute(h, o); });
+  };
+  for (const auto& [isovalue, tolerance] : {std::pair{1e-4, 1e-4}, {0.02, 0.01}, {9.9e-4, 1e-4}, {1e-300, 1e-4}})
+    CHECK(with(isovalue, tolerance).find("--tolerance") != std::string::npos);
+  for (const auto& [isovalue, tolerance] : {std::pair{1.01e-3, 1e-4}, {0.11, 0.01}, {1.0, 0.01}, {5.0, 0.01}})
+    CHECK(with(isovalue, tolerance).empty());
+  CHECK(with(1e38, 1e-4).find("--isovalue") != std::string::npos);
+}
