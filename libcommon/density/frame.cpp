@@ -91,7 +91,7 @@ double sufficient_margin(const Field& f, double value) {
         lo = hi;
         hi *= 2;
       }
-      while (hi - lo > 0.01)
+      while (hi - lo > std::max(0.01, 1e-9 * hi))
         (enough((lo + hi) / 2) ? hi : lo) = (lo + hi) / 2;
       margin = hi;
     }

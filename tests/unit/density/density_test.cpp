@@ -249,3 +249,21 @@ TEST_CASE("a band narrower than the tolerance is refused") {
     CHECK(with(isovalue, tolerance).empty());
   CHECK(with(1e38, 1e-4).find("--isovalue") != std::string::npos);
 }
+
+TEST_CASE("fields without an end are refused, not searched for it") {
+  density::Options o;
+  o.spacing = 1;
+  const auto refused = [&](double radius, double exponent, double decay) {
+    Hierarchy h;
+    h.atom.push_back({{0, 0, 0}, radius});
+    h.atom.push_back({{1, 0, 0}, radius});
+    h.level = {{"residue", {{"r", exponent, 0, 1}, {"s", exponent, 1, 2}}}};
+    o.decay = decay;
+    return !test::refusal(Status::usage, [&] { compute(h, o); }).empty();
+  };
+  CHECK(refused(1.7, 0.3, 1e-300));
+  CHECK(refused(1.7, 0.3, 1e-100));
+  CHECK(refused(1e100, 0.3, 1));
+  CHECK(refused(1e200, 0.3, 1)); // its square is no number
+  CHECK(refused(1.7, 1e-300, 1));
+}
