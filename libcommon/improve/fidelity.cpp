@@ -63,7 +63,7 @@ T sum_of_chunks(const DynamicMesh& m, int threads, F&& f, Add&& add_to) {
                      add_to, 1);
 }
 
-/// Triangles that face the isosurface's way, less those that face the other.
+/// 1: the triangle faces the isosurface's way, -1: the other; 0: there is none.
 int64_t sense_at(const DynamicMesh& m, const Isosurface& surface, const Element& e, size_t face) {
   const auto t = outward_triangle(e.v, face);
   const Vec3d a = m.point[size_t(t[0])], b = m.point[size_t(t[1])], c = m.point[size_t(t[2])];
@@ -122,20 +122,19 @@ Regions find_regions(const DynamicMesh& m, int threads) {
 } // namespace
 
 bool runs_against(const DynamicMesh& m, const Isosurface& surface, int threads) {
-  const auto elements = static_cast<int64_t>(m.element.size());
-  return par::reduce(
-             DynamicMesh::stretches(m.element.size()), threads, int64_t{0},
-             [&](int64_t s) {
-               int64_t sum = 0;
-               for (int64_t t = s * DynamicMesh::stretch; t < std::min(elements, (s + 1) * DynamicMesh::stretch);
-                    ++t)
-                 if (const Element& e = m.element[size_t(t)]; e.alive())
-                   for (size_t f = 0; f < 4; ++f)
-                     if (m.counts_here(e, f) && m.labels[e.label[f]].curved())
-                       sum += sense_at(m, surface, e, f);
-               return sum;
+  return sum_of_chunks<int64_t>(
+             m, threads,
+             [&](int64_t s, int64_t& sum) {
+               if (!m.labelled[size_t(s)])
+                 return;
+               m.for_stretch(s, [&](int64_t t) {
+                 const Element& e = m.element[size_t(t)];
+                 for (size_t f = 0; f < 4 && e.alive(); ++f)
+                   if (m.counts_here(e, f) && m.labels[e.label[f]].curved())
+                     sum += sense_at(m, surface, e, f);
+               });
              },
-             [](int64_t a, int64_t b) { return a + b; }, 1) < 0;
+             [](int64_t a, int64_t b) { return a + b; }) < 0;
 }
 
 Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int threads) {
