@@ -2,6 +2,7 @@
 #pragma once
 #include "cli/cleanup.hpp"
 #include "cli/file.hpp"
+#include "cli/memory.hpp"
 #include "density/large_array.hpp"
 #include "error.hpp"
 #include <CLI/CLI.hpp>
@@ -90,6 +91,8 @@ int run_main(const char* tool, const char* purpose, int argc, char** argv, Descr
     if (const int status = detail::parse(app, argc, argv); status >= 0)
       return status;
     options.resolved_threads(); // a mode that is not here stops before any file is touched
+    if (!options.on_device())   // whose driver sets aside addresses beyond any memory
+      limit_memory();
     const std::unique_ptr<OutputFile> report = detail::open_report(app, options);
     Run run;
     run.tool = tool;

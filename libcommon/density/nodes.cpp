@@ -3,6 +3,8 @@
 #include "density/cluster_tree.hpp"
 #include "par/par.hpp"
 #include <algorithm>
+#include <cmath>
+#include <new>
 #include <numeric>
 
 namespace molmesh::density {
@@ -109,6 +111,36 @@ NodeList halves(const Field& f, const GridFrame& frame, const NodeList& parents,
   return children;
 }
 
+/// Bytes of the list that comes of these nodes at least: where a cluster's cutoff reaches all over a node, all
+/// parts of the node have the cluster.
+double sure_bytes(const Field& f, const GridFrame& frame, const NodeList& nodes, int32_t blocks) {
+  double bytes = 0;
+  for (const Node& n : nodes.node) {
+    if (!in_grid(frame, n.corner) || !in_grid(frame, n.corner + (blocks - 1) * Vec3i{1, 1, 1}))
+      continue;
+    const Box cube = points_box(frame, n.corner, blocks);
+    int64_t everywhere = 0;
+    for (const int32_t c : nodes.clusters(n)) {
+      const Box& box = f.box[static_cast<size_t>(c)];
+      double farthest2 = 0;
+      for (int a = 0; a < 3; ++a) {
+        const double d = std::max({cube.hi[a] - box.hi[a], box.lo[a] - cube.lo[a], 0.0});
+        farthest2 += d * d;
+      }
+      everywhere += farthest2 < f.cutoff2[static_cast<size_t>(c)];
+    }
+    if (everywhere > 0)
+      bytes += double(sizeof(Node)) + double(sizeof(int32_t)) * double(everywhere);
+  }
+  return bytes * std::pow(blocks / node_blocks, 3);
+}
+
+void require_memory(double bytes) {
+  if (bytes > 1e15)
+    throw std::bad_alloc();
+  ::operator delete(::operator new(static_cast<size_t>(bytes)));
+}
+
 } // namespace
 
 NodeList nodes_by_halving(const Field& f, const GridFrame& frame, bool every, int threads) {
@@ -124,6 +156,8 @@ NodeList nodes_by_halving(const Field& f, const GridFrame& frame, bool every, in
   while (blocks > node_blocks) {
     blocks /= 2;
     nodes = halves(f, frame, nodes, blocks, every, threads);
+    if (blocks >= 16 * node_blocks) // what no memory holds is refused before the time is spent
+      require_memory(sure_bytes(f, frame, nodes, blocks));
   }
   std::sort(nodes.node.begin(), nodes.node.end(), [](const Node& a, const Node& b) { return a.corner < b.corner; });
   return nodes;

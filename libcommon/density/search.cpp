@@ -76,7 +76,8 @@ Band Search::run(SearchCounts& counts) {
   Band band = empty_band(f_, frame_, o_);
   nodes_ = o_.atoms == AtomSearch::kdtree ? nodes_by_tree(f_, frame_, o_.full, o_.threads)
                                           : nodes_by_halving(f_, frame_, o_.full, o_.threads);
-  band.block.reserve(blocks_a_node * nodes_.node.size()); // address space; pages come when they are used
+  constexpr size_t many = size_t{1} << 22;
+  band.block.reserve(std::min(blocks_a_node * nodes_.node.size(), many)); // pages come when they are used
   const int32_t first = first_block(frame_).x, end = (frame_.lower.x + frame_.points.x + 7) >> 3;
   std::array<SlabState, 5> slab; // new, found, to be finished, finished, forgotten
   for (int32_t x = first; x < end + 3 * node_blocks; x += node_blocks) {

@@ -1,0 +1,64 @@
+// memory_test.cpp — how much memory there is, as the system's files say it, and a process that asks for more.
+#include "child.hpp"
+#include "cli/memory.hpp"
+#include <catch2/catch.hpp>
+#include <new>
+
+using namespace molmesh;
+using namespace molmesh::test;
+
+namespace {
+
+struct System {
+  Folder folder;
+  void says(const std::string& file, const std::string& text) const {
+    const std::filesystem::path path = folder / file;
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path) << text;
+  }
+  int64_t at_hand() const { return cli::memory_at_hand(folder / "proc", folder / "groups"); }
+};
+
+} // namespace
+
+TEST_CASE("the least of what the system has and what control groups grant") {
+  const System s;
+  CHECK(s.at_hand() == -1);
+  s.says("proc/meminfo", "MemTotal:  9000 kB\nMemAvailable:  8000 kB\nSwapTotal: 7 kB\nSwapFree:  3 kB\n");
+  CHECK(s.at_hand() == 8003 * 1024);
+  SECTION("version 2: a group, or one above it") {
+    s.says("proc/self/cgroup", "0::/slurm/job_7/step_0\n");
+    s.says("groups/slurm/job_7/step_0/memory.max", "max\n");
+    CHECK(s.at_hand() == 8003 * 1024);
+    s.says("groups/slurm/job_7/memory.max", "4096000\n");
+    CHECK(s.at_hand() == 4096000);
+    s.says("groups/slurm/job_7/step_0/memory.max", "2048000\n");
+    CHECK(s.at_hand() == 2048000);
+  }
+  SECTION("version 1, and a container whose group is the topmost it sees") {
+    s.says("proc/self/cgroup", "5:cpu,cpuacct:/\n4:hugetlb,memory:/box/a:b\n0::/\n");
+    s.says("groups/memory/memory.limit_in_bytes", "9223372036854771712\n");
+    s.says("groups/memory/box/a:b/memory.limit_in_bytes", "3000000\n");
+    CHECK(s.at_hand() == 3000000);
+    s.says("groups/memory/memory.limit_in_bytes", "1000000\n");
+    CHECK(s.at_hand() == 1000000);
+  }
+}
+
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
+TEST_CASE("more memory than there is is refused before it is used") {
+  const int64_t bytes = cli::memory_at_hand();
+  REQUIRE(bytes > 0);
+  const Outcome o = in_child([&] {
+    cli::limit_memory();
+    try {
+      ::operator delete(::operator new(static_cast<size_t>(2 * bytes)));
+      return 1;
+    } catch (const std::bad_alloc&) {
+      ::operator delete(::operator new (size_t{1} << 24));
+      return 0;
+    }
+  });
+  CHECK(o.status == 0);
+}
+#endif
