@@ -138,36 +138,7 @@ private:
   }
 
   void check_regions() {
-    std::vector<int32_t> names;
-    for (int32_t r : m_.region)
-      if (names.empty() || r != names.back())
-        names.push_back(r);
-    par::sort_unique(names, 1);
-    const auto index = [&](int32_t region) {
-      return static_cast<int32_t>(std::lower_bound(names.begin(), names.end(), region) - names.begin());
-    };
-    std::vector<Tri> boundary;
-    std::vector<int32_t> label;
-    for (int64_t f : side_) {
-      boundary.push_back(face_points(m_, f));
-      label.push_back(index(m_.region[static_cast<size_t>(f / 4)]));
-    }
-    const auto summaries =
-        summarize_surfaces(m_.point, boundary, label, static_cast<int32_t>(names.size()), threads_);
-    for (size_t r = 0; r < names.size(); ++r)
-      v_.region.push_back({names[r], 0, 0, summaries[r]});
-    std::vector<double> lost(names.size()); // by rounding: the sums must tell a box from its volumes
-    for (size_t i = 0; i < m_.tet.size(); ++i) {
-      const Tet& t = m_.tet[i];
-      const auto k = static_cast<size_t>(index(m_.region[i]));
-      const TwoTerms sum =
-          two_sum(v_.region[k].volume, tet_volume(point(t[0]), point(t[1]), point(t[2]), point(t[3])));
-      ++v_.region[k].tets;
-      v_.region[k].volume = sum.sum;
-      lost[k] += sum.error;
-    }
-    for (size_t r = 0; r < names.size(); ++r)
-      v_.region[r].volume += lost[r];
+    v_.region = summarize_regions(m_, side_, threads_);
     SurfaceFaults all;
     std::string open, crowded, pinched;
     for (const RegionSummary& r : v_.region) {

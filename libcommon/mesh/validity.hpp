@@ -1,6 +1,6 @@
 // validity.hpp — every point of I6: is this a conforming mesh whose regions are bounded by closed 2-manifolds?
 #pragma once
-#include "mesh/surface.hpp"
+#include "mesh/region_summary.hpp"
 
 namespace molmesh {
 
@@ -28,13 +28,6 @@ struct Fault {
   std::string rule;
   int64_t count = 0;
   std::string example; ///< "tet 412 (points 3 17 9 20)"
-};
-
-struct RegionSummary {
-  int32_t region = 0;
-  int64_t tets = 0;
-  double volume = 0;       ///< Å³, sum over the tetrahedra
-  SurfaceSummary boundary; ///< all its faces towards other regions or nothing, pointing out
 };
 
 struct Validity {
