@@ -13,12 +13,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+constexpr double widest = 64; // Å; a wider cluster would be near everything in between
+
 /// Splits atoms [begin, end) of `order` at the median of their longest axis until every piece is a cluster.
 void split(const Hierarchy& h, LargeArray<int64_t>& order, int64_t begin, int64_t end, std::vector<int64_t>& cuts) {
-  if (end - begin <= Field::cluster_size) {
-    cuts.push_back(begin);
-    return;
-  }
   Vec3d lo{infinity, infinity, infinity}, hi = -lo;
   for (int64_t i = begin; i < end; ++i)
     for (int a = 0; a < 3; ++a) {
@@ -30,6 +28,10 @@ void split(const Hierarchy& h, LargeArray<int64_t>& order, int64_t begin, int64_
   for (int a = 1; a < 3; ++a)
     if (hi[a] - lo[a] > hi[axis] - lo[axis])
       axis = a;
+  if (end - begin <= Field::cluster_size && hi[axis] - lo[axis] <= widest) {
+    cuts.push_back(begin);
+    return;
+  }
   const int64_t middle = begin + (end - begin) / 2;
   std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end, [&](int64_t a, int64_t b) {
     const double ca = h.atom[static_cast<size_t>(a)].center[axis], cb = h.atom[static_cast<size_t>(b)].center[axis];

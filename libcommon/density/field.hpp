@@ -37,7 +37,7 @@ struct Field {
   /// Atom a: position, and the logarithm of its term at its centre, κ·r². In clusters.
   LargeArray<double> x, y, z, peak;
   LargeArray<int64_t> source; ///< [atoms] index in Hierarchy::atom
-  /// Clusters: at most `cluster_size` atoms of one innermost group, near each other.
+  /// Clusters: at most `cluster_size` atoms of one innermost group, near each other (64 Å at most along an axis).
   static constexpr int64_t cluster_size = 16;
   std::vector<int64_t> begin;  ///< [clusters + 1] first atom
   std::vector<int64_t> group;  ///< innermost group, ascending

@@ -83,6 +83,17 @@ TEST_CASE("molecules far apart, a hollow ball and a cavity of one cell are all f
   test::check_complete(cage, g);
 }
 
+TEST_CASE("an atom far from the others of its residue costs no search between them") {
+  Hierarchy h = test::random_chains(1, 6, 7, {0.5, 1}, 5);
+  h.atom[3].center = {9999, 9999, 9999};
+  density::Options o;
+  o.spacing = 1;
+  density::Counts counts;
+  const density::Band band = density::compute(h, o, counts);
+  CHECK(counts.search.blocks_visited < 1000);
+  CHECK(test::worst_error(h, density::to_block_grid(band, 1), 100) <= 1);
+}
+
 TEST_CASE("full and neighbor search, and any number of threads, give the same grid") {
   const Hierarchy h = test::random_chains(3, 40, 8, {0.4, 1}, 3);
   density::Options o;
