@@ -89,6 +89,7 @@ Status run_tool(const Options& o, cli::Run& run) {
 
   run.phase("read");
   cli::InputFile input(o.input);
+  cli::OutputFile output(o.output);
   const BlockGrid grid = formats::read_vdb(input.stream(), input.name(), options.threads);
   contour::Summary summary;
   TetMesh mesh;
@@ -125,7 +126,6 @@ Status run_tool(const Options& o, cli::Run& run) {
 
   run.phase("write");
   mesh.creator = cli::creator("density2tet");
-  cli::OutputFile output(o.output);
   formats::write_vtu(output.stream(), mesh);
   output.commit();
   run.end_phase();

@@ -115,13 +115,13 @@ Status run(Options& o, cli::Run& run) {
   resolve(o);
   run.phase("read");
   cli::InputFile in(o.input);
+  cli::OutputFile out(o.output);
   const formats::PdbHierarchy hierarchy(in.stream(), in.name(), o.pdb);
   const formats::PdbReport& r = hierarchy.report();
   for (const std::string& note : r.notes)
     run.note(note);
 
   run.phase("write");
-  cli::OutputFile out(o.output);
   hierarchy.write(out.stream());
   out.commit();
 

@@ -9,6 +9,7 @@
 #include "formats/vtu/vtu.hpp"
 #include "formats/xdmf/xdmf.hpp"
 #include <algorithm>
+#include <deque>
 
 using namespace molmesh;
 
@@ -69,26 +70,20 @@ std::vector<std::string> Options::outputs() const {
                      : std::vector{name + ".node", name + ".ele", name + ".face"};
 }
 
-void write_several(const Options& o, const std::string& format, const TetMesh& m) {
-  const std::vector<std::string> names = o.outputs();
-  if (format == "tetgen") {
-    cli::OutputFile node(names[0]), ele(names[1]), face(names[2]);
-    formats::write_tetgen(node.stream(), ele.stream(), face.stream(), m);
-    node.commit();
-    ele.commit();
-    face.commit();
-  } else {
-    cli::OutputFile xdmf(names[0]), h5(names[1]);
-    formats::write_xdmf(xdmf.stream(), h5.stream(), names[1].substr(names[1].rfind('/') + 1), m);
-    h5.commit(); // first: an .xdmf without it would be of no use
-    xdmf.commit();
-  }
-}
+/// In the order of Options::outputs().
+using Outputs = std::deque<cli::OutputFile>;
 
-void write_one(const Options& o, const std::string& format, const TetMesh& m, const std::string& input) {
-  cli::OutputFile output(o.output);
-  std::ostream& out = output.stream();
-  if (format == "gmsh" || format == "gmsh22")
+void write_mesh(Outputs& outputs, const Options& o, const std::string& format, const TetMesh& m,
+                const std::string& input) {
+  std::ostream& out = outputs[0].stream();
+  if (format == "tetgen") {
+    formats::write_tetgen(out, outputs[1].stream(), outputs[2].stream(), m);
+  } else if (format == "xdmf") {
+    const std::string h5 = o.outputs()[1];
+    formats::write_xdmf(out, outputs[1].stream(), h5.substr(h5.rfind('/') + 1), m);
+    outputs[1].commit(); // first: an .xdmf without it would be of no use
+    outputs.pop_back();
+  } else if (format == "gmsh" || format == "gmsh22")
     formats::write_gmsh(out, m, format == "gmsh" ? formats::GmshVersion::v4_1 : formats::GmshVersion::v2_2);
   else if (format == "medit")
     formats::write_medit(out, m);
@@ -98,7 +93,8 @@ void write_one(const Options& o, const std::string& format, const TetMesh& m, co
     (format == "stl"   ? formats::write_stl
      : format == "ply" ? formats::write_ply
                        : formats::write_off)(out, m, input);
-  output.commit();
+  for (cli::OutputFile& output : outputs)
+    output.commit();
 }
 
 /// What the format has no place for.
@@ -117,15 +113,15 @@ Status run_tool(const Options& o, cli::Run& run) {
   const std::string format = format_of(o);
   run.phase("read");
   cli::InputFile input(o.input);
+  Outputs outputs;
+  for (const std::string& name : o.outputs())
+    outputs.emplace_back(name);
   const TetMesh mesh = formats::read_vtu(input.stream(), input.name(), nullptr, formats::CellArrays::keep);
   run.counts["points"] = mesh.point.size();
   run.counts["tetrahedra"] = mesh.tet.size();
   run.counts["triangles"] = mesh.tri.size();
   run.phase("write");
-  if (format == "tetgen" || format == "xdmf")
-    write_several(o, format, mesh);
-  else
-    write_one(o, format, mesh, input.name());
+  write_mesh(outputs, o, format, mesh, input.name());
   note_losses(run, format, mesh);
   return Status::good;
 }

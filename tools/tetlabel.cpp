@@ -65,6 +65,7 @@ Status run_tool(const Options& o, cli::Run& run) {
     fail(Status::usage, "both inputs are standard input, expected at most one");
   run.phase("read");
   cli::InputFile structure(o.hierarchy), input(o.input);
+  cli::OutputFile output(o.output);
   const Hierarchy h = formats::read_hier(structure.stream(), structure.name());
   const std::vector<label::NamedBoundary> boundary = select(o, h);
   TetMesh mesh = formats::read_vtu(input.stream(), input.name(), nullptr, formats::CellArrays::keep);
@@ -105,7 +106,6 @@ Status run_tool(const Options& o, cli::Run& run) {
   if (mesh.creator.size() < own.size() ||
       mesh.creator.compare(mesh.creator.size() - own.size(), own.size(), own) != 0)
     mesh.creator += own;
-  cli::OutputFile output(o.output);
   formats::write_vtu(output.stream(), mesh);
   output.commit();
   return Status::good;

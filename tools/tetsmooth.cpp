@@ -61,17 +61,19 @@ nlohmann::ordered_json json(const improve::Fidelity& f) {
 Status run_tool(const Options& o, cli::Run& run) {
   const int threads = o.resolved_threads();
   run.phase("read");
-  std::optional<BlockGrid> grid;
-  if (!o.density.empty()) {
-    cli::InputFile file(o.density);
-    grid = formats::read_vdb(file.stream(), file.name(), threads);
-  }
-  std::optional<Hierarchy> hierarchy;
-  if (!o.hier.empty()) {
-    cli::InputFile file(o.hier);
-    hierarchy = formats::read_hier(file.stream(), file.name());
-  }
+  std::optional<cli::InputFile> density, structure;
+  if (!o.density.empty())
+    density.emplace(o.density);
+  if (!o.hier.empty())
+    structure.emplace(o.hier);
   cli::InputFile input(o.input);
+  cli::OutputFile output(o.output);
+  std::optional<BlockGrid> grid;
+  if (density)
+    grid = formats::read_vdb(density->stream(), density->name(), threads);
+  std::optional<Hierarchy> hierarchy;
+  if (structure)
+    hierarchy = formats::read_hier(structure->stream(), structure->name());
   formats::VtuNotes notes;
   TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes, formats::CellArrays::keep);
   if (grid)
@@ -118,7 +120,6 @@ Status run_tool(const Options& o, cli::Run& run) {
     run.note("carried from the nearest element before: " + arrays.names());
   run.phase("write");
   mesh.creator = cli::creator("tetsmooth");
-  cli::OutputFile output(o.output);
   formats::write_vtu(output.stream(), mesh);
   output.commit();
   if (run.verbose)

@@ -50,12 +50,12 @@ formats::MeshReport report(const std::string& path, const Options& o, cli::Run& 
 Status run_tool(const Options& o, cli::Run& run) {
   if (o.compare == "-" && o.input == "-")
     fail(Status::usage, "--compare: standard input can be one of the two meshes, not both");
+  cli::OutputFile output(o.output);
   std::optional<formats::MeshReport> before;
   if (!o.compare.empty())
     before = report(o.compare, o, run);
   const formats::MeshReport mesh = report(o.input, o, run);
   run.phase("write");
-  cli::OutputFile output(o.output);
   if (o.json) {
     const nlohmann::ordered_json j = before ? formats::compare_json(*before, mesh) : formats::tetstat_json(mesh);
     output.stream() << j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';

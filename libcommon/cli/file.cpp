@@ -80,8 +80,14 @@ int NotingBuffer::sync() {
 OutputFile::OutputFile(const std::string& path)
     : path_(path), target_(path), written_(path), standard_(path == "-"),
       noting_(standard_ ? std::cout.rdbuf() : &file_) {
-  if (standard_)
+  if (standard_) {
+    const int flags = fcntl(STDOUT_FILENO, F_GETFL);
+    if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY) { // closed by the caller
+      errno = EBADF;
+      refuse("cannot write");
+    }
     return;
+  }
   std::error_code none;
   const fs::file_status status = fs::status(path, none);
   if (fs::is_symlink(fs::symlink_status(path, none)) && fs::is_regular_file(status))
