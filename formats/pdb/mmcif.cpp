@@ -117,6 +117,8 @@ Parsed from_document(cif::Document& document, std::string_view text, const std::
   }
   try {
     parsed.structure = gemmi::make_structure_from_block(needed);
+  } catch (const std::bad_alloc&) { // no fault of the file
+    throw;
   } catch (const std::exception& e) {
     fail_input(where + ": " + std::string(e.what()).substr(0, std::string_view(e.what()).find('\n')));
   }
@@ -130,6 +132,8 @@ Parsed parse_mmcif(std::string_view text, const std::string& file, const std::st
   cif::Document document;
   try {
     document = cif::read_memory(text.data(), text.size(), file.c_str());
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& e) {
     fail_input(one_line(file, e.what()));
   }
@@ -141,6 +145,8 @@ Parsed parse_mmjson(std::string& text, const std::string& file, const std::strin
   try {
     document = read_mmjson(text, file);
   } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {
     fail_input(file + ":1: found a value that is an array or an object, expected numbers, text or null in mmJSON");

@@ -3,6 +3,7 @@
 #include "error.hpp"
 #include "formats/pdb/parse.hpp"
 #include <gemmi/json.hpp>
+#include <new>
 
 namespace molmesh::formats {
 namespace {
@@ -38,6 +39,8 @@ cif::Loop read_category(const std::string& name, const sajson::value& category, 
 cif::Document read_mmjson(std::string& text, const std::string& file) {
   const sajson::document json =
       sajson::parse(sajson::dynamic_allocation(), sajson::mutable_string_view(text.size(), text.data()));
+  if (json._internal_get_error_code() == sajson::ERROR_OUT_OF_MEMORY)
+    throw std::bad_alloc();
   if (!json.is_valid())
     fail_input(file + ":" + std::to_string(json.get_error_line()) + ": found JSON with an error (" +
                json.get_error_message_as_string() + "), expected mmJSON");

@@ -3,6 +3,7 @@
 #include "error.hpp"
 #include <atomic>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <unistd.h>
@@ -19,14 +20,20 @@ struct Slot {
 Slot table[slots];
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-constexpr int deadly[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2};
+// What ends a process: people, batch systems and their limits, timers, std::terminate.
+constexpr int deadly[] = {SIGHUP,  SIGINT,  SIGQUIT, SIGTERM,   SIGUSR1, SIGUSR2,
+                          SIGXCPU, SIGALRM, SIGPROF, SIGVTALRM, SIGABRT};
+
+void unlink_watched() {
+  for (const Slot& slot : table)
+    if (slot.watched)
+      unlink(slot.path);
+}
 
 // A second signal waits until all are gone, or finds another thread, which removes them all itself before it ends
 // the process.
 void die_clean(int signal) {
-  for (const Slot& slot : table)
-    if (slot.watched)
-      unlink(slot.path);
+  unlink_watched();
   std::signal(signal, SIG_DFL); // delivered when this returns: the caller sees which signal it was
   raise(signal);
 }
@@ -42,6 +49,7 @@ void guard_process() {
     if (opened != fd)
       close(opened);
   }
+  std::atexit(unlink_watched); // libgomp ends the process so when it gets no threads
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   struct sigaction action {};

@@ -95,7 +95,8 @@ TEST_CASE("an output through a symbolic link reaches the file behind it") {
 }
 
 TEST_CASE("a signal removes the temporary file and still ends the process") {
-  for (int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2}) {
+  for (int signal :
+       {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU, SIGALRM, SIGPROF, SIGVTALRM, SIGABRT}) {
     const Folder folder;
     const Outcome o = in_child([&] {
       const rlimit no_core{0, 0};
@@ -109,6 +110,18 @@ TEST_CASE("a signal removes the temporary file and still ends the process") {
     CHECK(o.signal == signal);
     CHECK(folder.files() == 0);
   }
+}
+
+TEST_CASE("a library that ends the process leaves no temporary file") {
+  const Folder folder;
+  const Outcome o = in_child([&] {
+    cli::guard_process();
+    cli::OutputFile file(folder / "a");
+    std::exit(1);
+    return 0;
+  });
+  CHECK(o.status == 1);
+  CHECK(folder.files() == 0);
 }
 
 TEST_CASE("a second signal waits until the temporary files are gone") {
