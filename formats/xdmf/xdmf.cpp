@@ -15,9 +15,17 @@ std::string escaped(const std::string& name) {
   return s;
 }
 
+/// A file's name in text.
+std::string escaped_file(std::string name) {
+  for (size_t i = name.find('&'); i != std::string::npos; i = name.find('&', i + 1))
+    name.insert(i + 1, "amp;");
+  return escaped(name);
+}
+
 class Writer {
 public:
-  Writer(std::ostream& out, const std::string& h5_name, const TetMesh& m) : out_(out), h5_name_(h5_name), m_(m) {}
+  Writer(std::ostream& out, const std::string& h5_name, const TetMesh& m)
+      : out_(out), h5_name_(escaped_file(h5_name)), m_(m) {}
 
   void write(std::ostream& h5) {
     const size_t points = m_.point.size(), tets = m_.tet.size(), tris = m_.tri.size();
@@ -60,7 +68,7 @@ private:
   }
   void data(const std::string& extents, bool real, const std::string& path) {
     out_ << "<DataItem Dimensions=\"" << extents << "\" NumberType=\"" << (real ? "Float" : "Int")
-         << "\" Precision=\"" << (real ? 8 : 4) << "\" Format=\"HDF\">" << escaped(h5_name_) << ':' << path
+         << "\" Precision=\"" << (real ? 8 : 4) << "\" Format=\"HDF\">" << h5_name_ << ':' << path
          << "</DataItem>\n";
   }
   void attribute(const std::string& name, const std::string& path, size_t cells, bool real) {
@@ -79,7 +87,7 @@ private:
   }
 
   std::ostream& out_;
-  const std::string& h5_name_;
+  const std::string h5_name_; // escaped
   const TetMesh& m_;
   Hdf5File file_;
 };
