@@ -71,7 +71,8 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("ERROR");
   app.add_option("--cavities", o.cavities, "closed cavities: keep (region 3) or fill (region 1)")
       ->check(CLI::IsMember({"keep", "fill"}));
-  app.add_option("--drop-below", o.drop_below, "parts of the molecule smaller than this become outside")
+  app.add_option("--drop-below", o.drop_below,
+                 "parts of the molecule smaller than this become outside; those that the box cuts stay")
       ->type_name("Å³")
       ->check(CLI::Range(0., 1e300));
 }
@@ -120,6 +121,9 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.counts["dropped_parts"] = summary.dropped_parts;
   run.counts["filled_cavities"] = summary.filled_cavities;
 
+  if (summary.dropped_parts > 0)
+    run.note("dropped parts of the molecule: " + std::to_string(summary.dropped_parts) +
+             " (--drop-below), kept: " + std::to_string(summary.molecule_volumes.size()));
   if (summary.halvings > 0)
     run.note(std::string("bodies of few spacings: cells of ") + (summary.halvings > 1 ? "a quarter" : "half") +
              " the grid's spacing keep the volume that the grid shows; a finer --spacing shows more of the atoms'");

@@ -29,7 +29,8 @@ std::string count_row(const char* name, int64_t a, int64_t b) {
   return row(name, grouped(a), grouped(b), a == b ? "" : (b > a ? "+" : "") + grouped(b - a));
 }
 std::string amount_row(const char* name, double a, double b) {
-  return row(name, amount(a), amount(b), a == b ? "" : print("%+.3f %%", 100 * growth(a, b)));
+  const double percent = 100 * growth(a, b);
+  return row(name, amount(a), amount(b), a == b || std::isnan(percent) ? "" : print("%+.3f %%", percent));
 }
 std::string value_row(const char* name, double a, double b, int digits) {
   return row(name, print("%.*f", digits, a), print("%.*f", digits, b), a == b ? "" : print("%+.*f", digits, b - a));

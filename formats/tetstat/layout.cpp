@@ -23,6 +23,8 @@ std::string grouped(int64_t n) {
 }
 
 std::string amount(double v) {
+  if (std::isnan(v))
+    return "-";
   if (!(std::fabs(v) < 1e15))
     return print("%.6g", v);
   const int64_t hundredths = std::llround(std::fabs(v) * 100);

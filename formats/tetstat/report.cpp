@@ -14,8 +14,8 @@ json finite(double v) {
 }
 
 json surface_json(const SurfaceSummary& s) {
-  return {{"triangles", s.triangles}, {"edges", s.edges}, {"points", s.points}, {"components", s.components},
-          {"euler", s.euler},         {"area", s.area},   {"volume", s.volume}};
+  return {{"triangles", s.triangles}, {"edges", s.edges}, {"points", s.points},        {"components", s.components},
+          {"euler", s.euler},         {"area", s.area},   {"volume", finite(s.volume)}};
 }
 
 json distribution_json(const Distribution& d) {

@@ -2,6 +2,7 @@
 #include "mesh/surface.hpp"
 #include "geom/tet_measures.hpp"
 #include "mesh/group.hpp"
+#include <cmath>
 #include <numeric>
 
 namespace molmesh {
@@ -121,8 +122,11 @@ std::vector<SurfaceSummary> summarize_surfaces(const std::vector<Vec3d>& point, 
         s.faults.pinched_point = tri[t][i];
     }
   }
-  for (SurfaceSummary& s : summary)
+  for (SurfaceSummary& s : summary) {
     s.euler = s.points - s.edges + s.triangles;
+    if (s.faults.open_edges > 0)
+      s.volume = std::nan("");
+  }
   return summary;
 }
 

@@ -46,6 +46,20 @@ TEST_CASE("a valid mesh in JSON") {
   CHECK(j["quality"]["dihedral"]["min"] == Approx(45));
 }
 
+TEST_CASE("a surface that the box cuts encloses no volume") {
+  const auto wall_to_wall = [](Vec3i c) -> int32_t { return c.x < 2 ? Region::molecule : Region::outside; };
+  const formats::MeshReport r = report(cubes(4, wall_to_wall, 20));
+  const auto j = formats::tetstat_json(r);
+  CHECK(j["valid"] == true);
+  CHECK(j["surface"]["area"] == Approx(6400));
+  CHECK(j["surface"]["volume"].is_null());
+  CHECK(j["regions"][0]["boundary"]["volume"] == Approx(256'000));
+  CHECK(has(formats::tetstat_text(r), "surface        32 triangles              -       6,400.00"));
+  const std::string both = formats::compare_text(r, r);
+  CHECK(has(both, "-                -\n"));
+  CHECK_FALSE(has(both, "nan"));
+}
+
 TEST_CASE("quality asked for") {
   CHECK(report(block(), {44.9, 90.1}).good());
   const formats::MeshReport below = report(block(), {50, 180});
