@@ -86,8 +86,10 @@ void resolve(Options& o) {
   formats::PdbOptions& p = o.pdb;
   p.levels.clear();
   std::istringstream levels(o.levels == "none" ? "" : o.levels + ","); // a last comma is a level without a name
-  for (std::string level; o.levels != "" && std::getline(levels, level, ',');)
+  for (std::string level; std::getline(levels, level, ',');)
     p.levels.push_back(level);
+  if (p.select.empty())
+    usage("--select", "", "a selection ('*' is everything)");
 
   const bool number =
       !p.model.empty() && p.model[0] != '0' && p.model.find_first_not_of("0123456789") == std::string::npos;

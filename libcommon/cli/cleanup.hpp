@@ -5,8 +5,9 @@
 namespace molmesh::cli {
 
 /// Makes writes to a closed pipe and over a file-size limit ordinary errors, removes watched files before dying of
-/// SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU, SIGABRT or a timer's signal and on exit(), and makes
-/// sure that no file opened later takes the place of a closed standard stream. Call once, before anything is opened.
+/// SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU, SIGABRT or a timer's signal and on exit(), and
+/// makes sure that no file opened later takes the place of a closed standard stream. Call once, before anything is
+/// opened.
 void guard_process();
 
 /// A file that must not outlive this object, unless kept. At most 16 at a time, paths under 4096 bytes.

@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <iostream>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
 
@@ -28,6 +29,18 @@ bool same_file(const std::string& a, const std::string& b) {
   const fs::path x = fs::weakly_canonical(fs::absolute(a, none), none),
                  y = fs::weakly_canonical(fs::absolute(b, none), none);
   return !x.empty() && x == y;
+}
+
+int standard_stream(const std::string& path) {
+  if (path == "-")
+    return STDOUT_FILENO;
+  struct stat file {
+  }, stream{};
+  if (stat(path.c_str(), &file) == 0 && S_ISREG(file.st_mode))
+    for (const int fd : {STDOUT_FILENO, STDERR_FILENO})
+      if (fstat(fd, &stream) == 0 && stream.st_dev == file.st_dev && stream.st_ino == file.st_ino)
+        return fd;
+  return -1;
 }
 
 InputFile::InputFile(const std::string& path) : name_(path) {
@@ -78,10 +91,12 @@ int NotingBuffer::sync() {
 }
 
 OutputFile::OutputFile(const std::string& path)
-    : path_(path), target_(path), written_(path), standard_(path == "-"),
-      noting_(standard_ ? std::cout.rdbuf() : &file_) {
-  if (standard_) {
-    const int flags = fcntl(STDOUT_FILENO, F_GETFL);
+    : path_(path), target_(path), written_(path), standard_(standard_stream(path)),
+      noting_(standard_ == STDOUT_FILENO   ? std::cout.rdbuf()
+              : standard_ == STDERR_FILENO ? std::cerr.rdbuf()
+                                           : &file_) {
+  if (standard_ >= 0) {
+    const int flags = fcntl(standard_, F_GETFL);
     if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY) { // closed by the caller
       errno = EBADF;
       refuse("cannot write");
@@ -107,7 +122,7 @@ std::ostream& OutputFile::stream() {
 
 void OutputFile::refuse(const char* what) const {
   const int error = noting_.error ? noting_.error : errno ? errno : EIO;
-  fail(Status::not_written, (standard_ ? "<stdout>" : path_) + ": " + what + ": " + std::strerror(error));
+  fail(Status::not_written, (path_ == "-" ? "<stdout>" : path_) + ": " + what + ": " + std::strerror(error));
 }
 
 void OutputFile::commit() {
@@ -115,7 +130,7 @@ void OutputFile::commit() {
   stream().flush();
   if (!stream())
     refuse("cannot write");
-  if (standard_)
+  if (standard_ >= 0)
     return;
   if (!file_.close())
     refuse("cannot write");

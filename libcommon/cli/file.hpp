@@ -11,6 +11,10 @@ namespace molmesh::cli {
 /// Do two paths name one regular file, one that exists or one to be written? Standard streams and devices do not.
 bool same_file(const std::string& a, const std::string& b);
 
+/// Descriptor of the standard stream, output or error, that a path means: "-" or the regular file it was redirected
+/// to, by that file's name or as /dev/stdout. -1: neither.
+int standard_stream(const std::string& path);
+
 /// "-" is standard input. Throws Error(bad_input) when the file cannot be opened or is a directory.
 class InputFile {
 public:
@@ -41,9 +45,10 @@ private:
   std::streambuf* to_;
 };
 
-/// "-" is standard output. A regular file is written as PATH.tmp.PID beside it and renamed by commit(); without
-/// commit(), or when a signal ends the process, nothing is left behind and an older file of that name stays as it
-/// was. A symbolic link is followed; a device or named pipe is written directly. Throws Error(not_written).
+/// "-" is standard output, and so is the regular file it was redirected to. A regular file is written as
+/// PATH.tmp.PID beside it and renamed by commit(); without commit(), or when a signal ends the process, nothing is
+/// left behind and an older file of that name stays as it was. A symbolic link is followed; a device or named pipe
+/// is written directly. Throws Error(not_written).
 class OutputFile {
 public:
   explicit OutputFile(const std::string& path);
@@ -58,7 +63,7 @@ private:
   std::string path_, target_, written_;
   std::optional<Temporary> temporary_; ///< before file_: that is closed first, then removed
   std::filebuf file_;
-  bool standard_ = false;
+  int standard_; ///< as standard_stream(path)
   NotingBuffer noting_;
   std::ostream stream_{&noting_};
 };

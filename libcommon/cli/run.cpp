@@ -9,6 +9,7 @@
 #include <new>
 #include <stdexcept>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #ifndef MOLMESH_VERSION
 #define MOLMESH_VERSION "0.0.0"
@@ -153,6 +154,9 @@ int parse(CLI::App& app, int argc, char** argv) {
     return static_cast<int>(Status::good);
   };
   try {
+    for (int i = 1; i < argc && std::string(argv[i]) != "--"; ++i) // CLI11 would take the next argument instead
+      if (const std::string arg = argv[i]; arg.rfind("--", 0) == 0 && arg.find('=') + 1 == arg.size())
+        throw CLI::ArgumentMismatch(arg.substr(0, arg.size() - 1) + ": found '', expected a value");
     app.parse(argc, argv);
     check_values(app);
     return -1;
@@ -188,7 +192,8 @@ std::unique_ptr<OutputFile> open_report(const CLI::App& app, const Common& o) {
     if (same_file(o.report, input))
       fail(Status::usage, "--report: found " + o.report + ", expected another file than the input");
   for (const std::string& output : o.outputs())
-    if (o.report == output || same_file(o.report, output))
+    if (o.report == output || same_file(o.report, output) ||
+        (standard_stream(o.report) == STDOUT_FILENO && standard_stream(output) == STDOUT_FILENO))
       fail(Status::usage, "--report: found " + o.report + ", expected another file than the output");
   return std::make_unique<OutputFile>(o.report);
 }
