@@ -26,12 +26,12 @@ struct NodePoints : Sides {
 
 /// Sets of blocks are bits, by number of the block in the node.
 struct NodeState {
-  Vec3i corner;                      ///< in blocks
-  uint64_t known = 0, inside = 0;    ///< evaluated; not evaluated and above the band
-  std::unique_ptr<NodePoints> sides; ///< none: all below the band, or all above it when `inside` is full
-  std::vector<Vec3i> needed;         ///< nodes without clusters that this one may give corners of band cells
-  uint64_t kept = 0, closed = 0;     ///< blocks with active points; without and inside
-  std::vector<BandBlock> band;       ///< of kept, in order
+  Vec3i corner;                   ///< in blocks
+  uint64_t known = 0, inside = 0; ///< evaluated; not evaluated and above the band
+  NodePoints* sides = nullptr;    ///< none: all below the band, or all above it when `inside` is full
+  std::vector<Vec3i> needed;      ///< nodes without clusters that this one may give corners of band cells
+  uint64_t kept = 0, closed = 0;  ///< blocks with active points; without and inside
+  std::vector<BandBlock> band;    ///< of kept, in order
 };
 
 /// The nodes that begin at block x.

@@ -15,7 +15,7 @@ namespace molmesh::density {
 /// Floats handed out piece by piece; they stay where they are.
 class Arena {
 public:
-  /// A piece of at most `most` ≤ 512 + 16 floats; keep() says how many of them stay.
+  /// A piece of at most `most` ≤ 2^15 floats; keep() says how many of them stay.
   float* take(size_t most) {
     if (chunk_.empty() || used_ + most > size) {
       chunk_.emplace_back(size);
@@ -39,13 +39,18 @@ private:
 /// What nodes that nobody needs any more leave to the next ones.
 class Spares {
 public:
-  std::unique_ptr<NodePoints> sides() {
-    return sides_.empty() ? std::make_unique_for_overwrite<NodePoints>() : last_of(sides_);
+  NodePoints* sides() {
+    if (!sides_.empty())
+      return last_of(sides_);
+    constexpr size_t size = sizeof(NodePoints) / sizeof(float);
+    NodePoints* const sides = new (points_.take(size)) NodePoints;
+    points_.keep(size);
+    return sides;
   }
   std::vector<BandBlock> band() { return band_.empty() ? std::vector<BandBlock>() : last_of(band_); }
   void forget(NodeState& s) {
-    if (s.sides && sides_.size() < most)
-      sides_.push_back(std::move(s.sides));
+    if (s.sides)
+      sides_.push_back(s.sides);
     if (s.band.capacity() > 0 && band_.size() < most)
       band_.push_back(std::move(s.band));
     s = NodeState{};
@@ -59,7 +64,8 @@ private:
     v.pop_back();
     return t;
   }
-  std::vector<std::unique_ptr<NodePoints>> sides_;
+  Arena points_;
+  std::vector<NodePoints*> sides_;
   std::vector<std::vector<BandBlock>> band_;
 };
 
