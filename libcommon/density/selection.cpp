@@ -144,8 +144,9 @@ bool Selection::take_atoms() {
   const float rough = u.folded && f_.plain_above
                           ? static_cast<float>(budget_.roots) / (rough_root_error_ * static_cast<float>(n))
                           : -1;
+  constexpr float roots[2] = {0, 2}; // looked up: a branch would be guessed wrong too often
   for (size_t i = 0; i < static_cast<size_t>(n); ++i)
-    u.root[i] = effect_[static_cast<size_t>(kept_[i])] <= rough ? 0.0f : 2.0f;
+    u.root[i] = roots[effect_[static_cast<size_t>(kept_[i])] > rough];
   const auto take = [&](bool absolute) {
     return take_units(
         local_, near_, kept_.data(), n, box, static_cast<float>(log2e * f_.decay), absolute ? log2_upper_ : nullptr,

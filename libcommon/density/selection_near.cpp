@@ -29,9 +29,11 @@ void Selection::enter(Vec3d middle, std::span<const int32_t> clusters) {
     const auto first = static_cast<size_t>(f_.begin[c]), count = static_cast<size_t>(f_.begin[c + 1]) - first;
     const double origin[3] = {middle.x, middle.y, middle.z};
     const double* from[4] = {&f_.x[first], &f_.y[first], &f_.z[first], &f_.peak[first]};
-    double last[4][16] = {};
-    for (int v = 0; first + 16 > f_.x.size() && v < 4; ++v)
+    double last[4][16];
+    for (int v = 0; first + 16 > f_.x.size() && v < 4; ++v) {
+      std::fill_n(last[v], 16, 0.0);
       std::copy_n(std::exchange(from[v], last[v]), count, last[v]);
+    }
     place_atoms(from[0], from[1], from[2], from[3], count, origin, i, l);
   }
 }
