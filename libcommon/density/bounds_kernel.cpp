@@ -16,33 +16,47 @@ namespace {
 
 constexpr double log2e = std::numbers::log2e;
 
-void place_atoms_simd(const double* x, const double* y, const double* z, const double* peak, size_t count,
-                      const double* middle, size_t i, LocalClusters& to) {
+/// Slots of one cluster of `count` atoms, from 16 of each of x, y, z and peak.
+HWY_INLINE void place_cluster(const double* const* from, size_t count, const double* origin, float* const* to) {
 #if HWY_TARGET != HWY_SCALAR
   constexpr hn::CappedTag<double, 8> d;
   constexpr hn::Rebind<float, hn::CappedTag<double, 8>> h;
-  const auto place = [&](const double* from, double origin, double scale, size_t a, Floats& slots) {
-    const auto v = hn::Mul(hn::Sub(hn::LoadU(d, from + a), hn::Set(d, origin)), hn::Set(d, scale));
-    return hn::StoreU(hn::DemoteTo(h, v), h, &slots[16 * i + a]);
-  };
   for (size_t a = 0; a < 16; a += hn::Lanes(d)) {
-    place(x, middle[0], 1, a, to.atom_x);
-    place(y, middle[1], 1, a, to.atom_y);
-    place(z, middle[2], 1, a, to.atom_z);
-    place(peak, 0, log2e, a, to.atom_peak);
+    for (int v = 0; v < 3; ++v)
+      hn::StoreU(hn::DemoteTo(h, hn::Sub(hn::LoadU(d, from[v] + a), hn::Set(d, origin[v]))), h, to[v] + a);
+    hn::StoreU(hn::DemoteTo(h, hn::Mul(hn::LoadU(d, from[3] + a), hn::Set(d, log2e))), h, to[3] + a);
   }
 #else
   for (size_t a = 0; a < 16; ++a) {
-    to.atom_x[16 * i + a] = static_cast<float>(x[a] - middle[0]);
-    to.atom_y[16 * i + a] = static_cast<float>(y[a] - middle[1]);
-    to.atom_z[16 * i + a] = static_cast<float>(z[a] - middle[2]);
-    to.atom_peak[16 * i + a] = static_cast<float>(log2e * peak[a]);
+    for (int v = 0; v < 3; ++v)
+      to[v][a] = static_cast<float>(from[v][a] - origin[v]);
+    to[3][a] = static_cast<float>(log2e * from[3][a]);
   }
 #endif
   for (size_t a = 0; a < 16; a += lanes) {
-    float* const slot = &to.atom_peak[16 * i + a];
     const auto used = hn::Lt(hn::Iota(f, static_cast<float>(a)), hn::Set(f, static_cast<float>(count)));
-    hn::StoreU(hn::IfThenElse(used, hn::LoadU(f, slot), hn::Set(f, -1e30f)), f, slot);
+    hn::StoreU(hn::IfThenElse(used, hn::LoadU(f, to[3] + a), hn::Set(f, -1e30f)), f, to[3] + a);
+  }
+}
+
+void place_atoms_simd(const ClusteredAtoms& atoms, const int32_t* list, size_t n, const double* middle,
+                      LocalClusters& to) {
+  const double origin[3] = {middle[0], middle[1], middle[2]};
+  float* slots[4] = {to.atom_x.data(), to.atom_y.data(), to.atom_z.data(), to.atom_peak.data()};
+  for (size_t i = 0; i < n; ++i) {
+    const auto c = static_cast<size_t>(list[i]), first = static_cast<size_t>(atoms.begin[c]),
+               count = static_cast<size_t>(atoms.begin[c + 1]) - first;
+    const double* from[4] = {atoms.x + first, atoms.y + first, atoms.z + first, atoms.peak + first};
+    if (first + 16 <= atoms.atoms) {
+      place_cluster(from, count, origin, slots);
+    } else {
+      double last[4][16] = {};
+      for (int v = 0; v < 4; ++v)
+        from[v] = std::copy_n(from[v], count, last[v]) - count;
+      place_cluster(from, count, origin, slots);
+    }
+    for (float*& s : slots)
+      s += 16;
   }
 }
 
@@ -205,9 +219,9 @@ HWY_EXPORT(bound_octants_simd);
 HWY_EXPORT(power_terms_simd);
 HWY_EXPORT(keep_large_simd);
 
-void place_atoms(const double* x, const double* y, const double* z, const double* peak, size_t count,
-                 const double* middle, size_t i, LocalClusters& to) {
-  HWY_DYNAMIC_DISPATCH(place_atoms_simd)(x, y, z, peak, count, middle, i, to);
+void place_atoms(const ClusteredAtoms& from, const int32_t* list, size_t n, const double* middle,
+                 LocalClusters& to) {
+  HWY_DYNAMIC_DISPATCH(place_atoms_simd)(from, list, n, middle, to);
 }
 int32_t near_clusters(const LocalClusters& c, int32_t n, const LocalBox& box, int32_t* out) {
   return HWY_DYNAMIC_DISPATCH(near_clusters_simd)(c, n, box, out);

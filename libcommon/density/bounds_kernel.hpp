@@ -24,9 +24,17 @@ struct LocalClusters {
   Floats atom_x, atom_y, atom_z, atom_peak;  ///< [16 n], peak to base 2
 };
 
-/// Fills atom slots 16·i … 16·i + 15 with `count` ≤ 16 atoms relative to `middle` (Å). The arrays hold 16 atoms.
-void place_atoms(const double* x, const double* y, const double* z, const double* peak, size_t count,
-                 const double* middle, size_t i, LocalClusters& to);
+/// Atoms in clusters, as Field has them: positions (Å) and κr² by atom, begin by cluster.
+struct ClusteredAtoms {
+  const double *x, *y, *z, *peak;
+  const int64_t* begin;
+  size_t atoms;
+};
+
+/// Fills the atom slots of the n clusters `list`, of at most 16 atoms each, relative to `middle` (Å). The arrays
+/// hold 16·n atoms.
+void place_atoms(const ClusteredAtoms& from, const int32_t* list, size_t n, const double* middle,
+                 LocalClusters& to);
 
 /// Those of the n clusters whose box is nearer to `box` than their cutoff, in order. out holds n + 16. Returns how
 /// many.

@@ -1,7 +1,6 @@
 // selection_near.cpp — the clusters near a node, and their units near a part of it.
 #include "density/selection.hpp"
 #include <algorithm>
-#include <utility>
 
 namespace molmesh::density {
 
@@ -26,16 +25,10 @@ void Selection::enter(Vec3d middle, std::span<const int32_t> clusters) {
     l.hi_x[i] = static_cast<float>(hi.x), l.hi_y[i] = static_cast<float>(hi.y),
     l.hi_z[i] = static_cast<float>(hi.z);
     l.cutoff2[i] = static_cast<float>((1 + single) * f_.cutoff2[c]);
-    const auto first = static_cast<size_t>(f_.begin[c]), count = static_cast<size_t>(f_.begin[c + 1]) - first;
-    const double origin[3] = {middle.x, middle.y, middle.z};
-    const double* from[4] = {&f_.x[first], &f_.y[first], &f_.z[first], &f_.peak[first]};
-    double last[4][16];
-    for (int v = 0; first + 16 > f_.x.size() && v < 4; ++v) {
-      std::fill_n(last[v], 16, 0.0);
-      std::copy_n(std::exchange(from[v], last[v]), count, last[v]);
-    }
-    place_atoms(from[0], from[1], from[2], from[3], count, origin, i, l);
   }
+  const double origin[3] = {middle.x, middle.y, middle.z};
+  place_atoms({f_.x.data(), f_.y.data(), f_.z.data(), f_.peak.data(), f_.begin.data(), f_.x.size()},
+              clusters.data(), n, origin, l);
 }
 
 /// near_: the units of the clusters of the node that are near a part of it.
