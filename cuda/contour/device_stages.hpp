@@ -124,7 +124,7 @@ private:
     tree.block = leaves.block.data();
     tree.large = leaves.large.data();
     tree.large_leaves = static_cast<int32_t>(leaves.large.n);
-    slot_ = contour::detail::index_blocks(b_, leaves.block.n, tree);
+    slot_ = contour::detail::index_leaves(b_, leaves.block.n, tree);
     const auto& surface = selection_.surface;
     complex_.emplace(b_, lattice, tree, surface.cells.data(), surface.samples.data(), surface.cells.n);
     if (!lattice_->cut_allowed() && complex_->meets_wall())

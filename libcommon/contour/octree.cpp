@@ -17,7 +17,7 @@ Octree::Octree(Vec3i cells, LeafList leaves, int threads)
   view_.block = block_.data();
   view_.large = large_.data();
   view_.large_leaves = static_cast<int32_t>(large_.size());
-  slot_ = detail::index_blocks(launcher, static_cast<int64_t>(block_.size()), view_);
+  slot_ = detail::index_leaves(launcher, static_cast<int64_t>(block_.size()), view_);
 }
 
 } // namespace molmesh::contour

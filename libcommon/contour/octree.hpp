@@ -26,12 +26,12 @@ struct OctreeView {
   int32_t leaves = 0;
   Vec3i cells;
   const Block* block = nullptr;
-  const uint32_t* slot = nullptr; ///< [mask + 1] open addressing into block
+  const uint32_t* slot = nullptr; ///< [mask + 1] open addressing: blocks, and of_large + leaf for larger leaves
   uint64_t mask = 0;
   const int32_t* large = nullptr; ///< [large_leaves] leaves of level 3 and more, ascending
   int32_t large_leaves = 0;
 
-  static constexpr uint32_t free_slot = ~uint32_t{0};
+  static constexpr uint32_t free_slot = ~uint32_t{0}, of_large = uint32_t{1} << 31;
 
   HD int32_t size() const { return leaves; }
   HD Vec3i corner(int32_t leaf) const { return morton_point(key[leaf]); } ///< lower corner, lattice point
@@ -60,36 +60,41 @@ struct OctreeView {
   }
   /// The leaf that holds the fine cell of Morton code k, which lies in the domain.
   HD int32_t find_key(uint64_t k) const {
-    if (const Block* b = find_block(k))
-      return b->leaf(k);
-    return find_large(k);
+    const uint32_t entry = find_entry(k >> 9);
+    return entry < of_large ? block[entry].leaf(k) : find_large(k, entry);
   }
   /// The leaf whose lower corner is the fine cell of Morton code k, which lies in the domain; -1: none.
   HD int32_t starting_at(uint64_t k) const {
-    if (const Block* b = find_block(k))
-      return b->start[k >> 6 & 7] >> (k & 63) & 1 ? b->leaf(k) : -1;
-    const int32_t leaf = find_large(k);
+    const uint32_t entry = find_entry(k >> 9);
+    if (entry < of_large)
+      return block[entry].start[k >> 6 & 7] >> (k & 63) & 1 ? block[entry].leaf(k) : -1;
+    const int32_t leaf = find_large(k, entry);
     return key[leaf] == k ? leaf : -1;
   }
   HD static uint64_t mix(uint64_t k) {
     k *= 0x9E3779B97F4A7C15u;
     return k ^ k >> 32;
   }
+  /// Of what a slot holds: the Morton code of its lower corner / 8³.
+  HD uint64_t entry_key(uint32_t entry) const {
+    return entry < of_large ? block[entry].key : key[entry - of_large] >> 9;
+  }
 
 private:
-  HD const Block* find_block(uint64_t k) const {
-    for (uint64_t s = mix(k >> 9) & mask; slot[s] != free_slot; s = (s + 1) & mask)
-      if (block[slot[s]].key == k >> 9)
-        return block + slot[s];
-    return nullptr;
+  /// What starts at block k, free_slot where nothing does.
+  HD uint32_t find_entry(uint64_t k) const {
+    uint64_t s = mix(k) & mask;
+    while (slot[s] != free_slot && entry_key(slot[s]) != k)
+      s = (s + 1) & mask;
+    return slot[s];
   }
-  HD int32_t find_large(uint64_t k) const {
-    int32_t begin = 0, end = large_leaves; // the last key that is not above k
-    while (end - begin > 1) {
-      const int32_t middle = begin + (end - begin) / 2;
-      (key[large[middle]] <= k ? begin : end) = middle;
-    }
-    return large[begin];
+  /// entry: what starts at k's block. A node of a higher level where anything starts is the leaf: those with
+  /// children have been looked at.
+  HD int32_t find_large(uint64_t k, uint32_t entry) const {
+    constexpr int most_level = 20;
+    for (int l = 4; entry == free_slot && l <= most_level; ++l)
+      entry = find_entry(k >> 3 * l << (3 * l - 9));
+    return static_cast<int32_t>(entry - of_large);
   }
 };
 
@@ -100,7 +105,7 @@ struct LeafList {
   LargeArray<uint64_t> key;
   LargeArray<uint8_t> level;
   LargeArray<OctreeView::Block> block; ///< ascending
-  LargeArray<int32_t> large;
+  LargeArray<int32_t> large;           ///< ascending
 };
 
 class Octree {
