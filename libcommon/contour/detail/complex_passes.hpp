@@ -156,12 +156,18 @@ public:
       v.estimate = take(this->estimate, points);
       v.has_moved = take(this->has_moved, points);
       v.nearest = take(this->nearest, points);
-      auto near = m.filled(points, uint8_t{0});
       m.for_n("name corners", leaves, NameCorners{v, owned.data(), first.data()},
               {double(leaves) * 45 + double(points) * 44});
-      m.for_n("share corners", leaves, ShareCorners{v, owned.data(), near.data()}, {double(leaves) * 70});
+      m.for_n("share corners", leaves, ShareCorners{v, owned.data()}, {double(leaves) * 70});
       m.for_n("name pieces", leaves, NamePieces{v, extra.data()}, {double(leaves) * 12});
-      m.for_n("keep distance", points, KeepDistance{v, near.data()}, {double(points) * 30});
+    }
+    {
+      auto sample = m.filled(v.grid_vertices, LookFromLeaf::none);
+      auto level = m.filled(v.grid_vertices, ~uint32_t{0});
+      m.for_n("look from leaves", leaves, LookFromLeaf{v, sample.data(), level.data()},
+              {double(leaves) * 34 + double(surface_cells) * 32});
+      m.for_n("keep distance", v.grid_vertices, KeepDistance{v, sample.data(), level.data()},
+              {double(v.grid_vertices) * 42});
     }
     m.for_n("place dual vertices", leaves, PlaceDual{v}, {double(leaves) * 30 + double(surface_cells) * 300});
   }

@@ -1,7 +1,9 @@
 // distance_items.hpp — how far grid points are from the surface, and those too near moved away. Host and device.
 #pragma once
-#include "contour/detail/numbering_items.hpp"
+#include "contour/detail/complex_view.hpp"
+#include "contour/detail/raise.hpp"
 #include "geom/log.hpp"
+#include <bit>
 #include <cmath>
 
 namespace molmesh::contour::detail {
@@ -17,22 +19,67 @@ inline constexpr double gradient_reach = 0.7;
 /// Square of the gradient's part within a wall below which a grid point on it does not move.
 inline constexpr double least_along = 0.5;
 
-/// Of a grid point. near_surface: [grid vertices] corners of crossed leaves.
+/// Of the leaves round each grid point, from the leaves' side: the nearest of their samples, of two as near the
+/// first, and their least level.
+struct LookFromLeaf {
+  /// The square of the distance as a float, then the sample.
+  static constexpr uint64_t none = ~uint64_t{0};
+  ComplexView c;
+  uint64_t* nearest; ///< [grid vertices] none at first
+  uint32_t* level;   ///< [grid vertices] large at first
+
+  HD void operator()(int64_t i) const {
+    const auto leaf = static_cast<int32_t>(i);
+    for (int k = 0; k < 8; ++k)
+      lower(level[c.corner_vertex(leaf, k)], uint32_t{c.tree.level[leaf]});
+    if (c.side[leaf] == Side::crossed)
+      find_nearest(leaf);
+  }
+
+private:
+  HD void find_nearest(int32_t leaf) const {
+    const Vec3d low = to_double(c.tree.corner(leaf));
+    const double extent = c.tree.extent(leaf);
+    float least[8];
+    int32_t sample[8];
+    for (int k = 0; k < 8; ++k)
+      least[k] = 3e38f;
+    for (int32_t s = c.first_cell[leaf], end = c.end_cell(leaf); s < end; ++s) {
+      const Vec3d from_low = c.samples[s].point - low,
+                  from_high = c.samples[s].point - (low + Vec3d{extent, extent, extent});
+      const double x[2] = {from_low.x * from_low.x, from_high.x * from_high.x},
+                   y[2] = {from_low.y * from_low.y, from_high.y * from_high.y},
+                   z[2] = {from_low.z * from_low.z, from_high.z * from_high.z};
+      for (int k = 0; k < 8; ++k) {
+        const auto d2 = static_cast<float>(x[k & 1] + y[k >> 1 & 1] + z[k >> 2]);
+        sample[k] = d2 < least[k] ? s : sample[k];
+        least[k] = d2 < least[k] ? d2 : least[k];
+      }
+    }
+    for (int k = 0; k < 8; ++k)
+      lower(nearest[c.corner_vertex(leaf, k)],
+            uint64_t{std::bit_cast<uint32_t>(least[k])} << 32 | static_cast<uint32_t>(sample[k]));
+  }
+};
+
+/// Of a grid point, after LookFromLeaf.
 struct KeepDistance {
   ComplexView c;
-  const uint8_t* near_surface;
+  const uint64_t* nearest;
+  const uint32_t* level;
 
   HD void operator()(int64_t i) const {
     const auto v = static_cast<int32_t>(i);
     c.distance[v] = c.estimate[v] = 0;
     c.has_moved[v] = 0;
     c.nearest[v] = -1;
-    if (!near_surface[v])
+    if (nearest[v] == LookFromLeaf::none)
       return;
-    const int32_t least_extent = look_round(v);
+    c.nearest[v] = static_cast<int32_t>(nearest[v] & 0xFFFFFFFF);
+    const int32_t least_extent = 1 << level[v];
     double d;
     Vec3d inwards;
-    if (c.nearest[v] < 0 || !estimate(v, c.lattice.between(c.samples[c.nearest[v]].point), d, inwards))
+    if (!estimate(v, c.lattice.between(c.samples[c.nearest[v]].point), d, inwards))
       return;
     c.distance[v] = c.estimate[v] = static_cast<float>(d);
     const double least = (c.inside(v) ? 1 : -1) * least_distance * c.lattice.spacing * least_extent;
@@ -50,31 +97,6 @@ struct KeepDistance {
   }
 
 private:
-  /// Nearest sample in the leaves with this corner, of two as near the first; returns the least of their extents.
-  HD int32_t look_round(int32_t v) const {
-    const Vec3i p = c.point[v];
-    int32_t least_extent = 1 << 30, nearest = -1;
-    float least_d2 = 3e38f;
-    for (int octant = 0; octant < 8; ++octant) {
-      const int32_t leaf = leaf_with_corner(c.tree, p, octant);
-      if (leaf < 0)
-        continue;
-      const int32_t extent = c.tree.extent(leaf);
-      least_extent = extent < least_extent ? extent : least_extent;
-      if (c.side[leaf] != Side::crossed)
-        continue;
-      for (int32_t k = c.first_cell[leaf], end = c.end_cell(leaf); k < end; ++k) {
-        const auto d2 = static_cast<float>(norm2(c.samples[k].point - to_double(p)));
-        if (d2 < least_d2 || (d2 == least_d2 && k < nearest)) {
-          least_d2 = d2;
-          nearest = k;
-        }
-      }
-    }
-    c.nearest[v] = nearest;
-    return least_extent;
-  }
-
   /// d: distance to the surface (Å, positive inside); inwards: unit. foot: the nearest sample (Å).
   HD bool estimate(int32_t v, Vec3d foot, double& d, Vec3d& inwards) const {
     const Vec3i p = c.point[v];

@@ -2,7 +2,6 @@
 // Items in the order of their passes. Host and device.
 #pragma once
 #include "contour/detail/complex_view.hpp"
-#include "contour/detail/raise.hpp"
 #include "geom/morton.hpp"
 
 namespace molmesh::contour::detail {
@@ -81,21 +80,16 @@ struct NameCorners {
     }
   }
 };
-/// And the leaf's side. near_surface: [grid vertices] raised at corners of crossed leaves.
+/// And the leaf's side.
 struct ShareCorners {
   ComplexView c;
   const int32_t* owned;
-  uint8_t* near_surface;
   HD void operator()(int64_t i) const {
     const bool crossed = c.first_cell[i] >= 0;
     c.side[i] = crossed ? Side::crossed : c.inside(c.grid_vertex[8 * i]) ? Side::inside : Side::outside;
-    for (int k = 0; k < 8; ++k) {
-      const int32_t v = c.grid_vertex[owned[8 * i + k]]; // an owner's own entry does not change here
-      if (owned[8 * i + k] != 8 * i + k)
-        c.grid_vertex[8 * i + k] = v;
-      if (crossed)
-        raise(near_surface[v]);
-    }
+    for (int k = 0; k < 8; ++k)
+      if (owned[8 * i + k] != 8 * i + k) // an owner's own entry does not change here
+        c.grid_vertex[8 * i + k] = c.grid_vertex[owned[8 * i + k]];
   }
 };
 

@@ -4,6 +4,7 @@
 #include "geom/hd.hpp"
 #include <atomic>
 #include <cstdint>
+#include <type_traits>
 
 namespace molmesh::contour::detail {
 
@@ -30,13 +31,19 @@ HD inline void raise(uint8_t& flag) {
   put(flag, uint8_t{1});
 }
 
-/// Lowers the place to `value` where that is less; returns what was there. The least of all stays.
-HD inline uint32_t lower(uint32_t& place, uint32_t value) {
+/// Lowers the place to `value` where that is less; returns what was there. The least of all stays. T: 32 or 64
+/// bits.
+template <class T>
+HD inline T lower(T& place, T value) {
+  static_assert(std::is_same_v<T, uint32_t> || std::is_same_v<T, uint64_t>);
 #ifdef __CUDA_ARCH__
-  return atomicMin(&place, value);
+  if constexpr (sizeof(T) == 8)
+    return atomicMin(reinterpret_cast<unsigned long long*>(&place), static_cast<unsigned long long>(value));
+  else
+    return atomicMin(&place, value);
 #else
-  const std::atomic_ref<uint32_t> at(place);
-  uint32_t was = at.load(std::memory_order_relaxed);
+  const std::atomic_ref<T> at(place);
+  T was = at.load(std::memory_order_relaxed);
   while (value < was && !at.compare_exchange_weak(was, value, std::memory_order_relaxed)) {
   }
   return was;
