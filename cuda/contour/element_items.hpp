@@ -115,7 +115,10 @@ struct MakeFaces {
   ComplexView c;
   const int32_t* leaves; ///< null: all
   HD int32_t leaf(int64_t i) const { return leaves ? leaves[i] : static_cast<int32_t>(i); }
-  HD void operator()(int64_t i, ItemOut<check>& out) const { contour::detail::make_faces(c, leaf(i), out); }
+  HD void operator()(int64_t i, ItemOut<check>& out) const {
+    contour::NearLeaves near(c.tree);
+    contour::detail::make_faces(c, near, leaf(i), out);
+  }
   /// Leaves of one level, and surface cells apart: similar work (§4.2).
   HD uint32_t work(int64_t i) const {
     const int32_t l = leaf(i);

@@ -79,7 +79,8 @@ void join(const std::vector<Batch>& batches, int32_t first, Joined& out, int thr
   });
 }
 
-/// make(i, out) for i in [0, n), joined. A few batches at a time, so that their memory stays in the caches.
+/// make(begin, end, out) for all of [0, n), joined. A few batches at a time, so that their memory stays in the
+/// caches.
 template <bool check, class Make>
 void run(int64_t n, int32_t first, Joined& out, int threads, Make make) {
   constexpr int64_t batch_size = 256; // leaves or edges
@@ -89,8 +90,8 @@ void run(int64_t n, int32_t first, Joined& out, int threads, Make make) {
     batches.resize(at(std::min(most, all - begin)));
     par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t b) {
       batches[at(b)].clear();
-      for (int64_t i = (begin + b) * batch_size, end = std::min(n, i + batch_size); i < end; ++i)
-        make(i, batches[at(b)]);
+      const int64_t first_item = (begin + b) * batch_size;
+      make(first_item, std::min(n, first_item + batch_size), batches[at(b)]);
     });
     join(batches, first, out, threads);
   }
@@ -130,7 +131,11 @@ Joined make_all(const ComplexView& view, int64_t n, Leaf leaf, int threads, Stay
     out.elements.tet.reserve(at(12 * n) + 8 * at(view.surface_cells));
     out.link.reserve(6 * at(view.surface_cells));
   }
-  run<check>(n, view.vertices(), out, threads, [&](int64_t i, auto& to) { detail::make_faces(view, leaf(i), to); });
+  run<check>(n, view.vertices(), out, threads, [&](int64_t begin, int64_t end, auto& to) {
+    NearLeaves near(view.tree);
+    for (int64_t i = begin; i < end; ++i)
+      detail::make_faces(view, near, leaf(i), to);
+  });
   out.elements.face_points = static_cast<int64_t>(out.wall.size());
   if (check)
     out.link.erase(std::remove_if(out.link.begin(), out.link.end(), [&](const Link& l) { return !stay(l); }),
@@ -139,9 +144,11 @@ Joined make_all(const ComplexView& view, int64_t n, Leaf leaf, int threads, Stay
   const LargeArray<Vec3d> point = out.elements.position; // the rings' are appended
   const LargeArray<int32_t> wall = out.wall;
   const detail::RingVertices vertices{view, view.vertices(), point.data(), wall.data()};
-  run<check>(static_cast<int64_t>(first.size()) - 1, view.vertices(), out, threads, [&](int64_t e, auto& to) {
-    detail::make_ring(vertices, &out.link[at(first[at(e)])], out.link.data() + first[at(e + 1)], to);
-  });
+  run<check>(static_cast<int64_t>(first.size()) - 1, view.vertices(), out, threads,
+             [&](int64_t begin, int64_t end, auto& to) {
+               for (int64_t e = begin; e < end; ++e)
+                 detail::make_ring(vertices, &out.link[at(first[at(e)])], out.link.data() + first[at(e + 1)], to);
+             });
   return out;
 }
 

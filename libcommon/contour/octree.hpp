@@ -48,28 +48,32 @@ struct OctreeView {
     k = upper ? morton_after(k, axis, of_level) : morton_before(k, axis);
     return !upper || before_end(k, axis);
   }
-  /// The first leaf across face 2 · axis + upper, -1 at a wall. Where it is smaller, so are all along the face.
-  HD int32_t neighbour(int32_t leaf, int face) const {
-    uint64_t k = key[leaf];
-    return beyond(k, level[leaf], face / 2, face % 2) ? find_key(k) : -1;
+  HD bool holds(Vec3i p) const {
+    return !(p.x < 0 || p.y < 0 || p.z < 0 || p.x >= cells.x || p.y >= cells.y || p.z >= cells.z);
   }
   /// The leaf that holds fine cell p, or -1 beyond the domain.
-  HD int32_t find(Vec3i p) const {
-    const bool beyond = p.x < 0 || p.y < 0 || p.z < 0 || p.x >= cells.x || p.y >= cells.y || p.z >= cells.z;
-    return beyond ? -1 : find_key(morton(p));
-  }
+  HD int32_t find(Vec3i p) const { return holds(p) ? find_key(morton(p)) : -1; }
   /// The leaf that holds the fine cell of Morton code k, which lies in the domain.
-  HD int32_t find_key(uint64_t k) const {
-    const uint32_t entry = find_entry(k >> 9);
-    return entry < of_large ? block[entry].leaf(k) : find_large(k, entry);
+  HD int32_t find_key(uint64_t k) const { return leaf_in(find_entry(k), k); }
+  /// Of what holds k, block or large leaf: as find_key.
+  HD int32_t leaf_in(uint32_t entry, uint64_t k) const {
+    return entry < of_large ? block[entry].leaf(k) : static_cast<int32_t>(entry - of_large);
   }
-  /// The leaf whose lower corner is the fine cell of Morton code k, which lies in the domain; -1: none.
-  HD int32_t starting_at(uint64_t k) const {
-    const uint32_t entry = find_entry(k >> 9);
+  /// The leaf whose lower corner is k; -1: none.
+  HD int32_t starting_in(uint32_t entry, uint64_t k) const {
     if (entry < of_large)
       return block[entry].start[k >> 6 & 7] >> (k & 63) & 1 ? block[entry].leaf(k) : -1;
-    const int32_t leaf = find_large(k, entry);
+    const auto leaf = static_cast<int32_t>(entry - of_large);
     return key[leaf] == k ? leaf : -1;
+  }
+  /// The block or large leaf that holds the fine cell of Morton code k, which lies in the domain.
+  HD uint32_t find_entry(uint64_t k) const {
+    // A node of a higher level where anything starts is the leaf: those with children have been looked at.
+    constexpr int most_level = 20;
+    uint32_t entry = starting_entry(k >> 9);
+    for (int l = 4; entry == free_slot && l <= most_level; ++l)
+      entry = starting_entry(k >> 3 * l << (3 * l - 9));
+    return entry;
   }
   HD static uint64_t mix(uint64_t k) {
     k *= 0x9E3779B97F4A7C15u;
@@ -82,20 +86,46 @@ struct OctreeView {
 
 private:
   /// What starts at block k, free_slot where nothing does.
-  HD uint32_t find_entry(uint64_t k) const {
+  HD uint32_t starting_entry(uint64_t k) const {
     uint64_t s = mix(k) & mask;
     while (slot[s] != free_slot && entry_key(slot[s]) != k)
       s = (s + 1) & mask;
     return slot[s];
   }
-  /// entry: what starts at k's block. A node of a higher level where anything starts is the leaf: those with
-  /// children have been looked at.
-  HD int32_t find_large(uint64_t k, uint32_t entry) const {
-    constexpr int most_level = 20;
-    for (int l = 4; entry == free_slot && l <= most_level; ++l)
-      entry = find_entry(k >> 3 * l << (3 * l - 9));
-    return static_cast<int32_t>(entry - of_large);
+};
+
+/// Finds leaves close to each other: what held the last ones is known. Blocks side by side differ in the parity of
+/// their places, which says where they are kept.
+class NearLeaves {
+public:
+  HD explicit NearLeaves(const OctreeView& tree) : tree_(tree) {
+    for (uint64_t& b : block_)
+      b = ~uint64_t{0};
   }
+  HD const OctreeView& tree() const { return tree_; }
+  /// As the tree's.
+  HD int32_t find_key(uint64_t k) { return tree_.leaf_in(entry_of(k), k); }
+  HD int32_t find(Vec3i p) { return tree_.holds(p) ? find_key(morton(p)) : -1; }
+  /// The leaf whose lower corner is the fine cell of Morton code k, which lies in the domain; -1: none.
+  HD int32_t starting_at(uint64_t k) { return tree_.starting_in(entry_of(k), k); }
+  /// The first leaf across face 2 · axis + upper, -1 at a wall. Where it is smaller, so are all along the face.
+  HD int32_t neighbour(int32_t leaf, int face) {
+    uint64_t k = tree_.key[leaf];
+    return tree_.beyond(k, tree_.level[leaf], face / 2, face % 2) ? find_key(k) : -1;
+  }
+
+private:
+  HD uint32_t entry_of(uint64_t k) {
+    const uint64_t at = k >> 9 & 7;
+    if (block_[at] != k >> 9) {
+      block_[at] = k >> 9;
+      entry_[at] = tree_.find_entry(k);
+    }
+    return entry_[at];
+  }
+  const OctreeView& tree_;
+  uint64_t block_[8];
+  uint32_t entry_[8] = {};
 };
 
 inline constexpr int64_t most_leaves = int64_t{1} << 28; ///< their corners are numbered in 31 bits

@@ -73,9 +73,10 @@ struct GatherLeavesRound {
   ComplexView c;
   const int32_t* vertex;
   HD int64_t operator()(int64_t i, int32_t* out) const {
+    NearLeaves near(c.tree);
     int64_t n = 0;
     for (int octant = 0; octant < 8; ++octant)
-      if (const int32_t leaf = leaf_with_corner(c.tree, c.point[vertex[i]], octant); leaf >= 0) {
+      if (const int32_t leaf = leaf_with_corner(near, c.point[vertex[i]], octant); leaf >= 0) {
         if (out)
           out[n] = leaf;
         ++n;

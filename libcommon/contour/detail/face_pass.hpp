@@ -12,14 +12,14 @@ namespace molmesh::contour::detail {
 template <class Out>
 class FacePass {
 public:
-  HD FacePass(const ComplexView& c, Out& out) : c_(c), out_(out) {}
+  HD FacePass(const ComplexView& c, NearLeaves& near, Out& out) : c_(c), near_(near), out_(out) {}
 
   HD void leaf(int32_t leaf) {
     const int level = c_.tree.level[leaf];
     int32_t other[6];
     smaller_ = 0;
     for (int f = 0; f < 6; ++f) {
-      other[f] = c_.tree.neighbour(leaf, f);
+      other[f] = near_.neighbour(leaf, f);
       smaller_ |= unsigned(other[f] >= 0 && c_.tree.level[other[f]] < level) << f;
     }
     for (int f = 0; f < 6; ++f) {
@@ -56,7 +56,7 @@ private:
       k = morton_before(morton_after(k, v, level), v);
     if (across_v && upper_u)
       k = morton_before(morton_after(k, u, level), u);
-    const int32_t other = c_.tree.find_key(k);
+    const int32_t other = near_.find_key(k);
     if (diagonal && c_.tree.level[other] >= level)
       return -1;
     // That leaf starts at the middle along the axis.
@@ -222,15 +222,16 @@ private:
   }
 
   const ComplexView& c_;
+  NearLeaves& near_;
   unsigned smaller_ = 0; ///< bit f: smaller cells across the leaf's face f
   Out& out_;
 };
 
 /// The elements of the faces that a leaf owns, and the links they add to sign-change edges. A face belongs to its
-/// smaller cell, of two equal ones to the lower.
+/// smaller cell, of two equal ones to the lower. near: the complex's tree.
 template <class Out>
-HD void make_faces(const ComplexView& complex, int32_t leaf, Out& out) {
-  FacePass<Out>(complex, out).leaf(leaf);
+HD void make_faces(const ComplexView& complex, NearLeaves& near, int32_t leaf, Out& out) {
+  FacePass<Out>(complex, near, out).leaf(leaf);
 }
 
 } // namespace molmesh::contour::detail

@@ -7,9 +7,9 @@
 namespace molmesh::contour::detail {
 
 /// The leaf with grid point p as a corner whose fine cell there is p - step of the octant; -1: none.
-HD inline int32_t leaf_with_corner(const OctreeView& tree, Vec3i p, int octant) {
-  const int32_t leaf = tree.find(p - corner_step(octant));
-  return leaf >= 0 && ((p.x | p.y | p.z) & (tree.extent(leaf) - 1)) == 0 ? leaf : -1;
+HD inline int32_t leaf_with_corner(NearLeaves& near, Vec3i p, int octant) {
+  const int32_t leaf = near.find(p - corner_step(octant));
+  return leaf >= 0 && ((p.x | p.y | p.z) & (near.tree().extent(leaf) - 1)) == 0 ? leaf : -1;
 }
 
 /// Of a surface cell: its leaf's first_cell, if this is it; -1 before.
@@ -30,10 +30,11 @@ struct OwnCorners {
   int32_t *owned, *first;
 
   HD void operator()(int64_t leaf) const {
+    NearLeaves near(tree);
     int32_t own = 1;
     owned[8 * leaf] = static_cast<int32_t>(8 * leaf);
     for (int c = 1; c < 8; ++c) {
-      const int32_t o = owner(static_cast<int32_t>(leaf), c);
+      const int32_t o = owner(near, static_cast<int32_t>(leaf), c);
       owned[8 * leaf + c] = o;
       own += o == 8 * leaf + c;
     }
@@ -41,7 +42,7 @@ struct OwnCorners {
   }
 
 private:
-  HD int32_t owner(int32_t leaf, int c) const {
+  HD int32_t owner(NearLeaves& near, int32_t leaf, int c) const {
     const int level = tree.level[leaf];
     uint64_t k = tree.key[leaf];
     bool within = true; // the point's last octant is
@@ -51,11 +52,11 @@ private:
         within = within && tree.before_end(k, a);
       }
     if (within)
-      if (const int32_t last = tree.starting_at(k); last >= 0)
+      if (const int32_t last = near.starting_at(k); last >= 0)
         return 8 * last;
     const Vec3i p = tree.corner(leaf) + tree.extent(leaf) * corner_step(c);
     for (int octant = 1; octant < 8; ++octant)
-      if (const int32_t other = leaf_with_corner(tree, p, octant); other >= 0)
+      if (const int32_t other = leaf_with_corner(near, p, octant); other >= 0)
         return 8 * other + octant; // the point is as far from the leaf's lower corner
     return 8 * leaf + c;           // not reached: the leaf's own octant is one of them
   }
@@ -90,17 +91,6 @@ struct ShareCorners {
     for (int k = 0; k < 8; ++k)
       if (owned[8 * i + k] != 8 * i + k) // an owner's own entry does not change here
         c.grid_vertex[8 * i + k] = c.grid_vertex[owned[8 * i + k]];
-  }
-};
-
-/// Leaves with the vertex as a corner, -1 where there is none: [8·i …]. Those that are no grid points have none.
-struct LeavesRound {
-  ComplexView c;
-  const int32_t* vertex;
-  int32_t* leaf;
-  HD void operator()(int64_t i) const {
-    for (int octant = 0; octant < 8; ++octant)
-      leaf[8 * i + octant] = leaf_with_corner(c.tree, c.point[vertex[i]], octant);
   }
 };
 

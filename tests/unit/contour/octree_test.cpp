@@ -44,6 +44,7 @@ TEST_CASE("merged cells' dual vertices keep off faces with smaller cells behind"
   const Leaves leaves(grid, 0.3);
   const Dual dual = make_dual({leaves.lattice, leaves.tree, leaves.surface, 1}, [](const std::string&) {});
   const ComplexView& c = dual.complex.view;
+  NearLeaves near(c.tree);
   int looked_at = 0;
   double nearest = 1, nearest_any = 1;
   for (int32_t leaf = 0; leaf < c.tree.leaves; ++leaf) {
@@ -57,7 +58,7 @@ TEST_CASE("merged cells' dual vertices keep off faces with smaller cells behind"
       const double share = (c.position[c.dual(leaf)][f / 2] - low[f / 2]) / size[f / 2];
       const double from_face = f % 2 ? 1 - share : share;
       nearest_any = std::min(nearest_any, from_face * extent);
-      const int32_t other = c.tree.neighbour(leaf, f);
+      const int32_t other = near.neighbour(leaf, f);
       if (other < 0 || c.tree.level[other] >= c.tree.level[leaf])
         continue;
       ++looked_at;
