@@ -22,8 +22,11 @@ public:
     const BlockGrid& grid = l.grid();
     const auto corner = b_.upload(grid.corner.data(), static_cast<int64_t>(grid.corner.size()));
     const auto inside = b_.upload(grid.inside.data(), static_cast<int64_t>(grid.inside.size()));
-    surface = contour::detail::find_surface(b_, lattice->view,
-                                            {corner.data(), corner.size(), inside.data(), inside.size()});
+    surface = contour::detail::find_surface(
+        b_, lattice->view, {corner.data(), corner.size(), inside.data(), inside.size()},
+        [&](const contour::SurfaceCell* cells, int64_t n, double isovalue, contour::SurfaceSample* samples) {
+          b_.for_n("make samples", n, contour::detail::MakeSamples{cells, isovalue, samples});
+        });
   }
   void select_leaves(const contour::Lattice& l, const contour::RefineOptions& options) {
     leaves = contour::detail::LeafSelection<Backend>(

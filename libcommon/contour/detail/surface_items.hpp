@@ -106,33 +106,22 @@ struct MakeSurfaceCells {
   }
 };
 
+/// point: within the cell; gradient: in its direction.
+HD inline SurfaceSample sample_of(const SurfaceCell& cell, Vec3d point, Vec3d gradient) {
+  const double length = norm(gradient);
+  return {to_double(morton_point(cell.key)) + point, length > 0 ? gradient / length : Vec3d{}};
+}
+
 struct MakeSamples {
   const SurfaceCell* cell;
   double isovalue;
   SurfaceSample* sample;
   HD void operator()(int64_t i) const {
-    const float* v = cell[i].value;
-    Vec3d sum, gradient;
-    int crossings = 0;
-    double logarithm[8];
+    double v[8], point[3], gradient[3];
     for (int c = 0; c < 8; ++c)
-      logarithm[c] = portable_log(v[c] / isovalue); // anything where v ≤ 0
-    for (int axis = 0; axis < 3; ++axis)
-      for (int c = 0; c < 8; ++c) {
-        const int d = c | 1 << axis;
-        if (d == c)
-          continue;
-        gradient[axis] += double(v[d]) - v[c];
-        if ((v[c] > isovalue) == (v[d] > isovalue))
-          continue;
-        Vec3d p{double(c & 1), double(c >> 1 & 1), double(c >> 2)};
-        p[axis] = crossing_share(v[c], v[d], logarithm[c], logarithm[d], isovalue);
-        sum += p;
-        ++crossings;
-      }
-    const double length = norm(gradient);
-    sample[i] = {to_double(morton_point(cell[i].key)) + sum / double(crossings),
-                 length > 0 ? gradient / length : Vec3d{}};
+      v[c] = cell[i].value[c];
+    sample_cells<double, uint64_t>(v, isovalue, point, gradient);
+    sample[i] = sample_of(cell[i], {point[0], point[1], point[2]}, {gradient[0], gradient[1], gradient[2]});
   }
 };
 

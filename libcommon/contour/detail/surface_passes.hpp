@@ -23,8 +23,10 @@ struct GridBlocks {
   int64_t insides;
 };
 
-template <class Launcher>
-SurfaceLists<Launcher> find_surface(Launcher& m, const LatticeView& l, const GridBlocks& grid) {
+/// make_samples(cells, n, isovalue, samples)
+template <class Launcher, class MakeSamples>
+SurfaceLists<Launcher> find_surface(Launcher& m, const LatticeView& l, const GridBlocks& grid,
+                                    MakeSamples make_samples) {
   const auto covered = gather<KeyedWord>(m, "cover blocks", grid.corners, CoveredBlocks{l, grid.corner});
   const auto covered_inside =
       gather<KeyedWord>(m, "cover blocks", l.any_cut ? grid.insides : 0, CoveredBlocks{l, grid.inside});
@@ -48,7 +50,7 @@ SurfaceLists<Launcher> find_surface(Launcher& m, const LatticeView& l, const Gri
   out.cells =
       gather<SurfaceCell>(m, "make surface cells", 8 * block.n, MakeSurfaceCells{l, block.data(), crossed.data()});
   out.samples = {m.template array<SurfaceSample>(out.cells.n), out.cells.n};
-  m.for_n("make samples", out.cells.n, MakeSamples{out.cells.data(), double(l.isovalue), out.samples.data()});
+  make_samples(out.cells.data(), out.cells.n, double(l.isovalue), out.samples.data());
   return out;
 }
 
