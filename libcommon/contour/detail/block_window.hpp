@@ -1,4 +1,5 @@
-// block_window.hpp — which of the 9³ points of 8³ cells of the lattice are inside, or active, as rows of bits.
+// block_window.hpp — which of the 9³ points, or fewer, of 8³ cells of the lattice are inside, or active, as rows of
+// bits.
 #pragma once
 #include "contour/lattice.hpp"
 
@@ -6,12 +7,14 @@ namespace molmesh::contour::detail {
 
 class BlockWindow {
 public:
-  /// corner: lattice point
-  HD BlockWindow(const LatticeView& lattice, Vec3i corner) : lattice_(lattice), corner_(corner) {
+  /// corner: lattice point; cells: 8 at most along each axis, of which points are asked for
+  HD BlockWindow(const LatticeView& lattice, Vec3i corner, int cells = 8) : lattice_(lattice), corner_(corner) {
     const Vec3i first = lattice.base + corner;
     offset_ = {first.x & 7, first.y & 7, first.z & 7};
+    const int needed = (offset_.x + cells) >> 3 | (offset_.y + cells) >> 3 << 1 | (offset_.z + cells) >> 3 << 2;
     for (int n = 0; n < 8; ++n)
-      block_[n] = lattice.index.find(first + 8 * Vec3i{n & 1, n >> 1 & 1, n >> 2});
+      block_[n] =
+          (n & needed) == n ? lattice.index.find(first + 8 * Vec3i{n & 1, n >> 1 & 1, n >> 2}) : block_[n & needed];
   }
   /// No block of the grid holds one of the points, and all are on one side.
   HD bool one_sided() const {

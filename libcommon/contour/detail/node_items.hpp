@@ -1,6 +1,7 @@
 // node_items.hpp — the octree's nodes that hold surface cells: which of them may be one cell.
 #pragma once
 #include "contour/cube.hpp"
+#include "contour/detail/block_window.hpp"
 #include "contour/detail/node_mask.hpp"
 #include "contour/lattice.hpp"
 #include "contour/surface_sample.hpp"
@@ -151,33 +152,39 @@ private:
         return false;
     return true;
   }
-  /// By the signs of the 27 corners of the children, `half` apart.
-  HD bool keeps_topology(Vec3i corner, int32_t half) const {
+  /// Bit x + 3 y + 9 z: of the 27 corners of the children, `half` apart, (x, y, z) is inside.
+  HD uint32_t inside_points(Vec3i corner, int32_t half) const {
+    uint32_t in = 0;
+    if (half <= 4) {
+      const BlockWindow window(l, corner, 2 * half);
+      for (int x = 0; x < 3; ++x)
+        for (int y = 0; y < 3; ++y) {
+          const uint32_t row = window.inside(half * x, half * y);
+          in |= ((row & 1) | (row >> half & 1) << 9 | (row >> 2 * half & 1) << 18) << (x + 3 * y);
+        }
+      return in;
+    }
     BlockIndexView::Last last;
+    for (int n = 0; n < 27; ++n)
+      in |= uint32_t{l.inside(corner + half * Vec3i{n % 3, n / 3 % 3, n / 9}, last)} << n;
+    return in;
+  }
+  HD bool keeps_topology(Vec3i corner, int32_t half) const {
+    constexpr uint32_t corner_bits = 0x5140145, half_way[3] = {0x2492492, 0xE07038, 0x3FE00};
+    const uint32_t in = inside_points(corner, half);
     uint32_t corners = 0;
     for (int c = 0; c < 8; ++c)
-      corners |= uint32_t{l.inside(corner + 2 * half * Vec3i{c & 1, c >> 1 & 1, c >> 2}, last)} << c;
+      corners |= (in >> (2 * (c & 1) + 6 * (c >> 1 & 1) + 18 * (c >> 2)) & 1) << c;
     if (!one_disc(corners))
       return false;
-    for (int n = 0; n < 27; ++n) {
-      const int at[3] = {n % 3, n / 3 % 3, n / 9};
-      // Corners of the edge, face or cell whose middle is n: either way along each axis where n is half-way.
-      uint32_t around = 0;
-      for (int c = 0; c < 8; ++c) {
-        int m = 0;
-        for (int a = 0; a < 3; ++a)
-          m |= (at[a] == 1 ? c >> a & 1 : at[a] >> 1) << a;
-        around |= 1u << m;
-      }
-      if ((around & (around - 1)) == 0)
-        continue; // a corner
-      const uint32_t inside = corners & around;
-      if (inside != 0 && inside != around)
-        continue; // agrees with one of them either way
-      if (l.inside(corner + half * Vec3i{at[0], at[1], at[2]}, last) != (inside != 0))
-        return false;
+    // Whether any, and whether all of the corners of the edge, face or cell that a point is the middle of are
+    // inside.
+    uint32_t any = in & corner_bits, all = any;
+    for (int a = 0, step = 1; a < 3; ++a, step *= 3) {
+      any |= (any << step | any >> step) & half_way[a];
+      all |= (all << step & all >> step) & half_way[a];
     }
-    return true;
+    return (in & ~any) == 0 && (all & ~in) == 0;
   }
   HD static uint8_t near_faces(Vec3d middle, Vec3i corner, int32_t extent) {
     const double margin = extent == 2 ? least_margin_of_two : least_margin;
