@@ -28,7 +28,9 @@ struct ComplexArrays {
   Array<float> distance, estimate;
   Array<uint8_t> has_moved; ///< [grid vertices]
   Array<int32_t> nearest;   ///< [grid vertices] nearest sample in the leaves around, -1: none
-  ComplexView view;         ///< points to them, and to the lattice, octree and surface that the caller keeps
+  /// [leaves] bit 2f, of a halved face 2f + 1 too: the leaf's own face f gets a point, as the check of faces found
+  Array<uint16_t> face_points;
+  ComplexView view; ///< points to them, and to the lattice, octree and surface that the caller keeps
 };
 
 /// On the host; from a device without positions, distances and has_moved, which only elements need.

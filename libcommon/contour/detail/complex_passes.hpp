@@ -140,6 +140,8 @@ public:
     v.side = take(this->side, leaves);
     v.grid_vertex = take(this->grid_vertex, 8 * leaves);
     v.split = take(this->split, leaves);
+    this->face_points = m.filled(leaves, uint16_t{0});
+    v.face_points = this->face_points.data();
     {
       auto owned = m.template array<int32_t>(8 * leaves), first = m.template array<int32_t>(leaves + 1),
            extra = m.template array<int32_t>(leaves + 1);

@@ -26,6 +26,7 @@ struct ComplexView {
   float *distance = nullptr, *estimate = nullptr;
   uint8_t* has_moved = nullptr;
   int32_t* nearest = nullptr;
+  uint16_t* face_points = nullptr;
 
   HD int32_t vertices() const { return dual0 + tree.leaves + pieces; }
   HD bool inside(int32_t vertex) const { return value[vertex] > lattice.isovalue; }

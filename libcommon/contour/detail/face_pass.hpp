@@ -1,7 +1,6 @@
 // face_pass.hpp — one tetrahedron per edge of each face between two cells. Host and device.
 #pragma once
 #include "contour/detail/batch.hpp"
-#include "contour/detail/crossing.hpp"
 #include "contour/detail/face_shape.hpp"
 #include "geom/predicates.hpp"
 #include <cmath>
@@ -18,6 +17,8 @@ public:
     const int level = c_.tree.level[leaf];
     int32_t other[6];
     smaller_ = 0;
+    if constexpr (Out::checks)
+      c_.face_points[leaf] = 0;
     for (int f = 0; f < 6; ++f) {
       other[f] = near_.neighbour(leaf, f);
       smaller_ |= unsigned(other[f] >= 0 && c_.tree.level[other[f]] < level) << f;
@@ -89,7 +90,7 @@ private:
           p.add(middle);
       }
       polygon(p, cell_dual(leaf, f, -1), other < 0 ? no_vertex : cell_dual(other, f ^ 1, -1), f,
-              needs_test(leaf, other), mine == Side::crossed || its == Side::crossed);
+              needs_test(leaf, other), mine == Side::crossed || its == Side::crossed, {leaf, 2 * f});
       return;
     }
     const int s = diagonal == Diagonal::even ? 0 : 1;
@@ -99,7 +100,7 @@ private:
       for (int i = 0; i < 3; ++i)
         p.add(vertex(k[i]));
       polygon(p, cell_dual(leaf, f, k[1]), other < 0 ? no_vertex : cell_dual(other, f ^ 1, k[1] ^ 1 << f / 2), f,
-              true, true);
+              true, true, {leaf, 2 * f + half});
     }
   }
 
@@ -118,31 +119,32 @@ private:
     return c_.is_split(leaf) ? c_.piece_dual(leaf, SplitCell(c_.topology(leaf)), f, off) : c_.dual(leaf);
   }
 
+  /// Of a polygon that is a leaf's own face or half of one; bit of ComplexView::face_points, -1: of none.
+  struct Owner {
+    int32_t leaf = -1;
+    int bit = -1;
+  };
+
   /// behind, front: dual vertices of the two cells; front no_vertex at wall f. check: at a surface cell; looked at
   /// on both sides of the surface: all regions are parts of one mesh.
-  HD_CALL void polygon(const Polygon& p, int32_t behind, int32_t front, int f, bool test, bool check) {
+  HD_CALL void polygon(const Polygon& p, int32_t behind, int32_t front, int f, bool test, bool check, Owner owner) {
     const bool wall = front == no_vertex;
     int32_t via = no_vertex;
     Vec3d via_position, front_position;
     if (wall) {
-      front_position = face_point(p);
+      front_position = face_point(c_, p);
       front_position[f / 2] = c_.position[p.vertex[0]][f / 2]; // planar to the last bit
       front = out_.add_point(front_position, box_x0 + f);
     } else {
       front_position = c_.position[front];
-      const bool direct = pierced(c_, p, behind, front, test ? least_volume : check ? least_moved_volume : -1);
-      const double shape = direct && test && check ? direct_shape(c_, p, behind, front) : direct ? 1 : -1;
-      if (shape < flat_sine) {
-        via_position = face_point(p);
-        if (!direct || via_shape(c_, p, behind, via_position, front) > shape)
-          via = out_.add_point(via_position, 0);
-      }
+      if (gets_point(p, behind, front, test, check, owner, via_position))
+        via = out_.add_point(via_position, 0);
     }
     bool positive = true;
     for (int i = 0; i < p.n; ++i) {
       const int32_t a = p.vertex[i], b = p.vertex[(i + 1) % p.n];
       const bool in_a = c_.inside(a), in_b = c_.inside(b);
-      if (Out::checks && check) {
+      if (Out::checks && check && (wall || via != no_vertex)) { // others are positive by least_moved_volume
         const Vec3d xa = c_.position[a], xb = c_.position[b], xc = c_.position[behind];
         positive = positive && (via == no_vertex ? orient3d(xa, xb, xc, front_position) > 0
                                                  : orient3d(xa, xb, xc, via_position) > 0 &&
@@ -173,19 +175,20 @@ private:
     }
   }
 
-  /// A point within the polygon: the middle of the surface's trace on it, or the polygon's centre.
-  HD Vec3d face_point(const Polygon& p) const {
-    Vec3d crossed, all;
-    int crossings = 0;
-    for (int i = 0; i < p.n; ++i) {
-      const int32_t a = p.vertex[i], b = p.vertex[(i + 1) % p.n];
-      all += c_.position[a];
-      if (c_.inside(a) == c_.inside(b))
-        continue;
-      crossed += crossing(c_, a, b);
-      ++crossings;
+  /// Whether a point goes between the dual vertices, and where. What the check found is known of leaves' faces.
+  HD bool gets_point(const Polygon& p, int32_t behind, int32_t front, bool test, bool check, Owner owner,
+                     Vec3d& point) const {
+    if (!Out::checks && owner.leaf >= 0) {
+      if (!(c_.face_points[owner.leaf] >> owner.bit & 1))
+        return false;
+      point = face_point(c_, p);
+      return true;
     }
-    return crossings ? crossed / double(crossings) : all / double(p.n);
+    if (!wants_point(c_, p, behind, front, test, check, point))
+      return false;
+    if (Out::checks && owner.leaf >= 0)
+      c_.face_points[owner.leaf] = static_cast<uint16_t>(c_.face_points[owner.leaf] | 1 << owner.bit);
+    return true;
   }
 
   /// Triangles from the cell's edges (and its faces' diagonals) to the centre.
@@ -208,7 +211,7 @@ private:
             t.add(vertex(a));
             t.add(vertex(b));
             t.add(centre);
-            polygon(t, c_.piece_dual(leaf, s, q), c_.piece_dual(leaf, s, p), -1, true, true);
+            polygon(t, c_.piece_dual(leaf, s, q), c_.piece_dual(leaf, s, p), -1, true, true, {});
           }
         }
       }
@@ -217,7 +220,7 @@ private:
       Polygon t; // the cut below the chopped corner
       for (int i = 0; i < 3; ++i)
         t.add(vertex(p.corner[i]));
-      polygon(t, c_.piece_dual(leaf, s, p), centre + 1 + s.pieces, -1, true, true);
+      polygon(t, c_.piece_dual(leaf, s, p), centre + 1 + s.pieces, -1, true, true, {});
     }
   }
 

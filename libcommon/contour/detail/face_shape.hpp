@@ -1,6 +1,7 @@
-// face_shape.hpp — whether a dual edge pierces its face, and how flat the face's elements are. Host and device.
+// face_shape.hpp — whether a dual edge pierces its face, how flat the face's elements are, and so whether it gets a
+// point. Host and device.
 #pragma once
-#include "contour/detail/complex_view.hpp"
+#include "contour/detail/crossing.hpp"
 #include "contour/detail/element_shape.hpp"
 #include <cmath>
 
@@ -53,6 +54,34 @@ HD inline double via_shape(const ComplexView& c, const Polygon& p, int32_t behin
         lesser(least, lesser(least_sine(a, b, c.position[behind], via), least_sine(a, b, via, c.position[front])));
   }
   return least;
+}
+
+/// A point within the polygon: the middle of the surface's trace on it, or the polygon's centre.
+HD inline Vec3d face_point(const ComplexView& c, const Polygon& p) {
+  Vec3d crossed, all;
+  int crossings = 0;
+  for (int i = 0; i < p.n; ++i) {
+    const int32_t a = p.vertex[i], b = p.vertex[(i + 1) % p.n];
+    all += c.position[a];
+    if (c.inside(a) == c.inside(b))
+      continue;
+    crossed += crossing(c, a, b);
+    ++crossings;
+  }
+  return crossings ? crossed / double(crossings) : all / double(p.n);
+}
+
+/// Whether a point goes between the dual vertices, and where: where they miss the face, and where elements are
+/// better for it. test: they could miss it; check: at a surface cell. Direct elements are positive, where checked
+/// by far.
+HD inline bool wants_point(const ComplexView& c, const Polygon& p, int32_t behind, int32_t front, bool test,
+                           bool check, Vec3d& point) {
+  const bool direct = pierced(c, p, behind, front, test ? least_volume : check ? least_moved_volume : -1);
+  const double shape = !direct ? -1 : test && check ? direct_shape(c, p, behind, front) : 1;
+  if (shape >= flat_sine)
+    return false;
+  point = face_point(c, p);
+  return !direct || via_shape(c, p, behind, point, front) > shape;
 }
 
 } // namespace molmesh::contour::detail
