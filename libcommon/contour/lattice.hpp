@@ -36,12 +36,9 @@ struct LatticeView {
   double spacing = 0;                     ///< of the grid, Å
   Vec3i grid_first, grid_last;            ///< lattice points; outside the lattice where a wall cuts the grid
 
-  HD float grid_value(Vec3i p) const {
-    const int64_t b = index.find(p);
-    return b == BlockIndexView::outside ? 0 : b == BlockIndexView::inside ? inside_value : grid[512 * b + slot(p)];
-  }
+  HD float grid_value(Vec3i p) const { return value_in(index.find(p), p); }
   HD float value(Vec3i p) const {
-    for (int a = 0; a < 3; ++a)
+    for (int a = 0; any_cut && a < 3; ++a)
       for (int side = 0; side < 2; ++side)
         if (cut[a][side].cuts && p[a] == (side ? cells[a] : 0)) {
           const double share = cut[a][side].share;
@@ -86,8 +83,11 @@ struct LatticeView {
           v[c] = first[(c & 1) << 6 | (c >> 1 & 1) << 3 | c >> 2];
         return;
       }
-    for (int c = 0; c < 8; ++c)
-      v[c] = value(p + Vec3i{c & 1, c >> 1 & 1, c >> 2});
+    BlockIndexView::Last last;
+    for (int c = 0; c < 8; ++c) {
+      const Vec3i step{c & 1, c >> 1 & 1, c >> 2};
+      v[c] = any_cut ? value(p + step) : value_in(index.find(q + step, last), q + step);
+    }
   }
   HD Vec3d position(Vec3i p) const { return {axis[0][p.x], axis[1][p.y], axis[2][p.z]}; }
   /// Between lattice points, each axis by itself; p within 0 … cells.
@@ -108,6 +108,9 @@ struct LatticeView {
   }
 
 private:
+  HD float value_in(int64_t b, Vec3i p) const {
+    return b == BlockIndexView::outside ? 0 : b == BlockIndexView::inside ? inside_value : grid[512 * b + slot(p)];
+  }
   /// On the wall of axis a, at one of its two planes; on further cut axes at the nearer plane.
   HD double cut_value(Vec3i p, int a, int32_t plane) const {
     Vec3i q = base + p;
