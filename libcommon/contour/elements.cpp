@@ -127,9 +127,14 @@ LargeArray<int64_t> sort_by_edge(LargeArray<Link>& links, int32_t vertices, int 
 template <bool check, class Leaf, class Stay>
 Joined make_all(const ComplexView& view, int64_t n, Leaf leaf, int threads, Stay stay) {
   Joined out;
-  if (!check) { // about what a uniform mesh has: memory is taken when it is written
+  // About what a uniform mesh has: memory is taken when it is written.
+  out.link.reserve(6 * at(view.surface_cells));
+  if (!check) {
+    const size_t triangles = 3 * at(view.surface_cells);
     out.elements.tet.reserve(at(12 * n) + 8 * at(view.surface_cells));
-    out.link.reserve(6 * at(view.surface_cells));
+    out.elements.tri.reserve(triangles);
+    out.elements.tri_sides.reserve(triangles);
+    out.elements.boundary.reserve(triangles);
   }
   run<check>(n, view.vertices(), out, threads, [&](int64_t begin, int64_t end, auto& to) {
     NearLeaves near(view.tree);

@@ -25,6 +25,7 @@ struct OctreeView {
   const uint8_t* level = nullptr; ///< [leaves] 0: fine cell
   int32_t leaves = 0;
   Vec3i cells;
+  uint64_t end[3] = {}; ///< Morton codes of the cells along each axis
   const Block* block = nullptr;
   const uint32_t* slot = nullptr; ///< [mask + 1] open addressing: blocks, and of_large + leaf for larger leaves
   uint64_t mask = 0;
@@ -37,9 +38,7 @@ struct OctreeView {
   HD Vec3i corner(int32_t leaf) const { return morton_point(key[leaf]); } ///< lower corner, lattice point
   HD int32_t extent(int32_t leaf) const { return 1 << level[leaf]; }      ///< fine cells along an edge
   /// Whether the fine cell of Morton code k, reached from the domain, lies before its end along the axis.
-  HD bool before_end(uint64_t k, int axis) const {
-    return (k & morton_axis(axis)) < morton_spread(static_cast<uint32_t>(cells[axis])) << axis;
-  }
+  HD bool before_end(uint64_t k, int axis) const { return (k & morton_axis(axis)) < end[axis]; }
   /// Moves k, the lower corner of a leaf as far as this axis goes, to the cell beyond the leaf's lower or upper
   /// side; false where there is none.
   HD bool beyond(uint64_t& k, int of_level, int axis, bool upper) const {

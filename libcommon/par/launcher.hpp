@@ -25,7 +25,12 @@ public:
   }
   template <class T>
   Array<T> filled(int64_t n, T value) {
-    return Array<T>(static_cast<size_t>(n), value);
+    constexpr int64_t grain = int64_t{1} << 16;
+    Array<T> out(static_cast<size_t>(n));
+    par::for_n((n + grain - 1) / grain, threads_for(n, grain), 1, [&](int64_t c) {
+      std::fill(out.begin() + c * grain, out.begin() + std::min(n, (c + 1) * grain), value);
+    });
+    return out;
   }
   template <class T>
   Array<T> upload(const T* from, int64_t n) {

@@ -23,12 +23,15 @@ struct IndexEntries {
   }
 };
 
-/// Slots for the tree's blocks and large leaves, in the launcher's memory; the tree gets to know them.
+/// Slots for the tree's blocks and large leaves, in the launcher's memory; the tree gets to know them,
+/// and its ends.
 template <class Launcher>
 auto index_leaves(Launcher& m, int64_t blocks, OctreeView& tree) {
   const int64_t n = blocks + tree.large_leaves;
   const auto capacity = static_cast<int64_t>(std::bit_ceil(static_cast<uint64_t>(n < 8 ? 16 : 2 * n)));
   auto slot = m.filled(capacity, OctreeView::free_slot);
+  for (int a = 0; a < 3; ++a)
+    tree.end[a] = morton_spread(static_cast<uint32_t>(tree.cells[a])) << a;
   tree.slot = slot.data();
   tree.mask = static_cast<uint64_t>(capacity) - 1;
   m.for_n("index leaves", n, IndexEntries{tree, blocks, slot.data()}, {double(n) * 12});
