@@ -14,6 +14,44 @@ HD inline float next_float(float x, bool up) {
 #endif
 }
 
+/// Where the samples of a leaf's fine surface are, Å; most leaves have few, and those are found once.
+class LeafSamples {
+public:
+  HD LeafSamples(const ComplexView& c, int32_t leaf) : c_(c), begin_(c.first_cell[leaf]), end_(c.end_cell(leaf)) {
+    for (int32_t k = 0; k < kept && k < size(); ++k) {
+      const Vec3d foot = c.lattice.between(sample(k).point);
+      x_[k] = foot.x, y_[k] = foot.y, z_[k] = foot.z;
+    }
+  }
+  HD int32_t size() const { return end_ - begin_; }
+  HD const SurfaceSample& sample(int32_t k) const { return c_.samples[begin_ + k]; }
+  HD Vec3d foot(int32_t k) const {
+    return k < kept ? Vec3d{x_[k], y_[k], z_[k]} : c_.lattice.between(sample(k).point);
+  }
+  /// x moved onto the tangent plane of the nearest: the mean of a curved sheet's crossings lies on its hollow side.
+  HD Vec3d onto_surface(Vec3d x) const {
+    Vec3d nearest;
+    int32_t which = -1;
+    double least = 1e300;
+    for (int32_t k = 0; k < size(); ++k) {
+      const Vec3d here = foot(k);
+      if (const double d = norm2(here - x); d < least) {
+        least = d;
+        nearest = here;
+        which = k;
+      }
+    }
+    const Vec3d normal = sample(which).normal;
+    return x + dot(nearest - x, normal) * normal;
+  }
+
+private:
+  static constexpr int32_t kept = 32;
+  const ComplexView& c_;
+  int32_t begin_, end_;
+  double x_[kept], y_[kept], z_[kept]; // no constructors: few are used
+};
+
 /// Of a leaf: its dual vertex, and those of its pieces, from where the grid points are now.
 struct PlaceDual {
   ComplexView c;
@@ -51,7 +89,8 @@ private:
   }
 
   HD Vec3d fine_dual(int32_t leaf) const {
-    const Vec3d x = mean_crossing(leaf), moved = onto_surface(leaf, x), low = lower(leaf), size = upper(leaf) - low;
+    const Vec3d x = mean_crossing(leaf), moved = LeafSamples(c, leaf).onto_surface(x), low = lower(leaf),
+                size = upper(leaf) - low;
     for (int a = 0; a < 3; ++a)
       if (!(std::fabs(moved[a] - low[a] - 0.5 * size[a]) < 0.45 * size[a]))
         return x;
@@ -66,9 +105,10 @@ private:
     const Vec3d low = lower(leaf), size = upper(leaf) - low;
     Vec3d x = mean_crossing(leaf);
     x += to_middle * (low + 0.5 * size - x);
-    const Vec3d further = beyond * bulge(leaf);
+    const LeafSamples samples(c, leaf);
+    const Vec3d further = beyond * bulge(samples);
     for (int round = 0; round < most_rounds; ++round) { // to where the surface is off the faces
-      x = onto_surface(leaf, x) + further;
+      x = samples.onto_surface(x) + further;
       for (int a = 0; a < 3; ++a)
         x[a] = low[a] + size[a] * off_faces(leaf, a, (x[a] - low[a]) / size[a]);
     }
@@ -90,35 +130,18 @@ private:
   }
 
   /// From the mean of the leaf's fine surface onto it.
-  HD Vec3d bulge(int32_t leaf) const {
+  HD Vec3d bulge(const LeafSamples& samples) const {
     Vec3d mean;
-    const int32_t begin = c.first_cell[leaf], end = c.end_cell(leaf);
-    for (int32_t k = begin; k < end; ++k)
-      mean += c.samples[k].point;
-    mean = c.lattice.between(mean / double(end - begin));
-    return onto_surface(leaf, mean) - mean;
+    for (int32_t k = 0; k < samples.size(); ++k)
+      mean += samples.sample(k).point;
+    mean = c.lattice.between(mean / double(samples.size()));
+    return samples.onto_surface(mean) - mean;
   }
 
   HD Vec3d lower(int32_t leaf) const { return c.lattice.position(c.tree.corner(leaf)); }
   HD Vec3d upper(int32_t leaf) const {
     const int32_t extent = c.tree.extent(leaf);
     return c.lattice.position(c.tree.corner(leaf) + Vec3i{extent, extent, extent});
-  }
-
-  /// x moved onto the tangent plane of the nearest fine surface in the leaf: the mean of a curved sheet's crossings
-  /// lies on its hollow side.
-  HD Vec3d onto_surface(int32_t leaf, Vec3d x) const {
-    Vec3d nearest, normal;
-    double least = 1e300;
-    for (int32_t k = c.first_cell[leaf], end = c.end_cell(leaf); k < end; ++k) {
-      const Vec3d foot = c.lattice.between(c.samples[k].point);
-      if (const double d = norm2(foot - x); d < least) {
-        least = d;
-        nearest = foot;
-        normal = c.samples[k].normal;
-      }
-    }
-    return x + dot(nearest - x, normal) * normal;
   }
 
   HD void place_split(int32_t leaf) const {
