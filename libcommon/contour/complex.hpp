@@ -26,8 +26,9 @@ struct ComplexArrays {
   /// [grid vertices] estimated distance to the surface, Å, positive inside, 0: unknown, or no surface cell's; and
   /// what it was before the point moved
   Array<float> distance, estimate;
-  Array<uint8_t> has_moved; ///< [grid vertices]
-  Array<int32_t> nearest;   ///< [grid vertices] nearest sample in the leaves around, -1: none
+  Array<uint8_t> has_moved;   ///< [grid vertices]
+  Array<uint8_t> least_level; ///< [grid vertices] of the leaves with the point as a corner
+  Array<int32_t> nearest;     ///< [grid vertices] nearest sample in the leaves around, -1: none
   /// [leaves] bit 2f, of a halved face 2f + 1 too: the leaf's own face f gets a point, as the check of faces found
   Array<uint16_t> face_points;
   ComplexView view; ///< points to them, and to the lattice, octree and surface that the caller keeps

@@ -159,6 +159,7 @@ public:
       v.estimate = take(this->estimate, points);
       v.has_moved = take(this->has_moved, points);
       v.nearest = take(this->nearest, points);
+      v.least_level = take(this->least_level, points);
       m.for_n("name corners", leaves, NameCorners{v, owned.data(), first.data()},
               {double(leaves) * 45 + double(points) * 44});
       m.for_n("share corners", leaves, ShareCorners{v, owned.data()}, {double(leaves) * 70});

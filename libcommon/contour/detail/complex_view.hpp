@@ -26,6 +26,7 @@ struct ComplexView {
   float *distance = nullptr, *estimate = nullptr;
   uint8_t* has_moved = nullptr;
   int32_t* nearest = nullptr;
+  uint8_t* least_level = nullptr;
   uint16_t* face_points = nullptr;
 
   HD int32_t vertices() const { return dual0 + tree.leaves + pieces; }

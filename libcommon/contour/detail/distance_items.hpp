@@ -73,6 +73,7 @@ struct KeepDistance {
     c.distance[v] = c.estimate[v] = 0;
     c.has_moved[v] = 0;
     c.nearest[v] = -1;
+    c.least_level[v] = static_cast<uint8_t>(level[v]);
     if (nearest[v] == LookFromLeaf::none)
       return;
     c.nearest[v] = static_cast<int32_t>(nearest[v] & 0xFFFFFFFF);

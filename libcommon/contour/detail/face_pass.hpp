@@ -39,7 +39,8 @@ private:
   /// The vertex in the middle of the leaf's edge from corner a to b, or -1 when no cell round the edge is smaller.
   HD int32_t middle_vertex(int32_t leaf, int a, int b) const {
     const int level = c_.tree.level[leaf];
-    if (level == 0)
+    // Smaller cells at an edge are there at its ends too.
+    if (c_.least_level[c_.corner_vertex(leaf, a)] >= level || c_.least_level[c_.corner_vertex(leaf, b)] >= level)
       return -1;
     const int axis = (a ^ b) == 1 ? 0 : (a ^ b) == 2 ? 1 : 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
     const bool upper_u = a >> u & 1, upper_v = a >> v & 1;
@@ -90,7 +91,7 @@ private:
           p.add(middle);
       }
       polygon(p, cell_dual(leaf, f, -1), other < 0 ? no_vertex : cell_dual(other, f ^ 1, -1), f,
-              needs_test(leaf, other), mine == Side::crossed || its == Side::crossed, {leaf, 2 * f});
+              {needs_test(leaf, other), mine == Side::crossed || its == Side::crossed, both_crossed, leaf, 2 * f});
       return;
     }
     const int s = diagonal == Diagonal::even ? 0 : 1;
@@ -100,7 +101,7 @@ private:
       for (int i = 0; i < 3; ++i)
         p.add(vertex(k[i]));
       polygon(p, cell_dual(leaf, f, k[1]), other < 0 ? no_vertex : cell_dual(other, f ^ 1, k[1] ^ 1 << f / 2), f,
-              true, true, {leaf, 2 * f + half});
+              {true, true, true, leaf, 2 * f + half});
     }
   }
 
@@ -119,15 +120,18 @@ private:
     return c_.is_split(leaf) ? c_.piece_dual(leaf, SplitCell(c_.topology(leaf)), f, off) : c_.dual(leaf);
   }
 
-  /// Of a polygon that is a leaf's own face or half of one; bit of ComplexView::face_points, -1: of none.
-  struct Owner {
-    int32_t leaf = -1;
-    int bit = -1;
+  /// What is known of the cells on a polygon's sides.
+  struct Cells {
+    bool test = true; ///< the segment between the dual vertices could miss the polygon
+    /// One is a surface cell: looked at on both sides of the surface, all regions are parts of one mesh.
+    bool check = true;
+    bool both_crossed = true; ///< only then edges may change sides; at a wall: the one is
+    int32_t leaf = -1;        ///< whose own face, or half of one, it is; -1: within a cell
+    int bit = 0;              ///< of ComplexView::face_points
   };
 
-  /// behind, front: dual vertices of the two cells; front no_vertex at wall f. check: at a surface cell; looked at
-  /// on both sides of the surface: all regions are parts of one mesh.
-  HD_CALL void polygon(const Polygon& p, int32_t behind, int32_t front, int f, bool test, bool check, Owner owner) {
+  /// behind, front: dual vertices of the two cells; front no_vertex at wall f.
+  HD_CALL void polygon(const Polygon& p, int32_t behind, int32_t front, int f, Cells cells) {
     const bool wall = front == no_vertex;
     int32_t via = no_vertex;
     Vec3d via_position, front_position;
@@ -137,14 +141,17 @@ private:
       front = out_.add_point(front_position, box_x0 + f);
     } else {
       front_position = c_.position[front];
-      if (gets_point(p, behind, front, test, check, owner, via_position))
+      if (gets_point(p, behind, front, cells, via_position))
         via = out_.add_point(via_position, 0);
     }
+    uint32_t inside = 0;
+    for (int i = 0; cells.both_crossed && i < p.n; ++i)
+      inside |= uint32_t{c_.inside(p.vertex[i])} << i;
     bool positive = true;
     for (int i = 0; i < p.n; ++i) {
-      const int32_t a = p.vertex[i], b = p.vertex[(i + 1) % p.n];
-      const bool in_a = c_.inside(a), in_b = c_.inside(b);
-      if (Out::checks && check && (wall || via != no_vertex)) { // others are positive by least_moved_volume
+      const int32_t a = p.vertex[i], b = p.vertex[p.next(i)];
+      const bool in_a = inside >> i & 1, in_b = inside >> p.next(i) & 1;
+      if (Out::checks && cells.check && (wall || via != no_vertex)) { // others are positive by least_moved_volume
         const Vec3d xa = c_.position[a], xb = c_.position[b], xc = c_.position[behind];
         positive = positive && (via == no_vertex ? orient3d(xa, xb, xc, front_position) > 0
                                                  : orient3d(xa, xb, xc, via_position) > 0 &&
@@ -176,18 +183,17 @@ private:
   }
 
   /// Whether a point goes between the dual vertices, and where. What the check found is known of leaves' faces.
-  HD bool gets_point(const Polygon& p, int32_t behind, int32_t front, bool test, bool check, Owner owner,
-                     Vec3d& point) const {
-    if (!Out::checks && owner.leaf >= 0) {
-      if (!(c_.face_points[owner.leaf] >> owner.bit & 1))
+  HD bool gets_point(const Polygon& p, int32_t behind, int32_t front, const Cells& cells, Vec3d& point) const {
+    if (!Out::checks && cells.leaf >= 0) {
+      if (!(c_.face_points[cells.leaf] >> cells.bit & 1))
         return false;
       point = face_point(c_, p);
       return true;
     }
-    if (!wants_point(c_, p, behind, front, test, check, point))
+    if (!wants_point(c_, p, behind, front, cells.test, cells.check, point))
       return false;
-    if (Out::checks && owner.leaf >= 0)
-      c_.face_points[owner.leaf] = static_cast<uint16_t>(c_.face_points[owner.leaf] | 1 << owner.bit);
+    if (Out::checks && cells.leaf >= 0)
+      c_.face_points[cells.leaf] = static_cast<uint16_t>(c_.face_points[cells.leaf] | 1 << cells.bit);
     return true;
   }
 
@@ -211,7 +217,7 @@ private:
             t.add(vertex(a));
             t.add(vertex(b));
             t.add(centre);
-            polygon(t, c_.piece_dual(leaf, s, q), c_.piece_dual(leaf, s, p), -1, true, true, {});
+            polygon(t, c_.piece_dual(leaf, s, q), c_.piece_dual(leaf, s, p), -1, {});
           }
         }
       }
@@ -220,7 +226,7 @@ private:
       Polygon t; // the cut below the chopped corner
       for (int i = 0; i < 3; ++i)
         t.add(vertex(p.corner[i]));
-      polygon(t, c_.piece_dual(leaf, s, p), centre + 1 + s.pieces, -1, true, true, {});
+      polygon(t, c_.piece_dual(leaf, s, p), centre + 1 + s.pieces, -1, {});
     }
   }
 

@@ -12,6 +12,7 @@ struct Polygon {
   int n = 0;
   int32_t vertex[8];
   HD void add(int32_t v) { vertex[n++] = v; }
+  HD int next(int i) const { return i + 1 < n ? i + 1 : 0; }
 };
 
 /// Volumes below this share of the cube of the face's shortest edge get a face point instead.
@@ -30,10 +31,10 @@ HD inline bool pierced(const ComplexView& c, const Polygon& p, int32_t behind, i
   const Vec3d d = c.position[behind], e = c.position[front];
   double size2 = 1e300;
   for (int i = 0; i < p.n; ++i)
-    size2 = lesser(size2, norm2(c.position[p.vertex[i]] - c.position[p.vertex[(i + 1) % p.n]]));
+    size2 = lesser(size2, norm2(c.position[p.vertex[i]] - c.position[p.vertex[p.next(i)]]));
   const double least = 6 * least_share * size2 * std::sqrt(size2);
   for (int i = 0; i < p.n; ++i)
-    if (six_volume(c.position[p.vertex[i]], c.position[p.vertex[(i + 1) % p.n]], d, e) < least)
+    if (six_volume(c.position[p.vertex[i]], c.position[p.vertex[p.next(i)]], d, e) < least)
       return false;
   return true;
 }
@@ -42,14 +43,14 @@ HD inline bool pierced(const ComplexView& c, const Polygon& p, int32_t behind, i
 HD inline double direct_shape(const ComplexView& c, const Polygon& p, int32_t behind, int32_t front) {
   double least = 1;
   for (int i = 0; i < p.n; ++i)
-    least = lesser(least, least_sine(c.position[p.vertex[i]], c.position[p.vertex[(i + 1) % p.n]],
-                                     c.position[behind], c.position[front]));
+    least = lesser(least, least_sine(c.position[p.vertex[i]], c.position[p.vertex[p.next(i)]], c.position[behind],
+                                     c.position[front]));
   return least;
 }
 HD inline double via_shape(const ComplexView& c, const Polygon& p, int32_t behind, Vec3d via, int32_t front) {
   double least = 1;
   for (int i = 0; i < p.n; ++i) {
-    const Vec3d a = c.position[p.vertex[i]], b = c.position[p.vertex[(i + 1) % p.n]];
+    const Vec3d a = c.position[p.vertex[i]], b = c.position[p.vertex[p.next(i)]];
     least =
         lesser(least, lesser(least_sine(a, b, c.position[behind], via), least_sine(a, b, via, c.position[front])));
   }
@@ -61,7 +62,7 @@ HD inline Vec3d face_point(const ComplexView& c, const Polygon& p) {
   Vec3d crossed, all;
   int crossings = 0;
   for (int i = 0; i < p.n; ++i) {
-    const int32_t a = p.vertex[i], b = p.vertex[(i + 1) % p.n];
+    const int32_t a = p.vertex[i], b = p.vertex[p.next(i)];
     all += c.position[a];
     if (c.inside(a) == c.inside(b))
       continue;
