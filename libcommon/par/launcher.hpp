@@ -1,6 +1,7 @@
 // launcher.hpp — passes over arrays on the host's threads, for algorithms that host and device share.
 #pragma once
 #include "density/large_array.hpp"
+#include "par/pages.hpp"
 #include "par/par.hpp"
 #include "par/work.hpp"
 #include <cstdint>
@@ -18,15 +19,20 @@ public:
   template <class T>
   using Array = LargeArray<T>;
 
-  /// Uninitialized.
+  /// Uninitialized, but soon written: memory is asked for on all threads where it is much.
   template <class T>
   Array<T> array(int64_t n) {
-    return Array<T>(static_cast<size_t>(n));
+    constexpr int64_t much = int64_t{1} << 18; // bytes
+    Array<T> out;
+    if (n * static_cast<int64_t>(sizeof(T)) >= much)
+      reserve_pages(out, static_cast<size_t>(n), 0, threads_);
+    out.resize(static_cast<size_t>(n));
+    return out;
   }
   template <class T>
   Array<T> filled(int64_t n, T value) {
     constexpr int64_t grain = int64_t{1} << 16;
-    Array<T> out(static_cast<size_t>(n));
+    Array<T> out = array<T>(n);
     par::for_n((n + grain - 1) / grain, threads_for(n, grain), 1, [&](int64_t c) {
       std::fill(out.begin() + c * grain, out.begin() + std::min(n, (c + 1) * grain), value);
     });
@@ -92,7 +98,7 @@ public:
         part[static_cast<size_t>(c)].assign(found.begin(), found.begin() + count);
         start_of(c) = count;
       });
-      Array<T> out(static_cast<size_t>(exclusive_scan(start)));
+      Array<T> out = array<T>(exclusive_scan(start));
       par::for_n(chunks, threads, 1, [&](int64_t c) {
         std::copy(part[static_cast<size_t>(c)].begin(), part[static_cast<size_t>(c)].end(),
                   out.begin() + start_of(c));
@@ -110,7 +116,7 @@ public:
         });
         start_of(c) = count;
       });
-      Array<T> out(static_cast<size_t>(exclusive_scan(start)));
+      Array<T> out = array<T>(exclusive_scan(start));
       par::for_n(chunks, threads, 1, [&](int64_t c) {
         T* to = out.data() + start_of(c);
         each(c, [&](int64_t i) {
