@@ -1,4 +1,6 @@
 // kernels.cpp — what libcommon vectorizes with Highway, one element after the other: for a build by nvcc alone.
+#include "contour/samples_kernel.hpp"
+#include "contour/surface_sample.hpp"
 #include "improve/quality.hpp"
 #include "improve/quality_kernel.hpp"
 #include "improve/spokes_kernel.hpp"
@@ -52,3 +54,20 @@ void qualities(const EightElements& e, float (&quality)[8], double shape) {
 }
 
 } // namespace molmesh::improve
+
+namespace molmesh::contour {
+
+void make_samples(const SurfaceCell (&cell)[8], double isovalue, EightSamples& samples) {
+  for (int n = 0; n < 8; ++n) {
+    double v[8], point[3], gradient[3];
+    for (int c = 0; c < 8; ++c)
+      v[c] = cell[n].value[c];
+    sample_cells<double, uint64_t>(v, isovalue, point, gradient);
+    for (int a = 0; a < 3; ++a) {
+      samples.point[a][n] = point[a];
+      samples.gradient[a][n] = gradient[a];
+    }
+  }
+}
+
+} // namespace molmesh::contour

@@ -39,6 +39,31 @@ TEST_CASE("leaves differ by one level across faces, by two across edges, and the
   checked(mesh_of(grid, options));
 }
 
+TEST_CASE("every cell is found in its leaf, however large, and so it is where others were looked up before") {
+  const BlockGrid grid = crease();
+  const Leaves leaves(grid, 0.3);
+  const OctreeView& tree = leaves.tree.view();
+  NearLeaves near(tree);
+  int large = 0;
+  for (int32_t leaf = 0; leaf < tree.leaves; ++leaf) {
+    const Vec3i corner = tree.corner(leaf);
+    const int32_t extent = tree.extent(leaf);
+    large += extent >= 16;
+    for (const int32_t step : {0, extent / 2, extent - 1}) {
+      const Vec3i p = corner + Vec3i{step, extent - 1 - step, step};
+      CHECK(tree.find(p) == leaf);
+      CHECK(near.find(p) == leaf);
+    }
+    CHECK(near.starting_at(tree.key[leaf]) == leaf);
+    for (int f = 0; f < 6; ++f) {
+      Vec3i beside = corner;
+      beside[f / 2] += f % 2 ? extent : -1;
+      CHECK(near.neighbour(leaf, f) == tree.find(beside));
+    }
+  }
+  CHECK(large > 0);
+}
+
 TEST_CASE("merged cells' dual vertices keep off faces with smaller cells behind") {
   const BlockGrid grid = crease();
   const Leaves leaves(grid, 0.3);
