@@ -65,13 +65,17 @@ int64_t memory_at_hand(const std::string& proc, const std::string& groups) {
   return least == unknown ? -1 : least;
 }
 
-void limit_memory() {
-  const int64_t bytes = memory_at_hand();
+void limit_memory(int threads) {
+  int64_t bytes = memory_at_hand();
+  if (bytes < 0)
+    return;
+  rlimit stack{}, limit{};
+  if (getrlimit(RLIMIT_STACK, &stack) == 0)
+    bytes += threads * static_cast<int64_t>(std::min(stack.rlim_cur, rlim_t{1} << 30));
   std::ifstream in("/proc/self/statm");
-  int64_t total = 0, resident = 0, shared = 0, text = 0, library = 0, data = 0;
-  rlimit limit{};
-  if (bytes < 0 || !(in >> total >> resident >> shared >> text >> library >> data) ||
-      data * sysconf(_SC_PAGESIZE) >= bytes || getrlimit(RLIMIT_DATA, &limit) != 0)
+  int64_t total = 0, resident = 0, shared = 0, text = 0, library = 0, data = 0; // in pages
+  if (!(in >> total >> resident >> shared >> text >> library >> data) || data * sysconf(_SC_PAGESIZE) >= bytes ||
+      getrlimit(RLIMIT_DATA, &limit) != 0)
     return;
   limit.rlim_cur = std::min(limit.rlim_cur, static_cast<rlim_t>(bytes));
   setrlimit(RLIMIT_DATA, &limit);

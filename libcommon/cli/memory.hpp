@@ -10,8 +10,8 @@ namespace molmesh::cli {
 int64_t memory_at_hand(const std::string& proc = "/proc", const std::string& groups = "/sys/fs/cgroup");
 
 /// From here on asking for more is std::bad_alloc, a line and a status, where the system would grant it and kill
-/// the process as it is used. Nothing happens where memory is not known or where that much is mapped already, as by
-/// a sanitizer.
-void limit_memory();
+/// the process as it is used. The stacks of that many threads, of which little is used, come on top. Nothing
+/// happens where memory is not known or where that much is mapped already, as by a sanitizer.
+void limit_memory(int threads);
 
 } // namespace molmesh::cli

@@ -90,9 +90,9 @@ int run_main(const char* tool, const char* purpose, int argc, char** argv, Descr
     describe(app, options);
     if (const int status = detail::parse(app, argc, argv); status >= 0)
       return status;
-    options.resolved_threads(); // a mode that is not here stops before any file is touched
-    if (!options.on_device())   // whose driver sets aside addresses beyond any memory
-      limit_memory();
+    const int threads = options.resolved_threads(); // a mode that is not here stops before any file is touched
+    if (!options.on_device())                       // whose driver sets aside addresses beyond any memory
+      limit_memory(threads);
     const std::unique_ptr<OutputFile> report = detail::open_report(app, options);
     Run run;
     run.tool = tool;

@@ -51,7 +51,7 @@ TEST_CASE("more memory than there is is refused before it is used") {
   REQUIRE(bytes > 0);
   constexpr int refused = 0, granted = 1, no_limit = 2;
   const Outcome o = in_child([&] {
-    cli::limit_memory();
+    cli::limit_memory(2);
     rlimit limit{};
     getrlimit(RLIMIT_DATA, &limit);
     if (limit.rlim_cur == RLIM_INFINITY)
