@@ -51,8 +51,8 @@ constexpr double straighten_share = 0.1;
 const Guard straight{40, 0.24, 0.5, 0};
 
 // Points off the isosurface come back where that can be mended; every repetition has other parts, and none of them
-// where none is left.
-constexpr int recoveries = 8;
+// where none is left. Efforts begin anew after each that brings one back, and a large mesh has many of these.
+constexpr int recoveries = 32;
 
 } // namespace
 
