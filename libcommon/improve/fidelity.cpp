@@ -74,19 +74,27 @@ int64_t sense_at(const DynamicMesh& m, const Isosurface& surface, const Element&
   return (dot(tri_normal(a, b, c), normal) > 0) != m.labels[e.label[face]].reversed ? 1 : -1;
 }
 
-Fidelity measure_triangles(const DynamicMesh& m, const Isosurface& surface, int threads) {
-  return sum_of_chunks<Fidelity>(
+/// Over the triangles of the surface: each(element, face, sum).
+template <class T, class Each, class AddTo>
+T sum_of_triangles(const DynamicMesh& m, int threads, Each each, AddTo add_to) {
+  return sum_of_chunks<T>(
       m, threads,
-      [&](int64_t s, Fidelity& sum) {
+      [&](int64_t s, T& sum) {
         if (!m.labelled[size_t(s)])
           return;
         m.for_stretch(s, [&](int64_t t) {
           if (const Element& e = m.element[size_t(t)]; e.alive())
             for (size_t f = 0; f < 4; ++f)
               if (m.counts_here(e, f) && m.labels[e.label[f]].curved())
-                add_triangle(m, surface, e, f, sum);
+                each(e, f, sum);
         });
       },
+      add_to);
+}
+
+Fidelity measure_triangles(const DynamicMesh& m, const Isosurface& surface, int threads) {
+  return sum_of_triangles<Fidelity>(
+      m, threads, [&](const Element& e, size_t face, Fidelity& sum) { add_triangle(m, surface, e, face, sum); },
       add);
 }
 
@@ -122,18 +130,8 @@ Regions find_regions(const DynamicMesh& m, int threads) {
 } // namespace
 
 bool runs_against(const DynamicMesh& m, const Isosurface& surface, int threads) {
-  return sum_of_chunks<int64_t>(
-             m, threads,
-             [&](int64_t s, int64_t& sum) {
-               if (!m.labelled[size_t(s)])
-                 return;
-               m.for_stretch(s, [&](int64_t t) {
-                 const Element& e = m.element[size_t(t)];
-                 for (size_t f = 0; f < 4 && e.alive(); ++f)
-                   if (m.counts_here(e, f) && m.labels[e.label[f]].curved())
-                     sum += sense_at(m, surface, e, f);
-               });
-             },
+  return sum_of_triangles<int64_t>(
+             m, threads, [&](const Element& e, size_t face, int64_t& sum) { sum += sense_at(m, surface, e, face); },
              [](int64_t a, int64_t b) { return a + b; }) < 0;
 }
 
