@@ -125,6 +125,33 @@ std::string one_line(const std::string& text) {
   return line;
 }
 
+/// No output is a file that is read, and the report is neither.
+void require_distinct_files(const CLI::App& app, const Common& o) {
+  std::vector<std::string> inputs;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_name();
+    if (name != "--output" && name != "--report" && name != "input" &&
+        (option->get_positional() || option->get_type_name() == "FILE"))
+      inputs.insert(inputs.end(), option->results().begin(), option->results().end());
+  }
+  if (o.keep_input)
+    inputs.push_back(o.input);
+  for (const std::string& output : o.outputs())
+    for (const std::string& input : inputs)
+      if (same_file(output, input))
+        fail(Status::usage, "-o: found " + output + ", which is an input, expected another file");
+  if (o.report.empty())
+    return;
+  inputs.push_back(o.input);
+  for (const std::string& input : inputs)
+    if (same_file(o.report, input))
+      fail(Status::usage, "--report: found " + o.report + ", expected another file than the input");
+  for (const std::string& output : o.outputs())
+    if (o.report == output || same_file(o.report, output) ||
+        (standard_stream(o.report) == STDOUT_FILENO && standard_stream(output) == STDOUT_FILENO))
+      fail(Status::usage, "--report: found " + o.report + ", expected another file than the output");
+}
+
 } // namespace
 
 void describe_common(CLI::App& app, Common& o) {
@@ -172,30 +199,8 @@ int parse(CLI::App& app, int argc, char** argv) {
 }
 
 std::unique_ptr<OutputFile> open_report(const CLI::App& app, const Common& o) {
-  std::vector<std::string> inputs;
-  for (const CLI::Option* option : app.get_options()) {
-    const std::string name = option->get_name();
-    if (name != "--output" && name != "--report" && name != "input" &&
-        (option->get_positional() || option->get_type_name() == "FILE"))
-      inputs.insert(inputs.end(), option->results().begin(), option->results().end());
-  }
-  if (o.keep_input)
-    inputs.push_back(o.input);
-  for (const std::string& output : o.outputs())
-    for (const std::string& input : inputs)
-      if (same_file(output, input))
-        fail(Status::usage, "-o: found " + output + ", which is an input, expected another file");
-  if (o.report.empty())
-    return nullptr;
-  inputs.push_back(o.input);
-  for (const std::string& input : inputs)
-    if (same_file(o.report, input))
-      fail(Status::usage, "--report: found " + o.report + ", expected another file than the input");
-  for (const std::string& output : o.outputs())
-    if (o.report == output || same_file(o.report, output) ||
-        (standard_stream(o.report) == STDOUT_FILENO && standard_stream(output) == STDOUT_FILENO))
-      fail(Status::usage, "--report: found " + o.report + ", expected another file than the output");
-  return std::make_unique<OutputFile>(o.report);
+  require_distinct_files(app, o);
+  return o.report.empty() ? nullptr : std::make_unique<OutputFile>(o.report);
 }
 
 int finish(const CLI::App& app, const Common& o, Run& run, OutputFile* report, Status status) {
