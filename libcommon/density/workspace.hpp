@@ -8,6 +8,7 @@
 #include "density/selection.hpp"
 #include <memory>
 #include <mutex>
+#include <type_traits>
 #include <vector>
 
 namespace molmesh::density {
@@ -43,6 +44,8 @@ public:
     if (!sides_.empty())
       return last_of(sides_);
     constexpr size_t size = sizeof(NodePoints) / sizeof(float);
+    static_assert(alignof(NodePoints) <= 16 && sizeof(NodePoints) % 16 == 0 && size <= size_t{1} << 15 &&
+                  std::is_trivially_destructible_v<NodePoints>); // as the arena has them
     NodePoints* const sides = new (points_.take(size)) NodePoints;
     points_.keep(size);
     return sides;
