@@ -120,6 +120,19 @@ bool Editor::crowded(const std::array<int32_t, 3>& t) const {
   return m_.vertex[size_t(t[0])].crowded || m_.vertex[size_t(t[1])].crowded || m_.vertex[size_t(t[2])].crowded;
 }
 
+// Whether t and three triangles of beyond_, one across each of its edges, close a hole that is inside out.
+bool Editor::turns_over(const std::array<int32_t, 3>& t) const {
+  const auto across = [&](int k, int32_t apex) {
+    return std::any_of(beyond_.begin(), beyond_.end(),
+                       [&](const Beyond& b) { return b.edge == k && b.apex == apex; });
+  };
+  const auto p = [&](int32_t v) { return m_.point[size_t(v)]; };
+  return std::any_of(beyond_.begin(), beyond_.end(), [&](const Beyond& b) {
+    return b.edge == 0 && across(1, b.apex) && across(2, b.apex) &&
+           !(orient3d(p(t[0]), p(t[1]), p(t[2]), p(b.apex)) > 0);
+  });
+}
+
 // True when a triangle of rim_ crosses another one or another of rim_, or leaves this part's cell. Triangles of
 // other parts change meanwhile, each in its own cell, so none of those is met; triangles of no part stay as they
 // are.
@@ -131,7 +144,7 @@ bool Editor::rim_crosses(bool stamped_go) {
         return true;
     const SheetTriangle now = sheet_triangle(m_.point, t, -1);
     // Triangles of a hole with four of them share edges, all with all: turned inside out none crosses another.
-    std::array<int32_t, 3> apex{-1, -1, -1}; // of the triangle across the edge opposite t[k]
+    beyond_.clear();
     const auto meet = [&](const std::array<int32_t, 3>& o) {
       const auto third = [](const auto& a, const auto& b) { // of a, when the two others are b's
         int k = -1, more = 0;
@@ -141,7 +154,7 @@ bool Editor::rim_crosses(bool stamped_go) {
         return more == 1 ? k : -1;
       };
       if (const int k = third(t, o); k >= 0)
-        apex[size_t(k)] = o[size_t(third(o, t))];
+        beyond_.push_back({k, o[size_t(third(o, t))]});
     };
     for (const auto& o : rim_)
       meet(o);
@@ -149,8 +162,6 @@ bool Editor::rim_crosses(bool stamped_go) {
       if (!now.of_one_sheet(sheet_triangle(m_.point, rim_[j], -1), true) && triangles_cross(m_.point, t, rim_[j]))
         return true;
     const auto crosses = [&](const SheetTriangle& other) {
-      if (!now.box_meets(other, 0))
-        return false;
       const auto owner = [&](size_t k) { return parts_.owner[size_t(other.v[k])]; };
       if (owner(0) >= 0 && owner(0) != room_.part && owner(0) == owner(1) && owner(0) == owner(2))
         return false;
@@ -168,9 +179,7 @@ bool Editor::rim_crosses(bool stamped_go) {
           return !changed_sheets_.knows(other.face) && crosses(other);
         }))
       return true;
-    const auto p = [&](int32_t v) { return m_.point[size_t(v)]; };
-    if (apex[0] >= 0 && apex[0] == apex[1] && apex[0] == apex[2] &&
-        !(orient3d(p(t[0]), p(t[1]), p(t[2]), p(apex[0])) > 0))
+    if (turns_over(t))
       return true;
   }
   return false;

@@ -21,7 +21,7 @@ Counts& Counts::operator+=(const Counts& o) {
 
 Editor::Editor(DynamicMesh& mesh, const Target* target, const Sheets* sheets, const Parts& parts,
                std::vector<uint32_t>& stamp, PartRoom& room, Guard guard, uint32_t clock)
-    : m_(mesh), target_(target), sheets_(sheets), changed_sheets_(target ? target->spacing() : 1), parts_(parts),
+    : m_(mesh), target_(target), sheets_(sheets), changed_sheets_(sheets ? sheets->cell() : 1), parts_(parts),
       stamp_(stamp), room_(room), guard_(guard), most_tilt_(guard.tilt()), clock_(clock), table_(512) {}
 
 bool Editor::owned(int32_t e) const {

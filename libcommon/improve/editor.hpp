@@ -13,32 +13,16 @@
 #include "improve/piece.hpp"
 #include "improve/search.hpp"
 #include "improve/sheets.hpp"
+#include "improve/snapshot.hpp"
 #include "improve/spokes.hpp"
 #include "improve/target.hpp"
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace molmesh::improve {
-
-/// Operations done.
-struct Counts {
-  int64_t moves = 0, edge_removals = 0, surface_flips = 0, face_swaps = 0, contractions = 0, splits = 0,
-          hand_overs = 0, nestings = 0;
-  Counts& operator+=(const Counts& o);
-  int64_t total() const {
-    return moves + edge_removals + surface_flips + face_swaps + contractions + splits + hand_overs + nestings;
-  }
-};
-
-/// What one part may touch. Reserved slots are those of dead elements and vertices.
-struct PartRoom {
-  int32_t part = 0;
-  std::vector<int32_t> element, vertex;
-};
 
 /// New element of a cavity.
 struct Candidate {
@@ -46,26 +30,6 @@ struct Candidate {
   int32_t region;
   float q;
   std::array<uint8_t, 4> outside{}; ///< labels of faces that may come to lie on the outside, where they differ
-};
-
-/// What restore() needs.
-struct Snapshot {
-  struct Corner {
-    int32_t id;
-    Vec3d point;
-    Vertex vertex;
-    int32_t incident, touched;
-  };
-  struct Side {
-    int32_t element, n;
-    uint8_t face, label;
-  };
-  std::vector<std::pair<int32_t, Element>> element;
-  std::vector<Corner> corner;
-  std::vector<Side> side; ///< faces of other parts' elements towards these
-  PartRoom room;
-  Sheets sheets{1};
-  Counts counts;
 };
 
 /// How badly triangles fit the target.
@@ -170,6 +134,7 @@ private:
   /// Of a surface vertex that goes from one place to another.
   bool inside_walls(Vec3d from, Vec3d to) const { return m_.walls.allow(from, to, apart_from_walls * spacing()); }
   bool rim_crosses(bool stamped_go);
+  bool turns_over(const std::array<int32_t, 3>& t) const;
   void move_rim();
   bool has_room(size_t old, size_t now) const { return now <= old + room_.element.size(); }
   double misfit(Vec3d a, Vec3d b, Vec3d c) const;
@@ -250,6 +215,12 @@ private:
   FaceEntry& entry(const std::array<int32_t, 3>& v);
   std::vector<std::array<int32_t, 3>> rim_;
   std::vector<int64_t> rim_face_;
+  /// A triangle across the edge opposite a triangle's vertex.
+  struct Beyond {
+    int edge;
+    int32_t apex;
+  };
+  std::vector<Beyond> beyond_;
   std::vector<int32_t> star_, star2_, old_, made_;
   std::vector<Candidate> now_;
   Ring ring_;

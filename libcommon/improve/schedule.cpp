@@ -7,7 +7,7 @@
 namespace molmesh::improve {
 
 Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads)
-    : m_(mesh), target_(target), cell_(cell), threads_(threads), sheets_(target ? target->spacing() : 1) {
+    : m_(mesh), target_(target), cell_(cell), threads_(threads), sheets_(1) {
   const auto with_room = [&](auto& v, size_t n) { par::reserve_pages(v, n, n / 8, threads_); };
   with_room(stamp_, m_.element.size());
   with_room(parts_.owner, m_.point.size());
@@ -23,35 +23,57 @@ int64_t Schedule::parts_at_surface(double cell) {
   return std::count(met.begin(), met.end(), uint8_t{1});
 }
 
+namespace {
+
+// Thrice the median of the boxes: a few triangles' edges.
+double cell_for(const std::vector<SheetTriangle>& triangles) {
+  if (triangles.empty())
+    return 1;
+  std::vector<float> size;
+  for (const SheetTriangle& t : triangles) {
+    const Vec3f d = t.high - t.low;
+    size.push_back(std::max({d.x, d.y, d.z}));
+  }
+  const auto median = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
+  std::nth_element(size.begin(), median, size.end());
+  return 3. * double(*median);
+}
+
+} // namespace
+
 void Schedule::find_crowded(bool everywhere) {
   if (!target_ || watching_)
     return;
   watching_ = everywhere;
-  Sheets all(2 * target_->spacing());
+  std::vector<SheetTriangle> triangle;
   m_.for_labelled([&](int64_t e) {
     const Element& el = m_.element[size_t(e)];
     for (size_t f = 0; f < 4; ++f)
       if (el.alive() && el.n[f] < 0 && m_.labels[el.label[f]].curved())
-        all.insert(sheet_triangle(m_.point, outward_triangle(el.v, f), 4 * e + int64_t(f)));
+        triangle.push_back(sheet_triangle(m_.point, outward_triangle(el.v, f), 4 * e + int64_t(f)));
   });
-  sheets_ = Sheets(target_->spacing());
-  const std::vector<SheetTriangle>& triangle = all.triangles();
-  std::vector<uint8_t> crowded(triangle.size());
-  par::for_n(static_cast<int64_t>(triangle.size()), threads_, [&](int64_t t) {
-    SheetTriangle wide = triangle[size_t(t)];
-    const auto apart = static_cast<float>(target_->spacing());
-    wide.low = wide.low - Vec3f{apart, apart, apart};
-    wide.high = wide.high + Vec3f{apart, apart, apart};
-    crowded[size_t(t)] = everywhere || all.any(wide, [&](const SheetTriangle& other) {
-      return dot(wide.normal, other.normal) < 0.3f && wide.box_meets(other, 0);
+  const double cell = cell_for(triangle);
+  std::vector<uint8_t> crowded(triangle.size(), everywhere);
+  if (!everywhere) {
+    Sheets all(cell);
+    for (const SheetTriangle& t : triangle)
+      all.insert(t);
+    par::for_n(static_cast<int64_t>(triangle.size()), threads_, [&](int64_t t) {
+      SheetTriangle wide = triangle[size_t(t)];
+      const auto apart = static_cast<float>(target_->spacing());
+      wide.low = wide.low - Vec3f{apart, apart, apart};
+      wide.high = wide.high + Vec3f{apart, apart, apart};
+      crowded[size_t(t)] =
+          all.any(wide, [&](const SheetTriangle& other) { return dot(wide.normal, other.normal) < 0.3f; });
     });
-  });
+  }
   for (Vertex& v : m_.vertex)
     v.crowded = false;
   for (size_t t = 0; t < triangle.size(); ++t)
     if (crowded[t])
       for (const int32_t v : triangle[t].v)
         m_.vertex[size_t(v)].crowded = true;
+  sheets_ = Sheets(cell);
   for (const SheetTriangle& t : triangle)
     if (m_.vertex[size_t(t.v[0])].crowded || m_.vertex[size_t(t.v[1])].crowded || m_.vertex[size_t(t.v[2])].crowded)
       sheets_.insert(t);
@@ -214,8 +236,6 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     free_element_.insert(free_element_.end(), job.room.element.begin(), job.room.element.end());
     free_vertex_.insert(free_vertex_.end(), job.room.vertex.begin(), job.room.vertex.end());
   }
-  if (sheets_.records() > 2 * sheets_.alive())
-    sheets_.compact();
   return sum;
 }
 

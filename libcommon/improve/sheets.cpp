@@ -1,17 +1,11 @@
-// sheets.cpp — chains of triangles by cell, and where each face's triangle is.
+// sheets.cpp — chains of boxes by cell, and where each face's triangle is.
 #include "improve/sheets.hpp"
 #include "error.hpp"
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace molmesh::improve {
-
-bool SheetTriangle::box_meets(const SheetTriangle& o, float apart) const {
-  for (int a = 0; a < 3; ++a)
-    if (low[a] > o.high[a] + apart || high[a] + apart < o.low[a])
-      return false;
-  return true;
-}
 
 SheetTriangle sheet_triangle(const std::vector<Vec3d>& point, std::array<int32_t, 3> v, int64_t face) {
   SheetTriangle t;
@@ -28,44 +22,70 @@ SheetTriangle sheet_triangle(const std::vector<Vec3d>& point, std::array<int32_t
 }
 
 void Sheets::insert(const SheetTriangle& t) {
-  if (link_.size() + 27 > INT32_MAX)
+  if (eight_.size() + 27 > INT32_MAX)
     fail(Status::failed, "too many surface triangles to keep from crossing each other");
   erase(t.face);
-  const auto id = static_cast<int32_t>(triangle_.size());
-  triangle_.push_back(t);
+  if (free_.empty()) {
+    free_.push_back(static_cast<int32_t>(triangle_.size()));
+    triangle_.emplace_back();
+  }
+  const int32_t id = free_.back();
+  free_.pop_back();
+  triangle_[size_t(id)] = t;
   face_[uint64_t(t.face)] = id;
-  ++alive_;
   const int level = cell_level(t.low, t.high, cell_);
   levels_ |= uint64_t{1} << level;
-  cells(t, level).for_each([&](int64_t i, int64_t j, int64_t k) {
-    int32_t& chain = chain_[cell_key(i, j, k, level)];
-    link_.push_back({id, chain});
-    chain = static_cast<int32_t>(link_.size() - 1);
-  });
+  cells(t, level).for_each([&](int64_t i, int64_t j, int64_t k) { put(chain_[cell_key(i, j, k, level)], id); });
+}
+
+void Sheets::put(int32_t& chain, int32_t id) {
+  int32_t* at = &chain;
+  size_t n = 0; // where there is room
+  for (; *at >= 0; at = &eight_[size_t(*at)].next) {
+    const auto& held = eight_[size_t(*at)].triangle;
+    n = size_t(std::find(held.begin(), held.end(), -1) - held.begin());
+    if (n < held.size())
+      break;
+  }
+  const size_t here = *at < 0 ? eight_.size() : size_t(*at);
+  if (*at < 0) {
+    *at = static_cast<int32_t>(here);
+    eight_.emplace_back();
+    n = 0;
+  }
+  eight_[here].set(n, id, triangle_[size_t(id)]);
+  ++boxes_;
+}
+
+void Sheets::take_out(int32_t chain, int32_t id) {
+  for (; chain >= 0; chain = eight_[size_t(chain)].next)
+    for (size_t n = 0; n < 8; ++n)
+      if (Eight& e = eight_[size_t(chain)]; e.triangle[n] == id) {
+        e.set(n, -1, {});
+        --boxes_;
+        return;
+      }
 }
 
 void Sheets::erase(int64_t face) {
-  int32_t& triangle = face_[uint64_t(face)];
-  if (triangle < 0)
+  int32_t& at = face_[uint64_t(face)];
+  if (at < 0)
     return;
-  triangle_[size_t(triangle)].v[0] = -1;
-  triangle = -1;
-  --alive_;
+  const int32_t id = std::exchange(at, -1);
+  SheetTriangle& t = triangle_[size_t(id)];
+  const int level = cell_level(t.low, t.high, cell_);
+  cells(t, level).for_each([&](int64_t i, int64_t j, int64_t k) {
+    if (const int32_t* chain = chain_.find(cell_key(i, j, k, level)))
+      take_out(*chain, id);
+  });
+  t.face = -1;
+  free_.push_back(id);
 }
 
 void Sheets::merge(const Sheets& later) {
   later.face_.for_each_key([&](uint64_t face) { erase(int64_t(face)); });
   for (const SheetTriangle& t : later.triangle_)
-    if (t.v[0] >= 0)
-      insert(t);
-}
-
-void Sheets::compact() {
-  std::vector<SheetTriangle> old;
-  old.swap(triangle_);
-  *this = Sheets(cell_);
-  for (const SheetTriangle& t : old)
-    if (t.v[0] >= 0)
+    if (t.face >= 0)
       insert(t);
 }
 

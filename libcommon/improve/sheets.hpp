@@ -5,17 +5,25 @@
 #include "improve/cell_levels.hpp"
 #include "improve/open_table.hpp"
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 namespace molmesh::improve {
 
 struct SheetTriangle {
-  std::array<int32_t, 3> v{-1, -1, -1}; ///< seen from outside; v[0] < 0: no longer there
-  int64_t face = -1;                    ///< 4 element + face
-  Vec3f low, high, normal;              ///< box, rounded outwards, and unit normal, when it was put down
+  std::array<int32_t, 3> v{-1, -1, -1}; ///< seen from outside
+  int64_t face = -1;                    ///< 4 element + face; -1: no longer there
+  /// Box, rounded outwards, when it was put down; at first it meets none.
+  Vec3f low{HUGE_VALF, HUGE_VALF, HUGE_VALF}, high{-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
+  Vec3f normal; ///< unit
 
-  bool box_meets(const SheetTriangle& o, float apart) const;
+  bool box_meets(const SheetTriangle& o) const {
+    for (int a = 0; a < 3; ++a)
+      if (low[a] > o.high[a] || high[a] < o.low[a])
+        return false;
+    return true;
+  }
   /// Triangles of one sheet run much the same way where they are close: there is no crossing to look for.
   bool of_one_sheet(const SheetTriangle& o, bool beside) const {
     return dot(normal, o.normal) > (beside ? 0.7f : 0.3f);
@@ -26,8 +34,9 @@ SheetTriangle sheet_triangle(const std::vector<Vec3d>& point, std::array<int32_t
 
 class Sheets {
 public:
-  /// Cells of this size (Å), larger ones for larger triangles.
+  /// Cells of this size (Å), larger ones for larger triangles. A few of the triangles' edges is best.
   explicit Sheets(double cell) : cell_(cell) {}
+  double cell() const { return cell_; }
   /// In place of what was known of that face.
   void insert(const SheetTriangle& t);
   void erase(int64_t face);
@@ -35,52 +44,73 @@ public:
   bool knows(int64_t face) const { return face_.find(uint64_t(face)) != nullptr; }
   /// Takes over what `later` knows.
   void merge(const Sheets& later);
-  /// Drops what is no longer there.
-  void compact();
-  /// Of all records, those of triangles no longer there included.
-  size_t records() const { return triangle_.size(); }
-  const std::vector<SheetTriangle>& triangles() const { return triangle_; }
-  size_t alive() const { return alive_; }
-  size_t links() const { return link_.size(); } ///< of records to cells: 27 a record at most
-  /// True as soon as f(triangle) is, over all whose boxes t's meets, and others; some more than once.
+  size_t alive() const { return triangle_.size() - free_.size(); }
+  size_t boxes() const { return boxes_; } ///< that cells hold: 27 for each triangle at most
+  /// True as soon as f(triangle) is, over all whose boxes t's meets, some more than once.
   template <class F>
   bool any(const SheetTriangle& t, F&& f) const;
 
 private:
-  struct Link {
-    int32_t triangle, next;
+  /// Boxes side by side: a cell is looked through from end to end, and few of its triangles are wanted.
+  struct Eight {
+    std::array<std::array<float, 8>, 3> low, high;
+    std::array<int32_t, 8> triangle; ///< -1: none
+    int32_t next = -1;
+
+    Eight() {
+      for (size_t n = 0; n < 8; ++n)
+        set(n, -1, {});
+    }
+    void set(size_t n, int32_t id, const SheetTriangle& t) {
+      triangle[n] = id;
+      for (size_t a = 0; a < 3; ++a) {
+        low[a][n] = t.low[int(a)];
+        high[a][n] = t.high[int(a)];
+      }
+    }
+    std::array<int32_t, 8> meet(const SheetTriangle& t) const {
+      std::array<int32_t, 8> hit;
+      for (size_t k = 0; k < 8; ++k)
+        hit[k] = (t.low.x <= high[0][k]) & (low[0][k] <= t.high.x) & (t.low.y <= high[1][k]) &
+                 (low[1][k] <= t.high.y) & (t.low.z <= high[2][k]) & (low[2][k] <= t.high.z);
+      return hit;
+    }
   };
   CellRange cells(const SheetTriangle& t, int level) const {
     return cell_range(t.low, t.high, cell_size(cell_, level));
   }
+  void put(int32_t& chain, int32_t id);
+  void take_out(int32_t chain, int32_t id);
 
   double cell_;
   std::vector<SheetTriangle> triangle_;
-  size_t alive_ = 0;
-  uint64_t levels_ = 0; ///< a bit each where there are triangles
-  OpenTable chain_;     ///< of a cell: its first link, -1: none; cells of one key share a chain
-  OpenTable face_;      ///< of a face: its triangle, -1: gone
-  std::vector<Link> link_;
+  std::vector<int32_t> free_; ///< of triangle_
+  uint64_t levels_ = 0;       ///< a bit each where there are or were triangles
+  OpenTable chain_;           ///< of a cell: its first eight, -1: none; cells of one key share a chain
+  OpenTable face_;            ///< of a face: its triangle, -1: gone
+  std::vector<Eight> eight_;
+  size_t boxes_ = 0;
 };
 
 template <class F>
 bool Sheets::any(const SheetTriangle& t, F&& f) const {
   bool found = false, all = false;
-  const auto visit = [&](const SheetTriangle& other) { found = found || (other.v[0] >= 0 && f(other)); };
-  if (alive_ > 0)
+  if (alive() > 0)
     for_levels(levels_, [&](int level) {
       const CellRange range = cells(t, level);
       all = all || range.count() > 27 + double(triangle_.size()); // one far larger than those
       if (!all)
         range.for_each([&](int64_t i, int64_t j, int64_t k) {
-          const int32_t* first = chain_.find(cell_key(i, j, k, level));
-          for (int32_t c = first ? *first : -1; c >= 0 && !found; c = link_[size_t(c)].next)
-            visit(triangle_[size_t(link_[size_t(c)].triangle)]);
+          const int32_t* first = found ? nullptr : chain_.find(cell_key(i, j, k, level));
+          for (int32_t c = first ? *first : -1; c >= 0 && !found; c = eight_[size_t(c)].next) {
+            const auto hit = eight_[size_t(c)].meet(t);
+            for (size_t n = 0; n < 8 && !found; ++n)
+              found = hit[n] && f(triangle_[size_t(eight_[size_t(c)].triangle[n])]);
+          }
         });
     });
-  if (all)
-    for (const SheetTriangle& other : triangle_)
-      visit(other);
+  for (size_t n = 0; all && n < triangle_.size() && !found; ++n)
+    found = triangle_[n].face >= 0 && t.box_meets(triangle_[n]) && f(triangle_[n]);
   return found;
 }
 
