@@ -3,6 +3,7 @@
 #include "geom/predicates.hpp" // on which side of a triangle a point lies
 #include "improve/editor.hpp"
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace molmesh::improve {
@@ -133,53 +134,62 @@ bool Editor::turns_over(const std::array<int32_t, 3>& t) const {
   });
 }
 
+namespace {
+
+// Of two triangles: which vertices of either the other has not, a bit each.
+struct Apart {
+  unsigned of_first = 7, of_second = 7;
+  Apart(const std::array<int32_t, 3>& a, const std::array<int32_t, 3>& b) {
+    for (unsigned i = 0; i < 3; ++i)
+      for (unsigned j = 0; j < 3; ++j)
+        if (a[i] == b[j])
+          of_first &= ~(1u << i), of_second &= ~(1u << j);
+  }
+  bool beside() const { return of_first != 7; }
+  bool share_edge() const { return std::has_single_bit(of_first); }
+};
+
+} // namespace
+
 // True when a triangle of rim_ crosses another one or another of rim_, or leaves this part's cell. Triangles of
 // other parts change meanwhile, each in its own cell, so none of those is met; triangles of no part stay as they
 // are.
 bool Editor::rim_crosses(bool stamped_go) {
-  for (size_t i = 0; i < rim_.size(); ++i) {
-    const auto& t = rim_[i];
+  rim_sheet_.clear();
+  for (const auto& t : rim_) {
     for (const int32_t v : t)
       if (parts_.at(m_.point[size_t(v)]) != room_.part)
         return true;
-    const SheetTriangle now = sheet_triangle(m_.point, t, -1);
+    rim_sheet_.push_back(sheet_triangle(m_.point, t, -1));
+  }
+  for (size_t i = 0; i < rim_.size(); ++i) {
+    const SheetTriangle& now = rim_sheet_[i];
     // Triangles of a hole with four of them share edges, all with all: turned inside out none crosses another.
     beyond_.clear();
-    const auto meet = [&](const std::array<int32_t, 3>& o) {
-      const auto third = [](const auto& a, const auto& b) { // of a, when the two others are b's
-        int k = -1, more = 0;
-        for (int n = 0; n < 3; ++n)
-          if (std::find(b.begin(), b.end(), a[size_t(n)]) == b.end())
-            k = n, ++more;
-        return more == 1 ? k : -1;
-      };
-      if (const int k = third(t, o); k >= 0)
-        beyond_.push_back({k, o[size_t(third(o, t))]});
+    const auto note = [&](const Apart& apart, const std::array<int32_t, 3>& o) {
+      if (apart.share_edge())
+        beyond_.push_back({std::countr_zero(apart.of_first), o[size_t(std::countr_zero(apart.of_second))]});
     };
     for (const auto& o : rim_)
-      meet(o);
+      note(Apart(now.v, o), o);
     for (size_t j = 0; j < i; ++j)
-      if (!now.of_one_sheet(sheet_triangle(m_.point, rim_[j], -1), true) && triangles_cross(m_.point, t, rim_[j]))
+      if (!now.of_one_sheet(rim_sheet_[j], true) && triangles_cross(m_.point, now.v, rim_[j]))
         return true;
-    const auto crosses = [&](const SheetTriangle& other) {
+    const auto crosses = [&](const SheetTriangle& other, bool may_be_stale) {
+      const Apart apart(now.v, other.v);
+      const bool one_sheet = now.of_one_sheet(other, apart.beside());
+      if (one_sheet && !apart.share_edge()) // before what is further away in memory
+        return false;
       const auto owner = [&](size_t k) { return parts_.owner[size_t(other.v[k])]; };
-      if (owner(0) >= 0 && owner(0) != room_.part && owner(0) == owner(1) && owner(0) == owner(2))
+      if ((owner(0) >= 0 && owner(0) != room_.part && owner(0) == owner(1) && owner(0) == owner(2)) ||
+          (stamped_go && stamp_[size_t(other.face / 4)] == clock_) ||
+          (may_be_stale && changed_sheets_.knows(other.face)))
         return false;
-      if (stamped_go && stamp_[size_t(other.face / 4)] == clock_)
-        return false;
-      meet(other.v);
-      bool beside = false;
-      for (const int32_t v : other.v)
-        beside |= v == t[0] || v == t[1] || v == t[2];
-      if (now.of_one_sheet(other, beside))
-        return false;
-      return triangles_cross(m_.point, t, other.v);
+      note(apart, other.v);
+      return !one_sheet && triangles_cross(m_.point, now.v, other.v);
     };
-    if (changed_sheets_.any(now, crosses) || sheets_->any(now, [&](const SheetTriangle& other) {
-          return !changed_sheets_.knows(other.face) && crosses(other);
-        }))
-      return true;
-    if (turns_over(t))
+    if (changed_sheets_.any(now, [&](const SheetTriangle& other) { return crosses(other, false); }) ||
+        sheets_->any(now, [&](const SheetTriangle& other) { return crosses(other, true); }) || turns_over(now.v))
       return true;
   }
   return false;

@@ -215,6 +215,7 @@ private:
   FaceEntry& entry(const std::array<int32_t, 3>& v);
   std::vector<std::array<int32_t, 3>> rim_;
   std::vector<int64_t> rim_face_;
+  std::vector<SheetTriangle> rim_sheet_;
   /// A triangle across the edge opposite a triangle's vertex.
   struct Beyond {
     int edge;

@@ -4,6 +4,7 @@
 #include "geom/vec.hpp"
 #include "improve/cell_levels.hpp"
 #include "improve/open_table.hpp"
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -68,12 +69,14 @@ private:
         high[a][n] = t.high[int(a)];
       }
     }
-    std::array<int32_t, 8> meet(const SheetTriangle& t) const {
-      std::array<int32_t, 8> hit;
-      for (size_t k = 0; k < 8; ++k)
-        hit[k] = (t.low.x <= high[0][k]) & (low[0][k] <= t.high.x) & (t.low.y <= high[1][k]) &
-                 (low[1][k] <= t.high.y) & (t.low.z <= high[2][k]) & (low[2][k] <= t.high.z);
-      return hit;
+    /// How far each is from t's along the axis where that is most; ≤ 0: they meet.
+    std::array<float, 8> gaps(const SheetTriangle& t) const {
+      std::array<float, 8> gap;
+      gap.fill(-1);
+      for (size_t a = 0; a < 3; ++a)
+        for (size_t n = 0; n < 8; ++n)
+          gap[n] = std::max(gap[n], std::max(t.low[int(a)] - high[a][n], low[a][n] - t.high[int(a)]));
+      return gap;
     }
   };
   CellRange cells(const SheetTriangle& t, int level) const {
@@ -103,9 +106,9 @@ bool Sheets::any(const SheetTriangle& t, F&& f) const {
         range.for_each([&](int64_t i, int64_t j, int64_t k) {
           const int32_t* first = found ? nullptr : chain_.find(cell_key(i, j, k, level));
           for (int32_t c = first ? *first : -1; c >= 0 && !found; c = eight_[size_t(c)].next) {
-            const auto hit = eight_[size_t(c)].meet(t);
+            const auto gap = eight_[size_t(c)].gaps(t);
             for (size_t n = 0; n < 8 && !found; ++n)
-              found = hit[n] && f(triangle_[size_t(eight_[size_t(c)].triangle[n])]);
+              found = gap[n] <= 0 && f(triangle_[size_t(eight_[size_t(c)].triangle[n])]);
           }
         });
     });
