@@ -40,12 +40,12 @@ public:
     }
     return s.number;
   }
-  /// f(key) for every key, in no order.
+  /// f(key, number) for every key, in no order.
   template <class F>
-  void for_each_key(F&& f) const {
+  void for_each(F&& f) const {
     for (const Slot& s : slot_)
       if (is_used(s))
-        f(s.key);
+        f(s.key, s.number);
   }
 
 private:
@@ -55,10 +55,11 @@ private:
     uint32_t clock = 0; ///< when it was filled
   };
   bool is_used(const Slot& s) const { return s.clock == clock_; }
-  /// Where the key is or would go.
+  /// Where the key is or would go. Keys next to each other are asked for together, and lie so.
   size_t place(uint64_t key) const {
     const size_t mask = slot_.size() - 1;
-    size_t i = size_t((key ^ key >> 29) * 0xBF58476D1CE4E5B9u >> 7) & mask;
+    const uint64_t high = key >> 5;
+    size_t i = size_t(((high ^ high >> 24) * 0xBF58476D1CE4E5B9u >> 7) + (key & 31)) & mask;
     while (is_used(slot_[i]) && slot_[i].key != key)
       i = (i + 1) & mask;
     return i;

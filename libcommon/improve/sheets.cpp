@@ -83,10 +83,12 @@ void Sheets::erase(int64_t face) {
 }
 
 void Sheets::merge(const Sheets& later) {
-  later.face_.for_each_key([&](uint64_t face) { erase(int64_t(face)); });
-  for (const SheetTriangle& t : later.triangle_)
-    if (t.face >= 0)
-      insert(t);
+  later.face_.for_each([&](uint64_t face, int32_t triangle) {
+    if (triangle < 0)
+      erase(int64_t(face));
+    else
+      insert(later.triangle_[size_t(triangle)]);
+  });
 }
 
 } // namespace molmesh::improve
