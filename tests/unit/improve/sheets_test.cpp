@@ -198,26 +198,47 @@ TEST_CASE("a hole of four triangles is not turned inside out, though none of the
   const BlockGrid grid = lattice_grid(ball, {0, 0, 0}, 0.5, 20);
   improve::improve(full, &grid, {}); // of a lattice, elements in a row block the way
   const improve::DynamicMesh inner = improve::build(full, 180, 1);
+  const auto is_inner = [&](const Tet& t) {
+    return std::all_of(t.begin(), t.end(),
+                       [&](int32_t w) { return inner.vertex[size_t(w)].kind == improve::Kind::interior; });
+  };
+  const auto shared = [](const Tet& a, const Tet& b) {
+    return std::count_if(a.begin(), a.end(),
+                         [&](int32_t w) { return std::find(b.begin(), b.end(), w) != b.end(); });
+  };
+  const bool beside_another = GENERATE(false, true); // at one edge, which then has four triangles
   int moved = 0;
   size_t tried = 0;
   for (size_t t = 0; t < full.tet.size() && tried < 100; ++t) {
     const Tet v = full.tet[t];
-    if (std::any_of(v.begin(), v.end(),
-                    [&](int32_t w) { return inner.vertex[size_t(w)].kind != improve::Kind::interior; }))
+    std::vector<size_t> holes{t};
+    for (size_t u = 0; beside_another && u < full.tet.size() && holes.size() < 2; ++u)
+      if (shared(v, full.tet[u]) == 2 && is_inner(full.tet[u]))
+        holes.push_back(u);
+    if (!is_inner(v) || holes.size() < (beside_another ? 2 : 1))
       continue;
     ++tried;
     TetMesh mesh = full;
-    mesh.tet.erase(mesh.tet.begin() + std::ptrdiff_t(t));
-    mesh.region.pop_back();
-    for (size_t f = 0; f < 4; ++f) {
-      const auto out = improve::outward_triangle(v, f);
-      mesh.tri.push_back({out[0], out[2], out[1]});
-      mesh.boundary.push_back(Boundary::surface);
+    size_t mover = tried % 4; // not on that edge: such vertices stay
+    for (const size_t hole : holes) {
+      const Tet w = full.tet[hole];
+      while (hole != t && std::find(w.begin(), w.end(), v[mover]) != w.end())
+        mover = (mover + 1) % 4;
+      for (size_t f = 0; f < 4; ++f) {
+        const auto out = improve::outward_triangle(w, f);
+        mesh.tri.push_back({out[0], out[2], out[1]});
+        mesh.boundary.push_back(Boundary::surface);
+      }
+    }
+    std::sort(holes.rbegin(), holes.rend());
+    for (const size_t hole : holes) {
+      mesh.tet.erase(mesh.tet.begin() + std::ptrdiff_t(hole));
+      mesh.region.pop_back();
     }
     improve::DynamicMesh m = improve::build(mesh, 180, 1);
     const auto p = [&](size_t k) { return m.point[size_t(v[k])]; };
     Draw target; // a little through the face on the other side
-    target.from = p(tried % 4);
+    target.from = p(mover);
     target.to = target.from + 1.02 * 4. / 3 * ((p(0) + p(1) + p(2) + p(3)) / 4. - target.from);
     improve::Schedule schedule(m, &target, 100, 1);
     moved += schedule.settle(1e-4f, {180, 1e3, 9, 0}).moves == 1;
