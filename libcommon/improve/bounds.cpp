@@ -117,10 +117,6 @@ double Editor::off(int32_t v) const {
   return m_.vertex[size_t(v)].kind == Kind::surface ? off_at(m_.point[size_t(v)]).value_or(0) : 0;
 }
 
-bool Editor::crowded(const std::array<int32_t, 3>& t) const {
-  return m_.vertex[size_t(t[0])].crowded || m_.vertex[size_t(t[1])].crowded || m_.vertex[size_t(t[2])].crowded;
-}
-
 // Whether t and three triangles of beyond_, one across each of its edges, close a hole that is inside out.
 bool Editor::turns_over(const std::array<int32_t, 3>& t) const {
   const auto across = [&](int k, int32_t apex) {
@@ -202,7 +198,7 @@ void Editor::list_rim(const std::vector<int32_t>& elements, int32_t v, int32_t w
     if (without >= 0 && e.find(without) >= 0)
       continue;
     for (size_t f = 0; f < 4; ++f)
-      if (e.n[f] < 0 && e.v[f] != v && m_.labels[e.label[f]].curved() && crowded(outward_triangle(e.v, f))) {
+      if (e.n[f] < 0 && e.v[f] != v && m_.labels[e.label[f]].curved() && m_.crowded(outward_triangle(e.v, f))) {
         rim_.push_back(outward_triangle(e.v, f));
         rim_face_.push_back(4 * int64_t(t) + int64_t(f));
       }

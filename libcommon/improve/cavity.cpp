@@ -112,7 +112,7 @@ void Editor::list_rim(const std::vector<Candidate>& now) {
     const FaceEntry& x = table_[size_t(i)];
     const bool kept = x.outer && x.element < 0 && x.first >= 0, fresh = !x.outer && x.second < 0;
     const bool bared = x.outer && x.element >= 0 && x.first < 0;
-    if (!(kept || fresh || bared) || !m_.labels[kept ? x.label : outside].curved() || !crowded(x.v))
+    if (!(kept || fresh || bared) || !m_.labels[kept ? x.label : outside].curved() || !m_.crowded(x.v))
       continue;
     if (bared)
       rim_.push_back(outward_triangle(m_.element[size_t(x.element)].v, x.face));
@@ -144,7 +144,7 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
         m_.incident[size_t(w)] = x.element; // where nothing new comes
     if (x.outer && x.element < 0 && x.first < 0)
       outside = x.label;
-    if (sheets_ && x.outer && x.element < 0 && crowded(x.v))
+    if (sheets_ && x.outer && x.element < 0 && m_.crowded(x.v))
       changed_sheets_.erase(x.old);
   }
   made_.clear();
@@ -186,7 +186,7 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
     if (e.label[f] == 0)
       e.label[f] = outside;
     m_.note_label(a);
-    if (sheets_ && m_.labels[e.label[f]].curved() && crowded(outward_triangle(e.v, f)))
+    if (sheets_ && m_.labels[e.label[f]].curved() && m_.crowded(outward_triangle(e.v, f)))
       changed_sheets_.insert(sheet_triangle(m_.point, outward_triangle(e.v, f), 4 * int64_t(a) + int64_t(f)));
   };
   for (const int32_t i : used_) {

@@ -128,7 +128,6 @@ private:
                bool rim_moved = false);
   void list_rim(const std::vector<Candidate>& now);
   void list_rim(const std::vector<int32_t>& elements, int32_t v, int32_t without);
-  bool crowded(const std::array<int32_t, 3>& t) const;
   uint8_t lost_label() const;
   bool rim_in_wall() const;
   /// Of a surface vertex that goes from one place to another.

@@ -75,7 +75,7 @@ void Schedule::find_crowded(bool everywhere) {
         m_.vertex[size_t(v)].crowded = true;
   sheets_ = Sheets(cell);
   for (const SheetTriangle& t : triangle)
-    if (m_.vertex[size_t(t.v[0])].crowded || m_.vertex[size_t(t.v[1])].crowded || m_.vertex[size_t(t.v[2])].crowded)
+    if (m_.crowded(t.v))
       sheets_.insert(t);
 }
 

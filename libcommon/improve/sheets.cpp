@@ -33,9 +33,8 @@ void Sheets::insert(const SheetTriangle& t) {
   free_.pop_back();
   triangle_[size_t(id)] = t;
   face_[uint64_t(t.face)] = id;
-  const int level = cell_level(t.low, t.high, cell_);
-  levels_ |= uint64_t{1} << level;
-  cells(t, level).for_each([&](int64_t i, int64_t j, int64_t k) { put(chain_[cell_key(i, j, k, level)], id); });
+  levels_ |= uint64_t{1} << cell_level(t.low, t.high, cell_);
+  for_cells(t, [&](uint64_t key) { put(chain_[key], id); });
 }
 
 void Sheets::put(int32_t& chain, int32_t id) {
@@ -54,7 +53,6 @@ void Sheets::put(int32_t& chain, int32_t id) {
     n = 0;
   }
   eight_[here].set(n, id, triangle_[size_t(id)]);
-  ++boxes_;
 }
 
 void Sheets::take_out(int32_t chain, int32_t id) {
@@ -62,7 +60,6 @@ void Sheets::take_out(int32_t chain, int32_t id) {
     for (size_t n = 0; n < 8; ++n)
       if (Eight& e = eight_[size_t(chain)]; e.triangle[n] == id) {
         e.set(n, -1, {});
-        --boxes_;
         return;
       }
 }
@@ -73,13 +70,16 @@ void Sheets::erase(int64_t face) {
     return;
   const int32_t id = std::exchange(at, -1);
   SheetTriangle& t = triangle_[size_t(id)];
-  const int level = cell_level(t.low, t.high, cell_);
-  cells(t, level).for_each([&](int64_t i, int64_t j, int64_t k) {
-    if (const int32_t* chain = chain_.find(cell_key(i, j, k, level)))
-      take_out(*chain, id);
-  });
+  for_cells(t, [&](uint64_t key) { take_out(chain_[key], id); });
   t.face = -1;
   free_.push_back(id);
+}
+
+size_t Sheets::boxes() const {
+  size_t n = 0;
+  for (const Eight& e : eight_)
+    n += e.triangle.size() - size_t(std::count(e.triangle.begin(), e.triangle.end(), -1));
+  return n;
 }
 
 void Sheets::merge(const Sheets& later) {

@@ -46,7 +46,7 @@ public:
   /// Takes over what `later` knows.
   void merge(const Sheets& later);
   size_t alive() const { return triangle_.size() - free_.size(); }
-  size_t boxes() const { return boxes_; } ///< that cells hold: 27 for each triangle at most
+  size_t boxes() const; ///< that cells hold: 27 for each triangle at most
   /// True as soon as f(triangle) is, over all whose boxes t's meets, some more than once.
   template <class F>
   bool any(const SheetTriangle& t, F&& f) const;
@@ -82,6 +82,12 @@ private:
   CellRange cells(const SheetTriangle& t, int level) const {
     return cell_range(t.low, t.high, cell_size(cell_, level));
   }
+  /// f(key of the cell), over the cells that hold t.
+  template <class F>
+  void for_cells(const SheetTriangle& t, F&& f) const {
+    const int level = cell_level(t.low, t.high, cell_);
+    cells(t, level).for_each([&](int64_t i, int64_t j, int64_t k) { f(cell_key(i, j, k, level)); });
+  }
   void put(int32_t& chain, int32_t id);
   void take_out(int32_t chain, int32_t id);
 
@@ -92,7 +98,6 @@ private:
   OpenTable chain_;           ///< of a cell: its first eight, -1: none; cells of one key share a chain
   OpenTable face_;            ///< of a face: its triangle, -1: gone
   std::vector<Eight> eight_;
-  size_t boxes_ = 0;
 };
 
 template <class F>
