@@ -132,13 +132,14 @@ public:
     std::copy_n(packed, r.packed.size(), store.data());
     const float* value = store.data();
     for (int64_t i = 0; i < r.key.size(); ++i) {
-      density::BandBlock block{frame_.corner(BlockFrame::block(key[i])), {}, {}, value};
+      density::BandBlock block{frame_.corner(BlockFrame::block(key[i])), {}, {}, {}, value};
       for (size_t w = 0; w < 8; ++w) {
         block.active[w] = bits[16 * i + static_cast<int64_t>(w)];
         block.above[w] = bits[16 * i + 8 + static_cast<int64_t>(w)];
         for (uint64_t left = block.active[w]; left; left &= left - 1)
           ++value;
       }
+      block.stored = block.active;
       band.block.push_back(block);
     }
     band.active_points += r.packed.size();

@@ -317,7 +317,8 @@ void write_vdb(std::ostream& out, const density::Band& band, int threads) {
       out, band.frame, band.info, band.inside, static_cast<int64_t>(band.block.size()), threads,
       [&](int64_t b) { return block(b).corner; }, [&](int64_t b) { return block(b).active.data(); },
       [&](int64_t b, auto&& use) {
-        use({block(b).active.data(), block(b).above.data(), block(b).value});
+        density::BlockValues room;
+        use({block(b).active.data(), block(b).above.data(), density::active_values(block(b), room)});
       });
 }
 

@@ -1,9 +1,17 @@
 // band.cpp — the band unpacked.
 #include "density/band.hpp"
+#include "density/values_kernel.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 
 namespace molmesh::density {
+
+const float* active_values(const BandBlock& block, BlockValues& room) {
+  if (block.stored == block.active)
+    return block.value;
+  pack_part(block.value, block.stored.data(), block.active.data(), room.data());
+  return room.data();
+}
 
 BlockGrid to_block_grid(const Band& band, int threads) {
   const size_t n = band.block.size();
@@ -18,7 +26,8 @@ BlockGrid to_block_grid(const Band& band, int threads) {
     const auto b = static_cast<size_t>(i);
     const BandBlock& block = band.block[b];
     grid.corner[b] = block.corner;
-    const float* packed = block.value;
+    BlockValues room;
+    const float* packed = active_values(block, room);
     for (size_t s = 0; s < 512; ++s) {
       const uint64_t bit = uint64_t{1} << (s & 63);
       grid.value[512 * b + s] = block.active[s >> 6] & bit  ? *packed++
@@ -44,7 +53,8 @@ bool wall_cuts_surface(const Band& band) {
   };
   for (const BandBlock& b : band.block) {
     float value[512];
-    const float* packed = b.value;
+    BlockValues room;
+    const float* packed = active_values(b, room);
     for (size_t s = 0; s < 512; ++s) {
       const bool active = b.active[s >> 6] >> (s & 63) & 1, above = b.above[s >> 6] >> (s & 63) & 1;
       value[s] = active ? *packed++ : above ? static_cast<float>(band.info.inside_value) : 0.0f;

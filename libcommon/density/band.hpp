@@ -9,13 +9,18 @@ namespace molmesh::density {
 /// 8³ points: bit 8·j + k of word i.
 using Mask = std::array<uint64_t, 8>;
 
-/// A block with active points. 36 % of its points are active when h is a quarter of an Å: the others are not
-/// stored.
+/// A block with active points. 36 % of its points are active when h is a quarter of an Å: few others are stored.
 struct BandBlock {
   Vec3i corner;       ///< lowest index
   Mask active, above; ///< above: the side of inactive points
-  const float* value; ///< G of the active points, in order; belongs to the band
+  Mask stored;        ///< the active points, and some that looked like them to a part of the search
+  const float* value; ///< G of the stored points, in order; belongs to the band
 };
+
+/// Room for the values of a block, and for what vectors write behind them.
+using BlockValues = std::array<float, 512 + 16>;
+/// G of the active points of a block, in order: the block's own where it stores no other, else in `room`.
+const float* active_values(const BandBlock& block, BlockValues& room);
 
 /// What BlockGrid holds, in a third of its memory.
 struct Band {

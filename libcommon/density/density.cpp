@@ -34,10 +34,12 @@ void check_band(const Options& o) {
 /// Every active value is a number in the file.
 void check_values(const Band& band) {
   for (const BandBlock& b : band.block) {
+    BlockValues room;
+    const float* const value = active_values(b, room);
     int64_t n = 0;
     for (const uint64_t word : b.active)
       n += std::popcount(word);
-    if (!std::all_of(b.value, b.value + n, [](float v) { return std::isfinite(v); }))
+    if (!std::all_of(value, value + n, [](float v) { return std::isfinite(v); }))
       fail(Status::usage, "next to the surface the field is above 3.4e38, beyond the file's single precision: "
                           "expected a smaller --spacing, --decay or exponent");
   }

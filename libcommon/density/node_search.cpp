@@ -146,22 +146,27 @@ void NodeSearch::evaluate_left_out(uint64_t blocks, Vec3i node, Workspace& w) co
   }
 }
 
+const float* NodeSearch::pack(int b, const uint64_t* points, Workspace& w) const {
+  float* const to = w.packed.take(512 + 16);
+  w.packed.keep(static_cast<size_t>(pack_active(w.value[b], points, to)));
+  return to;
+}
+
 /// Packs what looks like band while it is at hand: two thirds of the values never leave the processor's cache.
 void NodeSearch::store(NodeState& s, Workspace& w) const {
   NodePoints& to = *s.sides;
   rows_from_words(w.far_below, w.beyond.below);
   rows_from_words(w.far_above, w.beyond.above);
-  likely_band_points(to, w.beyond, cells_of(s.corner), to.stored);
-  words_from_rows(to.stored, w.stored);
+  likely_band_points(to, w.beyond, cells_of(s.corner), w.rows);
+  words_from_rows(w.rows, to.stored);
   uint64_t left_out = 0;
   for (int b = 0; b < blocks_a_node; ++b)
-    left_out |= any_within(w.stored.word[b], b) ? uint64_t{1} << b & ~s.known : 0;
+    left_out |= any_within(to.stored.word[b], b) ? uint64_t{1} << b & ~s.known : 0;
   evaluate_left_out(left_out, s.corner, w);
   s.known |= left_out;
   for (uint64_t left = s.known; left; left &= left - 1) {
     const int b = std::countr_zero(left);
-    to.value[b] = w.packed.take(512 + 16);
-    w.packed.keep(static_cast<size_t>(pack_active(w.value[b], w.stored.word[b], to.value[b])));
+    to.value[b] = pack(b, to.stored.word[b], w);
   }
 }
 
@@ -195,24 +200,24 @@ CellRange NodeSearch::cells_of(Vec3i corner) const {
   return c;
 }
 
-/// Active points of a node among its neighbors, packed.
+/// Active points of a node among its neighbors. Values stay where they were packed: going through them again, out
+/// of the processor's cache, to leave out one in nine would take a tenth of the whole search.
 void NodeSearch::finish(NodeState& s, const FacedBits* const* below, const FacedBits* const* above,
                         Workspace& w) const {
-  fetch_values(s);
   band_points(below, above, cells_of(s.corner), w.rows);
   words_from_rows(w.rows, w.active);
   words_from_rows(*above[13], w.above);
-  if (s.known)
-    words_from_rows(s.sides->stored, w.stored);
   uint64_t wanting = 0; // blocks that bounds left out, or of which too few values were kept
   for (int b = 0; b < blocks_a_node; ++b) {
-    const uint64_t *const active = w.active.word[b], *const stored = w.stored.word[b], bit = uint64_t{1} << b;
+    const uint64_t* const active = w.active.word[b];
+    const uint64_t bit = uint64_t{1} << b;
+    const bool known = s.known & bit;
     if (any(active))
       s.kept |= bit;
     else
-      s.closed |= s.known & bit && w.above.word[b][0] & 1 ? bit : 0;
-    if (s.kept & bit && !(s.known & bit &&
-                          std::equal(active, active + 8, stored, [](uint64_t a, uint64_t v) { return !(a & ~v); })))
+      s.closed |= known && w.above.word[b][0] & 1 ? bit : 0;
+    if (s.kept & bit && !(known && std::equal(active, active + 8, s.sides->stored.word[b],
+                                              [](uint64_t a, uint64_t v) { return !(a & ~v); })))
       wanting |= bit;
   }
   s.closed &= ~s.kept;
@@ -225,23 +230,16 @@ void NodeSearch::finish(NodeState& s, const FacedBits* const* below, const Faced
   s.band.reserve(static_cast<size_t>(std::popcount(s.kept)));
   for (uint64_t left = s.kept; left; left &= left - 1) {
     const int b = std::countr_zero(left);
-    const uint64_t* const active = w.active.word[b];
-    float* value;
-    int32_t n = 0;
-    if (wanting >> b & 1) {
-      value = w.packed.take(512 + 16);
-      n = pack_active(w.value[b], active, value);
-      w.packed.keep(static_cast<size_t>(n));
-    } else {
-      value = s.sides->value[b];
-      n = keep_active(value, w.stored.word[b], active);
-    }
-    w.counts.active_points += n;
+    const bool again = wanting >> b & 1;
+    const uint64_t *const active = w.active.word[b], *const stored = again ? active : s.sides->stored.word[b];
     BandBlock to;
     to.corner = 8 * (s.corner + block_at(b));
     std::copy_n(active, 8, to.active.begin());
     std::copy_n(w.above.word[b], 8, to.above.begin());
-    to.value = value;
+    std::copy_n(stored, 8, to.stored.begin());
+    to.value = again ? pack(b, active, w) : s.sides->value[b];
+    for (const uint64_t word : to.active)
+      w.counts.active_points += std::popcount(word);
     s.band.push_back(to);
   }
 }

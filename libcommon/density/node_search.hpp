@@ -20,6 +20,8 @@ private:
   void work_through_block(int b, int octant, Vec3i corner, NodeState& s, Workspace& w) const;
   void settle(NodeState& s, Workspace& w) const;
   void store(NodeState& s, Workspace& w) const;
+  /// The values of some points of block b of the node at work, put into the band's memory.
+  const float* pack(int b, const uint64_t* points, Workspace& w) const;
   void evaluate_left_out(uint64_t blocks, Vec3i node, Workspace& w) const;
   void need_neighbors(NodeState& s) const;
   void evaluate(Vec3i corner, Workspace& w, float* value) const;

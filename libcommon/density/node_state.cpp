@@ -29,17 +29,6 @@ unsigned open_faces(const NodeState& s) {
   return open;
 }
 
-void fetch_values(const NodeState& s) {
-  constexpr uintptr_t most = 512 * sizeof(float), line = 64;
-  uintptr_t fetched = 0;
-  for (uint64_t left = s.known; left; left &= left - 1) {
-    const auto value = reinterpret_cast<uintptr_t>(s.sides->value[std::countr_zero(left)]);
-    for (uintptr_t at = fetched > value && fetched <= value + most ? fetched : value; at < value + most; at += line)
-      __builtin_prefetch(reinterpret_cast<const void*>(at), 0, 2);
-    fetched = value + most;
-  }
-}
-
 bool sides_around(const SlabState& before, const SlabState& slab, const SlabState& after, const NodeState& s,
                   const FacedBits** below, const FacedBits** above) {
   static const std::unique_ptr<const Sides> outside = [] {

@@ -20,8 +20,8 @@ constexpr Vec3i direction(int n) { // of the 27 nodes around one
 /// What a node knows before its neighbors do: the sides of its points, and the values of those that look like
 /// corners of band cells, block by block.
 struct NodePoints : Sides {
-  NodeBits stored;
-  float* value[blocks_a_node]; ///< of the stored points, in order; of evaluated blocks
+  NodeWords stored;
+  const float* value[blocks_a_node]; ///< of the stored points, in order; of evaluated blocks
 };
 
 /// Sets of blocks are bits, by number of the block in the node.
@@ -44,10 +44,6 @@ struct SlabState {
 
 /// Bit 2·axis + (upper side): not every point of that face is below the band.
 unsigned open_faces(const NodeState& s);
-
-/// Asks for the values of a node, which have left the processor's cache since they were packed, mostly one block's
-/// after another's.
-void fetch_values(const NodeState& s);
 
 /// A node of a slab among its neighbors: below[27] and above[27] as band_points() wants them. False when all are on
 /// one side. before, after: the next slabs.

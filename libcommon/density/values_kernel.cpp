@@ -87,35 +87,26 @@ int32_t pack_active_simd(const float* v, const uint64_t* active, float* out) {
   return static_cast<int32_t>(out - begin);
 }
 
-int32_t keep_active_simd(float* v, const uint64_t* stored, const uint64_t* active) {
-  float *const begin = v, *out = v;
+int32_t pack_part_simd(const float* packed, const uint64_t* stored, const uint64_t* active, float* out) {
+  float* const begin = out;
   for (int32_t w = 0; w < 8; ++w) {
     const uint64_t all = stored[w], kept = active[w];
-    const auto count = static_cast<size_t>(std::popcount(all));
-    if (all == kept) {
-      if (out != v)
-        std::memmove(out, v, count * sizeof(float));
-      v += count;
-      out += count;
-      continue;
-    }
 #if HWY_TARGET <= HWY_AVX2
+    const auto count = static_cast<size_t>(std::popcount(all));
     uint64_t keep = _pext_u64(kept, all);
-    for (size_t i = 0; i < count; i += lanes, keep = lanes < 64 ? keep >> lanes : 0) {
+    for (size_t i = 0; i < count; i += lanes, keep >>= lanes) {
       uint8_t bits[8]; // LoadMaskBits may read eight bytes
       std::memcpy(bits, &keep, 8);
-      const auto mask = hn::And(hn::LoadMaskBits(f, bits), hn::FirstN(f, count - i));
-      const size_t n = hn::CountTrue(f, mask);
+      const auto mask = hn::LoadMaskBits(f, bits);
       // Not a compressing store: on Zen 4 one takes a hundred cycles and more.
-      hn::BlendedStore(hn::Compress(hn::LoadU(f, v + i), mask), hn::FirstN(f, n), f, out);
-      out += n;
+      hn::StoreU(hn::Compress(hn::LoadU(f, packed + i), mask), f, out);
+      out += hn::CountTrue(f, mask);
     }
-    v += count;
+    packed += count;
 #else
-    for (uint64_t left = all; left; left &= left - 1, ++v) {
-      *out = *v;
-      out += (kept & left & -left) != 0;
-    }
+    for (uint64_t left = all; left; left &= left - 1, ++packed)
+      if (kept & left & -left)
+        *out++ = *packed;
 #endif
   }
   return static_cast<int32_t>(out - begin);
@@ -132,7 +123,7 @@ namespace molmesh::density {
 HWY_EXPORT(round_values_simd);
 HWY_EXPORT(classify_points_simd);
 HWY_EXPORT(pack_active_simd);
-HWY_EXPORT(keep_active_simd);
+HWY_EXPORT(pack_part_simd);
 
 void round_values(float* v, int bits) {
   HWY_DYNAMIC_DISPATCH(round_values_simd)(v, bits);
@@ -143,8 +134,8 @@ void classify_points(float* v, int bits, Limits near, Limits far, SideWords near
 int32_t pack_active(const float* v, const uint64_t* active, float* out) {
   return HWY_DYNAMIC_DISPATCH(pack_active_simd)(v, active, out);
 }
-int32_t keep_active(float* v, const uint64_t* stored, const uint64_t* active) {
-  return HWY_DYNAMIC_DISPATCH(keep_active_simd)(v, stored, active);
+int32_t pack_part(const float* packed, const uint64_t* stored, const uint64_t* active, float* out) {
+  return HWY_DYNAMIC_DISPATCH(pack_part_simd)(packed, stored, active, out);
 }
 
 } // namespace molmesh::density

@@ -23,7 +23,8 @@ void classify_points(float* v, int bits, Limits near, Limits far, SideWords near
 /// Copies the v whose bit of active[8] is set to out, in order; may write up to 16 values more. Returns how many.
 int32_t pack_active(const float* v, const uint64_t* active, float* out);
 
-/// v: the values of the points stored[8], in order. Keeps those of active[8], a subset. Returns how many.
-int32_t keep_active(float* v, const uint64_t* stored, const uint64_t* active);
+/// packed: the values of the points stored[8], in order; up to 16 floats behind them are read. Copies those of
+/// active[8], a subset, to out; may write up to 16 values more. Returns how many.
+int32_t pack_part(const float* packed, const uint64_t* stored, const uint64_t* active, float* out);
 
 } // namespace molmesh::density

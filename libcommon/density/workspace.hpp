@@ -76,7 +76,7 @@ struct Workspace {
   Selection selection;
   Evaluator evaluator = {};
   alignas(64) float value[blocks_a_node][512] = {}; ///< of the blocks of the node at work
-  NodeWords below = {}, above = {}, far_below = {}, far_above = {}, active = {}, stored = {};
+  NodeWords below = {}, above = {}, far_below = {}, far_above = {}, active = {};
   NodeBits rows = {};
   Sides beyond = {};
   Arena packed = {}; ///< of the band

@@ -21,11 +21,13 @@ struct Sample {
 Sample active_point(const density::Band& band, const std::vector<int64_t>& before, int64_t n) {
   const auto b = static_cast<size_t>(std::upper_bound(before.begin(), before.end(), n) - before.begin()) - 1;
   const density::BandBlock& block = band.block[b];
+  density::BlockValues room;
+  const float* const value = density::active_values(block, room);
   int64_t left = n - before[b];
   for (int slot_of_point = 0; slot_of_point < 512; ++slot_of_point)
     if (block.active[static_cast<size_t>(slot_of_point >> 6)] >> (slot_of_point & 63) & 1 && left-- == 0)
       return {block.corner + Vec3i{slot_of_point >> 6, slot_of_point >> 3 & 7, slot_of_point & 7},
-              block.value[n - before[b]]};
+              value[n - before[b]]};
   std::abort();
 }
 

@@ -1,4 +1,5 @@
-// values_test.cpp — packing the values of a block and keeping a part of them, against the same value by value.
+// values_test.cpp — packing the values of a block and a part of what is packed, against the same value by value.
+#include "density/band.hpp"
 #include "density/values_kernel.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -8,7 +9,7 @@
 
 using namespace molmesh;
 
-TEST_CASE("of packed values those of a subset stay, in order, and what follows is not touched") {
+TEST_CASE("of packed values those of a subset are taken, in order") {
   std::mt19937_64 random(5);
   for (const auto target : hwy::SupportedAndGeneratedTargets()) {
     hwy::SetSupportedTargetsForTest(target);
@@ -39,9 +40,17 @@ TEST_CASE("of packed values those of a subset stay, in order, and what follows i
       packed.resize(all.size());
       REQUIRE(packed == all);
       packed.insert(packed.end(), 16, -1.0f); // the next block's
-      REQUIRE(density::keep_active(packed.data(), stored, active) == static_cast<int32_t>(kept.size()));
-      CHECK(std::equal(kept.begin(), kept.end(), packed.begin()));
-      CHECK(std::all_of(packed.end() - 16, packed.end(), [](float v) { return v == -1; }));
+      density::BlockValues part;
+      REQUIRE(density::pack_part(packed.data(), stored, active, part.data()) == static_cast<int32_t>(kept.size()));
+      CHECK(std::equal(kept.begin(), kept.end(), part.begin()));
+
+      density::BandBlock block{{}, {}, {}, {}, packed.data()};
+      std::copy_n(active, 8, block.active.begin());
+      std::copy_n(stored, 8, block.stored.begin());
+      density::BlockValues room;
+      const float* const values = density::active_values(block, room);
+      CHECK(std::equal(kept.begin(), kept.end(), values));
+      CHECK((values == block.value) == (block.active == block.stored)); // copied only where it must be
     }
   }
   hwy::SetSupportedTargetsForTest(0);
