@@ -53,6 +53,27 @@ bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) cons
   return false;
 }
 
+int Editor::constrain_all(const Vertex& k, Vec3d from, Vec3d* x, int n, double reach) const {
+  int allowed = 0;
+  const auto put = [&](Vec3d y) { x[allowed++] = y; };
+  if (k.kind != Kind::surface || !target_ || guard_.lift > 0 || loose) {
+    for (int i = 0; i < n; ++i)
+      if (Vec3d y = x[i]; constrain(k, from, y, reach))
+        put(y);
+    return allowed;
+  }
+  EightPlaces eight;
+  for (int first = 0; first < n; first += 8) {
+    const int count = std::min(8, n - first);
+    for (int i = 0; i < count; ++i)
+      eight.set(size_t(i), x[first + i]);
+    for (uint32_t left = target_->project_eight(eight, count, reach); left; left &= left - 1)
+      if (const Vec3d y = eight[size_t(std::countr_zero(left))]; inside_walls(from, y))
+        put(y);
+  }
+  return allowed;
+}
+
 // A labelled face of e seen from the side that counts it, with vertex `from` moving.
 void Editor::add_sail(const Element& e, size_t face, int32_t from) {
   if (!target_ || !m_.labels[e.label[face]].curved() || !m_.counts_here(e, face))
@@ -71,33 +92,31 @@ void Editor::add_sail(const Element& e, size_t face, int32_t from) {
   sails_.push_back(s);
 }
 
-Fit Editor::fit_of_sails() const {
+Fit Editor::fit_of_sails(const Vec3d* x) const {
   Fit fit;
-  for (const Sail& s : sails_)
-    fit.add(misfit(s.p[0], s.p[1], s.p[2]));
-  return fit;
-}
-
-Fit Editor::fit_of_sails(Vec3d x) const {
-  Fit fit;
-  for (const Sail& s : sails_) {
-    auto p = s.p;
-    p[size_t(s.moving)] = x;
-    fit.add(misfit(p[0], p[1], p[2]));
+  EightTriangles triangle;
+  EightPlaces centroid;
+  EightProbes probes;
+  for (size_t first = 0; first < sails_.size(); first += 8) {
+    const size_t n = std::min<size_t>(8, sails_.size() - first);
+    for (size_t i = 0; i < n; ++i) {
+      const Sail& s = sails_[first + i];
+      EightPlaces* const corner[3] = {&triangle.a, &triangle.b, &triangle.c};
+      for (size_t k = 0; k < 3; ++k)
+        corner[k]->set(i, x && s.moving == static_cast<int>(k) ? *x : s.p[k]);
+    }
+    centroids(triangle, centroid);
+    target_->probe_eight(centroid, static_cast<int>(n), probes);
+    double misfit[8];
+    misfits(triangle, probes, guard_.distance * target_->spacing(), most_tilt_, misfit);
+    for (size_t i = 0; i < n; ++i)
+      fit.add(misfit[i]);
   }
   return fit;
 }
 
 bool Editor::sails_fit(Vec3d x, const Fit& before) const {
-  Fit now;
-  for (const Sail& s : sails_) {
-    auto p = s.p;
-    p[size_t(s.moving)] = x;
-    now.add(misfit(p[0], p[1], p[2]));
-    if (!fits(now, before))
-      return false;
-  }
-  return fits(now, before);
+  return fits(fit_of_sails(&x), before);
 }
 
 bool Editor::bent(int32_t t, size_t face) const {

@@ -147,14 +147,16 @@ private:
   bool outward(const Element& e, size_t face) const;
   std::optional<double> off_at(Vec3d x) const; ///< off() of a place; none where the target is not known
   bool constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const;
+  /// Those of n trials that constrain() allows, in front and in order; how many.
+  int constrain_all(const Vertex& k, Vec3d from, Vec3d* x, int n, double reach) const;
   /// A triangle on the target with one vertex that moves, running as the target's normal.
   struct Sail {
     std::array<Vec3d, 3> p;
     int moving;
   };
   void add_sail(const Element& e, size_t face, int32_t from);
-  Fit fit_of_sails() const;
-  Fit fit_of_sails(Vec3d x) const; ///< with the vertex there
+  /// With the vertex at x, or where it is.
+  Fit fit_of_sails(const Vec3d* x = nullptr) const;
   bool fits(const Fit& now, const Fit& before) const {
     return bold || (straighten ? now.excess < 0.98 * before.excess : now.worst <= before.worst);
   }

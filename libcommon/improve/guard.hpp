@@ -1,6 +1,7 @@
 // guard.hpp — how far a surface triangle may be from the target. Host and device.
 #pragma once
 #include "geom/vec.hpp"
+#include "improve/lanes.hpp"
 #include <cmath>
 
 namespace molmesh::improve {
@@ -15,19 +16,34 @@ struct Guard {
   HD double tilt() const { return 1 - std::cos(angle * 3.14159265358979323846 / 180); } ///< as misfit() wants it
 };
 
-/// Of a triangle that runs as the target's normal does: at most 1 when the guard is kept. A triangle where the
-/// target is not known is bad, but not worse than another such one. most_tilt: guard.tilt(), for many triangles.
-/// Surface: probe() and spacing() as in Target.
+/// Of a triangle where the target is not known: bad, but not worse than another such one.
+inline constexpr double unknown_misfit = 10;
+
+/// misfit() from a triangle's normal n of any length, and the target's distance (Å) and normal at the
+/// centroid. far: Å, of one that just keeps the guard.
+template <class V>
+HD __attribute__((always_inline)) inline void misfit_at(const V (&n)[3], const V& length, const V& distance,
+                                                        const V (&normal)[3], double far, double most_tilt,
+                                                        V& misfit) {
+  const V least = V{} + 1e-300;
+  const V cosine = (n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2]) / (length > least ? length : least);
+  const V off = (distance < 0 ? -distance : distance) / far, tilt = (1 - cosine) / most_tilt;
+  misfit = off < tilt ? tilt : off;
+}
+
+/// Of a triangle that runs as the target's normal does: at most 1 when the guard is kept. most_tilt: guard.tilt(),
+/// for many triangles. Surface: probe() and spacing() as in Target.
 template <class Surface>
 HD double misfit(const Surface& target, const Guard& guard, double most_tilt, Vec3d a, Vec3d b, Vec3d c) {
   double distance;
   Vec3d normal;
   if (!target.probe((a + b + c) / 3., distance, normal))
-    return 10;
+    return unknown_misfit;
   const Vec3d n = cross(b - a, c - a);
-  const double length = norm(n), cosine = dot(n, normal) / (length > 1e-300 ? length : 1e-300);
-  const double far = std::abs(distance) / (guard.distance * target.spacing()), tilt = (1 - cosine) / most_tilt;
-  return far < tilt ? tilt : far;
+  const double area[3] = {n.x, n.y, n.z}, along[3] = {normal.x, normal.y, normal.z};
+  double misfit;
+  misfit_at(area, norm(n), distance, along, guard.distance * target.spacing(), most_tilt, misfit);
+  return misfit;
 }
 template <class Surface>
 HD double misfit(const Surface& target, const Guard& guard, Vec3d a, Vec3d b, Vec3d c) {

@@ -14,6 +14,12 @@ public:
   Isosurface(const BlockGrid& grid, int threads);
   bool project(Vec3d& p, double reach) const override { return view().project(p, reach); }
   bool probe(Vec3d p, double& distance, Vec3d& normal) const override { return view().probe(p, distance, normal); }
+  void probe_eight(const EightPlaces& p, int n, EightProbes& out) const override {
+    improve::probe_eight(view(), p, n, out);
+  }
+  uint32_t project_eight(EightPlaces& p, int n, double reach) const override {
+    return improve::project_eight(view(), p, n, reach);
+  }
   /// Of up to four grid points next to each other, with all around them on the other side.
   bool pocket(Vec3d p, bool hole, Vec3d& inside) const override;
   /// Within two spacings on each axis of the grid point next to p.

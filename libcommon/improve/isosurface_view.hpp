@@ -1,9 +1,35 @@
 // isosurface_view.hpp — log G on plain arrays: value, distance and projection at a point. Host and device.
 #pragma once
 #include "density/block_grid.hpp"
+#include "improve/lanes.hpp"
 #include <cmath>
 
 namespace molmesh::improve {
+
+/// Of values v at the corners of a cell, z fastest, at t of the way through it: the trilinear value, and its
+/// gradient where the cell is `edge` wide.
+template <class V>
+HD __attribute__((always_inline)) inline void trilinear(const V& tx, const V& ty, const V& tz, const V (&v)[8],
+                                                        double edge, V& value, V (&gradient)[3]) {
+  const V z0 = v[0] + tz * (v[1] - v[0]), z1 = v[2] + tz * (v[3] - v[2]);
+  const V z2 = v[4] + tz * (v[5] - v[4]), z3 = v[6] + tz * (v[7] - v[6]);
+  const V y0 = z0 + ty * (z1 - z0), y1 = z2 + ty * (z3 - z2);
+  value = y0 + tx * (y1 - y0);
+  const V d0 = (v[1] - v[0]) + ty * ((v[3] - v[2]) - (v[1] - v[0]));
+  const V d1 = (v[5] - v[4]) + ty * ((v[7] - v[6]) - (v[5] - v[4]));
+  gradient[0] = (y1 - y0) / edge;
+  gradient[1] = ((z1 - z0) + tx * ((z3 - z2) - (z1 - z0))) / edge;
+  gradient[2] = (d0 + tx * (d1 - d0)) / edge;
+}
+
+/// To first order, from log G / isovalue and its gradient of that length, which is positive.
+template <class V>
+HD __attribute__((always_inline)) inline void to_distance(const V& f, const V (&gradient)[3], const V& length,
+                                                          double offset, V& distance, V (&normal)[3]) {
+  distance = -f / length - offset;
+  for (int a = 0; a < 3; ++a)
+    normal[a] = gradient[a] / -length;
+}
 
 /// How far outside the isosurface points may be kept, in spacings, so that chords enclose its own volume.
 inline constexpr double most_offset = 0.0175;
@@ -34,6 +60,9 @@ struct IsosurfaceView {
   /// u: p in spacings; c: the lower corner of its cell. False beyond all grids.
   HD bool locate(Vec3d p, Vec3d& u, Vec3i& c) const {
     u = (p - frame.origin) / frame.spacing;
+    return cell_of(u, c);
+  }
+  HD bool cell_of(Vec3d u, Vec3i& c) const {
     if (!(std::abs(u.x) < 1e9 && std::abs(u.y) < 1e9 && std::abs(u.z) < 1e9))
       return false;
     c = {lower(u.x), lower(u.y), lower(u.z)};
@@ -42,13 +71,9 @@ struct IsosurfaceView {
   /// As evaluate, at u by the cell at c with the corners' values v.
   HD void interpolate(Vec3d u, Vec3i c, const double (&v)[8], double& f, Vec3d& gradient) const {
     const Vec3d t = u - to_double(c);
-    const double z0 = v[0] + t.z * (v[1] - v[0]), z1 = v[2] + t.z * (v[3] - v[2]);
-    const double z2 = v[4] + t.z * (v[5] - v[4]), z3 = v[6] + t.z * (v[7] - v[6]);
-    const double y0 = z0 + t.y * (z1 - z0), y1 = z2 + t.y * (z3 - z2);
-    f = y0 + t.x * (y1 - y0);
-    const double d0 = (v[1] - v[0]) + t.y * ((v[3] - v[2]) - (v[1] - v[0]));
-    const double d1 = (v[5] - v[4]) + t.y * ((v[7] - v[6]) - (v[5] - v[4]));
-    gradient = Vec3d{y1 - y0, (z1 - z0) + t.x * ((z3 - z2) - (z1 - z0)), d0 + t.x * (d1 - d0)} / frame.spacing;
+    double g[3];
+    trilinear(t.x, t.y, t.z, v, frame.spacing, f, g);
+    gradient = {g[0], g[1], g[2]};
   }
 
   HD bool probe(Vec3d p, double& distance, Vec3d& normal) const {
@@ -57,11 +82,12 @@ struct IsosurfaceView {
     return evaluate(p, f, g) && to_distance(f, g, distance, normal);
   }
   HD bool to_distance(double f, Vec3d g, double& distance, Vec3d& normal) const {
-    const double length = norm(g);
+    const double length = norm(g), gradient[3] = {g.x, g.y, g.z};
     if (!(length > 0))
       return false;
-    distance = -f / length - offset;
-    normal = g / -length;
+    double n[3];
+    improve::to_distance(f, gradient, length, offset, distance, n);
+    normal = {n[0], n[1], n[2]};
     return true;
   }
 
@@ -94,9 +120,15 @@ struct IsosurfaceView {
 
   /// At the corners of the cell at c, z fastest. False where one is not active.
   HD bool values(Vec3i c, double (&v)[8]) const {
-    double sum = 0; // NaN when one is
+    BlockIndexView::Last last;
+    return values(c, v, last);
+  }
+  /// T: float, as they are kept, or double. last: where many cells near each other are asked for.
+  template <class T>
+  HD bool values(Vec3i c, T (&v)[8], BlockIndexView::Last& last) const {
+    T sum = 0; // NaN when one is
     if ((c.x & 7) < 7 && (c.y & 7) < 7 && (c.z & 7) < 7) {
-      const int64_t b = index.find(c);
+      const int64_t b = index.find(c, last);
       if (b < 0)
         return false;
       const float* q = log + (512 * b + slot(c));

@@ -35,7 +35,7 @@ int basis_of(const Vertex& k, const Target* target, bool lifted, Vec3d x, Vec3d 
 // Of the sails with the vertex at x, where no element is as bad as `above`: what a search raises to make the
 // surface fit.
 float Editor::worth(Vec3d x, float above) {
-  return spokes_.worst(x, above) > above ? fit_of_sails(x).worth() : 0;
+  return spokes_.worst(x, above) > above ? fit_of_sails(&x).worth() : 0;
 }
 
 bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double length, const Fit& before,
@@ -45,7 +45,14 @@ bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double le
   if (dimensions == 0)
     return false;
   const Vec3d from = x;
-  const auto bind = [&](Vec3d& y) { return constrain(k, from, y, guard_.reach * length); };
+  struct {
+    const Editor& editor;
+    const Vertex& vertex;
+    Vec3d from;
+    double reach;
+    bool operator()(Vec3d& y) const { return editor.constrain(vertex, from, y, reach); }
+    int all(Vec3d* y, int n) const { return editor.constrain_all(vertex, from, y, n, reach); }
+  } const bind{*this, k, from, guard_.reach * length};
   if (straighten) {
     struct {
       Editor& editor;

@@ -9,6 +9,8 @@ namespace molmesh::improve {
 
 /// Raises best = worth.worst(x) by moving x until it reaches the goal or no step helps. `basis`: up to three
 /// orthonormal directions to search. constrain(y) moves a trial onto what the vertex is bound to, or refuses;
+/// constrain.all(y, n), where there is one, does so to n trials and puts those not refused in front, in order; it
+/// returns how many.
 /// accept(y) has the last word. Worth: worst() and ascent() as in Spokes, and first_above() where that is faster
 /// than asking one by one. Steps under `least_step` of the length are not tried. Host and device.
 template <class Worth, class Constrain, class Accept>
@@ -44,9 +46,15 @@ HD bool pattern_search(Worth& worth, Vec3d& x, float& best, float goal, double l
       static_assert(Worth::most_places >= 14);
       Vec3d place[14];
       int places = 0;
-      for (int d = 0; d < directions; ++d)
-        if (place[places] = x + step * direction[d]; constrain(place[places]))
-          ++places;
+      if constexpr (requires { constrain.all(place, places); }) {
+        for (int d = 0; d < directions; ++d)
+          place[d] = x + step * direction[d];
+        places = constrain.all(place, directions);
+      } else {
+        for (int d = 0; d < directions; ++d)
+          if (place[places] = x + step * direction[d]; constrain(place[places]))
+            ++places;
+      }
       const float above = best + 1e-9f + 5e-3f * best;
       float q;
       for (int k = 0; (k = worth.first_above(place, k, places, above, q)) < places; ++k)
