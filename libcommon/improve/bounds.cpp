@@ -30,6 +30,9 @@ double Editor::misfit_face(const Element& e, size_t face, int32_t from, Vec3d at
   return outward(e, face) ? misfit(p[0], p[1], p[2]) : misfit(p[0], p[2], p[1]);
 }
 
+// How far from the target loose vertices may be, in units of off().
+constexpr double most_loose = 0.9;
+
 // Moves a trial x of a vertex at `from` onto what it is bound to.
 bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const {
   switch (k.kind) {
@@ -40,7 +43,7 @@ bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) cons
     if (target_ && guard_.lift > 0)
       return norm(x - from) <= guard_.lift * target_->spacing() && inside_walls(from, x);
     if (target_ && loose)
-      return norm(x - from) <= reach && off_at(x).value_or(1) <= 0.9 && inside_walls(from, x);
+      return norm(x - from) <= reach && off_at(x).value_or(1) <= most_loose && inside_walls(from, x);
     return target_ && target_->project(x, reach) && inside_walls(from, x);
   case Kind::sliding:
     for (int a = 0; a < 3; ++a)
@@ -55,21 +58,31 @@ bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) cons
 
 int Editor::constrain_all(const Vertex& k, Vec3d from, Vec3d* x, int n, double reach) const {
   int allowed = 0;
-  const auto put = [&](Vec3d y) { x[allowed++] = y; };
-  if (k.kind != Kind::surface || !target_ || guard_.lift > 0 || loose) {
+  if (k.kind != Kind::surface || !target_ || guard_.lift > 0) {
     for (int i = 0; i < n; ++i)
       if (Vec3d y = x[i]; constrain(k, from, y, reach))
-        put(y);
+        x[allowed++] = y;
     return allowed;
   }
-  EightPlaces eight;
   for (int first = 0; first < n; first += 8) {
     const int count = std::min(8, n - first);
+    EightPlaces eight;
     for (int i = 0; i < count; ++i)
       eight.set(size_t(i), x[first + i]);
-    for (uint32_t left = target_->project_eight(eight, count, reach); left; left &= left - 1)
+    uint32_t left = 0;
+    if (loose) {
+      EightProbes probes;
+      target_->probe_eight(eight, count, probes);
+      for (uint32_t bits = probes.known; bits; bits &= bits - 1)
+        if (const auto i = size_t(std::countr_zero(bits));
+            off_by(probes.distance[i]) <= most_loose && norm(eight[i] - from) <= reach)
+          left |= 1u << i;
+    } else {
+      left = target_->project_eight(eight, count, reach);
+    }
+    for (; left; left &= left - 1)
       if (const Vec3d y = eight[size_t(std::countr_zero(left))]; inside_walls(from, y))
-        put(y);
+        x[allowed++] = y;
   }
   return allowed;
 }
@@ -129,7 +142,7 @@ std::optional<double> Editor::off_at(Vec3d x) const {
   Vec3d normal;
   if (!target_ || !target_->probe(x, distance, normal))
     return std::nullopt;
-  return std::abs(distance + target_->offset()) / (0.02 * target_->spacing());
+  return off_by(distance);
 }
 
 double Editor::off(int32_t v) const {

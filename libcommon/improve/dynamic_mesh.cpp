@@ -199,7 +199,7 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   DynamicMesh m;
   const size_t points = mesh.point.size(), elements = mesh.tet.size();
   const auto with_room = [&](auto& v, size_t n) { // what it will grow by, untouched till then: no second copy
-    par::reserve_pages(v, n, n / 8, threads);
+    par::reserve_pages(v, n, n / 4, threads);
   };
   with_room(m.point, points);
   m.point.assign(mesh.point.begin(), mesh.point.end());
@@ -209,7 +209,7 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   m.incident.assign(points, -1);
   with_room(m.touched, points);
   m.touched.assign(points, 0);
-  m.element.reserve(elements + elements / 8);
+  m.element.reserve(elements + elements / 4);
   m.element.resize(elements);
   m.restless.assign(size_t(DynamicMesh::stretches(mesh.tet.size())), 0);
   m.worst.assign(m.restless.size(), 2);

@@ -145,6 +145,9 @@ private:
   float lack(const std::vector<int32_t>& elements) const;
   float lack(const std::vector<Candidate>& elements) const;
   bool outward(const Element& e, size_t face) const;
+  double off_by(double distance) const { ///< the target's to a place
+    return std::abs(distance + target_->offset()) / (0.02 * target_->spacing());
+  }
   std::optional<double> off_at(Vec3d x) const; ///< off() of a place; none where the target is not known
   bool constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const;
   /// Those of n trials that constrain() allows, in front and in order; how many.

@@ -8,7 +8,7 @@ namespace molmesh::improve {
 
 Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads)
     : m_(mesh), target_(target), cell_(cell), threads_(threads), sheets_(1) {
-  const auto with_room = [&](auto& v, size_t n) { par::reserve_pages(v, n, n / 8, threads_); };
+  const auto with_room = [&](auto& v, size_t n) { par::reserve_pages(v, n, n / 4, threads_); };
   with_room(stamp_, m_.element.size());
   with_room(parts_.owner, m_.point.size());
   find_crowded(false);

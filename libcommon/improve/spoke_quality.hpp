@@ -13,10 +13,25 @@ struct Spoke {
   V ab, bc, ca;    ///< squared edges
 };
 
+/// From its corners.
+template <class V>
+HD __attribute__((always_inline)) inline void complete(Spoke<V>& s) {
+  const V ux = s.bx - s.ax, uy = s.by - s.ay, uz = s.bz - s.az, vx = s.cx - s.ax, vy = s.cy - s.ay,
+          vz = s.cz - s.az;
+  const V wx = s.cx - s.bx, wy = s.cy - s.by, wz = s.cz - s.bz;
+  s.nx = uy * vz - uz * vy;
+  s.ny = uz * vx - ux * vz;
+  s.nz = ux * vy - uy * vx;
+  s.r = 1 / (s.nx * s.nx + s.ny * s.ny + s.nz * s.nz);
+  s.ab = ux * ux + uy * uy + uz * uz;
+  s.bc = wx * wx + wy * wy + wz * wz;
+  s.ca = vx * vx + vy * vy + vz * vz;
+}
+
 HD inline Spoke<float> make_spoke(Vec3f a, Vec3f b, Vec3f c) {
-  const Vec3f n = cross(b - a, c - a);
-  return {a.x, a.y, a.z, b.x, b.y,          b.z,          c.x,          c.y,
-          c.z, n.x, n.y, n.z, 1 / norm2(n), norm2(b - a), norm2(c - b), norm2(a - c)};
+  Spoke<float> s{a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, 0, 0, 0, 0, 0, 0, 0};
+  complete(s);
+  return s;
 }
 
 /// Corners of an element with the vertex `moving` in front, the others in an even permutation.

@@ -1,7 +1,6 @@
 // spokes.cpp — from corners to the kernels' groups.
 #include "improve/spokes.hpp"
 #include <algorithm>
-#include <bit>
 
 namespace molmesh::improve {
 
@@ -9,18 +8,25 @@ void Spokes::add(const std::array<Vec3d, 4>& p, int moving) {
   const auto corner = [&](int i) { return p[size_t(spoke_corner(moving, i))]; };
   if (inverse_ == 0)
     inverse_ = 1 / std::max(norm(corner(1) - corner(2)), 1e-300);
-  const auto field = std::bit_cast<std::array<float, SpokeGroup::fields>>(
-      make_spoke(local(corner(1)), local(corner(2)), local(corner(3))));
-  const auto lane = static_cast<int>(order_.size() % SpokeGroup::lanes);
+  const auto lane = order_.size() % SpokeGroup::lanes;
   if (lane == 0) {
+    if (!made_)
+      make_last_group();
     group_.emplace_back();
-    for (size_t k = 0; k < field.size(); ++k)
-      std::fill_n(group_.back().field[k], SpokeGroup::lanes, field[k]);
-  } else {
-    for (size_t k = 0; k < field.size(); ++k)
-      group_.back().field[k][lane] = field[k];
   }
+  for (int i = 0; i < 3; ++i)
+    for (int a = 0; a < 3; ++a)
+      last_.field[3 * i + a][lane] = corner(i + 1)[a];
+  made_ = false;
   order_.push_back(static_cast<int32_t>(order_.size()));
+}
+
+void Spokes::make_last_group() {
+  const size_t used = (order_.size() - 1) % SpokeGroup::lanes + 1;
+  for (double* const field : last_.field)
+    std::fill(field + used, field + SpokeGroup::lanes, field[0]);
+  make_spokes(last_, origin_, inverse_, group_.back());
+  made_ = true;
 }
 
 Vec3d Spokes::ascent(Vec3d x, double step) {

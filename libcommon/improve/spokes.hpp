@@ -18,6 +18,7 @@ public:
     shape_ = static_cast<float>(shape);
     inverse_ = 0;
     decided_ = 0;
+    made_ = true;
     group_.clear();
     order_.clear();
   }
@@ -33,7 +34,10 @@ public:
   int first_above(const Vec3d* y, int from, int n, float above, float& q);
 
 private:
+  void make_last_group();
   SpokesView view() {
+    if (!made_)
+      make_last_group();
     return {group_.data(), static_cast<int32_t>(order_.size()), order_.data(), &decided_, shape_};
   }
   Vec3f local(Vec3d x) const {
@@ -45,6 +49,8 @@ private:
   double inverse_ = 0; ///< of the unit of length
   int32_t decided_ = 0;
   std::vector<SpokeGroup> group_;
+  SpokeCorners last_; ///< of the last group
+  bool made_ = true;  ///< the last group is, from all of last_
   std::vector<int32_t> order_;
   std::vector<float> quality_;
 };

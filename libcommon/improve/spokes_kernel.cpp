@@ -27,15 +27,37 @@ HWY_INLINE hn::Vec<F> to_highway(const V& v) {
   return hn::Load(f, reinterpret_cast<const float*>(&v));
 }
 
+/// The fields of a spoke in the order of SpokeGroup.
+HWY_INLINE void for_fields(Spoke<V>& s, int begin, int end, auto&& visit) {
+  V* const at[SpokeGroup::fields] = {&s.ax, &s.ay, &s.az, &s.bx, &s.by, &s.bz, &s.cx, &s.cy,
+                                     &s.cz, &s.nx, &s.ny, &s.nz, &s.r,  &s.ab, &s.bc, &s.ca};
+  for (int k = begin; k < end; ++k)
+    visit(k, *at[k]);
+}
+
+void make_spokes_simd(const SpokeCorners& from, const Vec3d& origin, double inverse, SpokeGroup& to) {
+  using D = hn::CappedTag<double, 8>;
+  constexpr D d{};
+  constexpr hn::Rebind<float, D> half{};
+  for (int k = 0; k < SpokeCorners::fields; ++k)
+    for (size_t l = 0; l < SpokeGroup::lanes; l += hn::Lanes(d)) {
+      const auto p = hn::Sub(hn::Load(d, from.field[k] + l), hn::Set(d, origin[k % 3]));
+      hn::StoreU(hn::DemoteTo(half, hn::Mul(p, hn::Set(d, inverse))), half, to.field[k] + l);
+    }
+  for (int l = 0; l < SpokeGroup::lanes; l += lanes) {
+    Spoke<V> s;
+    for_fields(s, 0, SpokeCorners::fields, [&](int k, V& v) { load(to.field[k] + l, v); });
+    complete(s);
+    for_fields(s, SpokeCorners::fields, SpokeGroup::fields,
+               [&](int k, V& v) { hn::StoreU(to_highway(v), f, to.field[k] + l); });
+  }
+}
+
 /// Spokes from `first` on, a multiple of the lanes.
 HWY_INLINE void evaluate(const SpokesView& s, int32_t first, const Vec3f& x, V& q) {
   const float* from = s.group[first / SpokeGroup::lanes].field[0] + first % SpokeGroup::lanes;
   Spoke<V> spoke;
-  V* const to[SpokeGroup::fields] = {&spoke.ax, &spoke.ay, &spoke.az, &spoke.bx, &spoke.by, &spoke.bz,
-                                     &spoke.cx, &spoke.cy, &spoke.cz, &spoke.nx, &spoke.ny, &spoke.nz,
-                                     &spoke.r,  &spoke.ab, &spoke.bc, &spoke.ca};
-  for (int k = 0; k < SpokeGroup::fields; ++k)
-    load(from + SpokeGroup::lanes * k, *to[k]);
+  for_fields(spoke, 0, SpokeGroup::fields, [&](int k, V& v) { load(from + SpokeGroup::lanes * k, v); });
   spoke_quality(spoke, x.x, x.y, x.z, q, s.shape);
 }
 
@@ -134,11 +156,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace molmesh::improve {
 
+HWY_EXPORT(make_spokes_simd);
 HWY_EXPORT(worst_spoke_simd);
 HWY_EXPORT(judge_spokes_simd);
 HWY_EXPORT(judge_around_simd);
 HWY_EXPORT(first_place_above_simd);
 
+void make_spokes(const SpokeCorners& from, Vec3d origin, double inverse, SpokeGroup& to) {
+  HWY_DYNAMIC_DISPATCH(make_spokes_simd)(from, origin, inverse, to);
+}
 float worst_spoke(const SpokesView& s, Vec3f x, float above) {
   return HWY_DYNAMIC_DISPATCH(worst_spoke_simd)(s, x, above);
 }

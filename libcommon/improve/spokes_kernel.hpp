@@ -13,6 +13,14 @@ struct alignas(64) SpokeGroup {
 };
 static_assert(sizeof(Spoke<float>) == SpokeGroup::fields * sizeof(float));
 
+/// Corners a, b, c of sixteen elements, x y z of each in turn, as the mesh has them.
+struct alignas(64) SpokeCorners {
+  static constexpr int fields = 9;
+  double field[fields][SpokeGroup::lanes];
+};
+/// Single precision relative to `origin`, in units of 1 / inverse.
+void make_spokes(const SpokeCorners& from, Vec3d origin, double inverse, SpokeGroup& to);
+
 struct SpokesView {
   const SpokeGroup* group;
   int32_t count;
