@@ -29,6 +29,7 @@ bool Editor::owned(int32_t e) const {
 }
 
 // False when an element of the star is not ours. Only our elements are stamped, so no other editor sees the stamps.
+// Nearly without branches: which faces lead on is not to be guessed.
 bool Editor::star(int32_t v, std::vector<int32_t>& out) {
   out.clear();
   ++clock_;
@@ -37,21 +38,24 @@ bool Editor::star(int32_t v, std::vector<int32_t>& out) {
     return false;
   stamp_[size_t(first)] = clock_;
   out.push_back(first);
-  for (size_t i = 0; i < out.size(); ++i) {
-    const Element& e = m_.element[size_t(out[i])];
+  size_t found = 1;
+  for (size_t i = 0; i < found; ++i) {
+    out.resize(found + 4);
+    const int32_t t = out[i];
+    const Element& e = m_.element[size_t(t)];
     for (size_t f = 0; f < 4; ++f) {
-      const int32_t n = e.n[f];
-      if (e.v[f] == v || n < 0 || stamp_[size_t(n)] == clock_)
-        continue;
+      const int32_t next = e.v[f] != v && e.n[f] >= 0 ? e.n[f] : t;
+      const Element& beyond = m_.element[size_t(next)];
+      const bool fresh = stamp_[size_t(next)] != clock_;
       // It shares three vertices with one of ours.
-      const Element& next = m_.element[size_t(n)];
-      for (size_t g = 0; g < 4; ++g)
-        if (next.n[g] == out[i] && parts_.owner[size_t(next.v[g])] != room_.part)
-          return false;
-      stamp_[size_t(n)] = clock_;
-      out.push_back(n);
+      if (fresh & (parts_.owner[size_t(beyond.v[beyond.face_towards(t)])] != room_.part))
+        return false;
+      stamp_[size_t(next)] = clock_;
+      out[found] = next;
+      found += fresh;
     }
   }
+  out.resize(found);
   return true;
 }
 

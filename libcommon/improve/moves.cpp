@@ -98,7 +98,7 @@ Fit Editor::gather_sails(const std::vector<int32_t>& star, int32_t v) {
   if (m_.vertex[size_t(v)].kind == Kind::surface)
     for (const int32_t t : star) {
       const Element& e = m_.element[size_t(t)];
-      for (size_t f = 0; f < 4; ++f)
+      for (size_t f = 0; f < 4 && e.any_labelled(); ++f)
         if (e.label[f] != 0 && e.v[f] != v)
           add_sail(e, f, v);
     }
