@@ -44,7 +44,8 @@ void Mending::mend(int rounds) {
   editor_.straighten = editor_.bold = false;
   editor_.loose = loose;
   editor_.goal = pass_.goal;
-  for (int k = 0; k < rounds; ++k) {
+  for (int k = 0, idle = 0; k < rounds && idle < 2; ++k) { // after two in vain, one of each kind, all are
+    const int64_t done = editor_.counts.total();
     editor_.worst_first = (k % 2 == 0) == pass_.worst_first;
     std::vector<int32_t> list = below(pass_.goal, slots_);
     if (list.empty())
@@ -57,6 +58,7 @@ void Mending::mend(int rounds) {
           improve_element(editor_, m_, t, pass_);
       list = below(pass_.goal, editor_.changed);
     }
+    idle = editor_.counts.total() == done ? idle + 1 : 0;
   }
 }
 
