@@ -1,6 +1,6 @@
 // near_isosurface.hpp — an isosurface probed at many points close to each other.
 #pragma once
-#include "improve/isosurface_view.hpp"
+#include "improve/probe_kernel.hpp"
 
 namespace molmesh::improve {
 
@@ -26,6 +26,8 @@ public:
     view_.interpolate(u, c, cell.value, f, gradient);
     return view_.to_distance(f, gradient, distance, normal);
   }
+
+  void probe_eight(const EightPlaces& p, int n, EightProbes& out) const { improve::probe_eight(view_, p, n, out); }
 
 private:
   struct Cell {

@@ -1,29 +1,61 @@
 // move_vertex.hpp — one vertex looks for the place where its worst element is best. Host and device.
 #pragma once
 #include "contour/detail/relax_items.hpp"
+#include "improve/probe_kernel.hpp"
 #include "improve/search.hpp"
 #include <cmath>
 
 namespace molmesh::contour::detail {
 
-/// Of a surface vertex, y moves towards the surface, within the walls it lies on, until it is no farther than
-/// `most`.
+/// What a vertex of the surface is bound to: y moves towards the surface, within the walls that the vertex lies on,
+/// until it is no farther than `most` (Å). As improve::pattern_search asks.
 template <class Surface>
-HD bool to_surface(const Surface& surface, const Bounds& bound, int32_t vertex, double most, Vec3d& y) {
-  constexpr double least_normal = 0.25; // square of the normal's part within a wall
-  double distance;
-  Vec3d normal;
-  if (!surface.probe(y, distance, normal))
-    return false;
-  if (std::fabs(distance) <= most)
-    return true;
-  for (int a = 0; a < 3; ++a)
-    if (bound.on_wall(vertex, a))
-      normal[a] = 0;
-  const double along = norm2(normal);
-  y -= (distance - (distance < 0 ? -most : most)) / along * normal;
-  return along > least_normal;
-}
+struct NearSurface {
+  const Surface& surface;
+  const Bounds& bound;
+  int32_t vertex;
+  bool on_surface; ///< else it is bound to nothing
+  double most;
+
+  HD bool operator()(Vec3d& y) const {
+    double distance;
+    Vec3d normal;
+    return !on_surface || (surface.probe(y, distance, normal) && pull(distance, normal, y));
+  }
+  int all(Vec3d* y, int n) const requires requires(const improve::EightPlaces& p, improve::EightProbes& out) {
+    surface.probe_eight(p, n, out);
+  }
+  {
+    if (!on_surface)
+      return n;
+    int allowed = 0;
+    for (int first = 0; first < n; first += 8) {
+      const int count = n - first < 8 ? n - first : 8;
+      improve::EightPlaces eight;
+      for (int i = 0; i < count; ++i)
+        eight.set(static_cast<size_t>(i), y[first + i]);
+      improve::EightProbes probes;
+      surface.probe_eight(eight, count, probes);
+      for (size_t i = 0; i < static_cast<size_t>(count); ++i)
+        if (Vec3d p = eight[i]; probes.is_known(i) && pull(probes.distance[i], probes.normal[i], p))
+          y[allowed++] = p;
+    }
+    return allowed;
+  }
+
+private:
+  HD bool pull(double distance, Vec3d normal, Vec3d& y) const {
+    constexpr double least_normal = 0.25; // square of the normal's part within a wall
+    if (std::fabs(distance) <= most)
+      return true;
+    for (int a = 0; a < 3; ++a)
+      if (bound.on_wall(vertex, a))
+        normal[a] = 0;
+    const double along = norm2(normal);
+    y -= (distance - (distance < 0 ? -most : most)) / along * normal;
+    return along > least_normal;
+  }
+};
 
 /// most_distance: of a surface vertex from the surface, in its spacings, if it was nearer. Star, of candidate c:
 /// spokes(), what improve::pattern_search asks; length(), the mean of its edges at the vertex; and take(x, worst),
@@ -47,7 +79,7 @@ HD bool move_vertex(const RelaxView& r, const Surface& surface, double most_dist
     most = std::fabs(most);
     most = most < most_distance * surface.spacing() ? most_distance * surface.spacing() : most;
   }
-  const auto constrain = [&](Vec3d& y) { return !on_surface || to_surface(surface, r.bound, vertex, most, y); };
+  const NearSurface<Surface> constrain{surface, r.bound, vertex, on_surface, most};
   const auto accept = [](const Vec3d&) { return true; };
   float best = r.worst[c];
   return improve::pattern_search(star.spokes(), x, best, r.goal, star.length(), axis, axes, constrain, accept) &&
