@@ -37,12 +37,12 @@ struct Element {
 
   bool alive() const { return v[0] >= 0; }
   int find(int32_t vertex) const {
-    const int later = (v[1] == vertex) + 2 * (v[2] == vertex) + 3 * (v[3] == vertex);
+    const int later = (v[1] == vertex) | 2 * (v[2] == vertex) | 3 * (v[3] == vertex);
     return later - ((later == 0) & (v[0] != vertex));
   }
   /// The face that neighbour t is across; 0 when it is none.
   size_t face_towards(int32_t t) const {
-    return static_cast<size_t>((n[1] == t) + 2 * (n[2] == t) + 3 * (n[3] == t));
+    return static_cast<size_t>((n[1] == t) | 2 * (n[2] == t) | 3 * (n[3] == t));
   }
   bool any_labelled() const { return (label[0] | label[1] | label[2] | label[3]) != 0; }
 };

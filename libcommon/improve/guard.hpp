@@ -19,7 +19,7 @@ struct Guard {
 /// Of a triangle where the target is not known: bad, but not worse than another such one.
 inline constexpr double unknown_misfit = 10;
 
-/// misfit() from a triangle's normal n of any length, and the target's distance (Å) and normal at the
+/// misfit() of a triangle with a normal n of that length, from the target's distance (Å) and normal at its
 /// centroid. far: Å, of one that just keeps the guard.
 template <class V>
 HD __attribute__((always_inline)) inline void misfit_at(const V (&n)[3], const V& length, const V& distance,

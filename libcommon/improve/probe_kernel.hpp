@@ -27,6 +27,12 @@ struct alignas(64) EightProbes {
   bool is_known(size_t i) const { return known >> i & 1; }
 };
 
+/// Of what can be asked for many places: a Target, or what answers as one.
+template <class Surface>
+concept ProbesEight = requires(const Surface& surface, const EightPlaces& p, int n, EightProbes& out) {
+  surface.probe_eight(p, n, out);
+};
+
 /// IsosurfaceView::probe at the first n places, to the last bit.
 void probe_eight(const IsosurfaceView& surface, const EightPlaces& p, int n, EightProbes& out);
 /// IsosurfaceView::project of the first n places, to the last bit. Bit i: it is true of place i.

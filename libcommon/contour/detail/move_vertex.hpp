@@ -22,10 +22,7 @@ struct NearSurface {
     Vec3d normal;
     return !on_surface || (surface.probe(y, distance, normal) && pull(distance, normal, y));
   }
-  int all(Vec3d* y, int n) const requires requires(const improve::EightPlaces& p, improve::EightProbes& out) {
-    surface.probe_eight(p, n, out);
-  }
-  {
+  int all(Vec3d* y, int n) const requires improve::ProbesEight<Surface> {
     if (!on_surface)
       return n;
     int allowed = 0;
