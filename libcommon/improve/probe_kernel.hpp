@@ -33,6 +33,28 @@ concept ProbesEight = requires(const Surface& surface, const EightPlaces& p, int
   surface.probe_eight(p, n, out);
 };
 
+/// The first n places one by one, where nothing does it faster. Surface: probe() and project() as in Target.
+template <class Surface>
+void probe_each(const Surface& surface, const EightPlaces& p, int n, EightProbes& out) {
+  out.known = 0;
+  for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
+    Vec3d normal;
+    out.known |= uint32_t{surface.probe(p[i], out.distance[i], normal)} << i;
+    out.normal.set(i, normal);
+  }
+}
+/// Bit i: place i was put on the surface.
+template <class Surface>
+uint32_t project_each(const Surface& surface, EightPlaces& p, int n, double reach) {
+  uint32_t on_surface = 0;
+  for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
+    Vec3d q = p[i];
+    on_surface |= uint32_t{surface.project(q, reach)} << i;
+    p.set(i, q);
+  }
+  return on_surface;
+}
+
 /// IsosurfaceView::probe at the first n places, to the last bit.
 void probe_eight(const IsosurfaceView& surface, const EightPlaces& p, int n, EightProbes& out);
 /// IsosurfaceView::project of the first n places, to the last bit. Bit i: it is true of place i.

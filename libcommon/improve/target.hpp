@@ -20,23 +20,10 @@ public:
   /// known.
   virtual bool probe(Vec3d p, double& distance, Vec3d& normal) const = 0;
   /// probe() at the first n places.
-  virtual void probe_eight(const EightPlaces& p, int n, EightProbes& out) const {
-    out.known = 0;
-    for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
-      Vec3d normal;
-      out.known |= uint32_t{probe(p[i], out.distance[i], normal)} << i;
-      out.normal.set(i, normal);
-    }
-  }
+  virtual void probe_eight(const EightPlaces& p, int n, EightProbes& out) const { probe_each(*this, p, n, out); }
   /// project() of the first n places. Bit i: it is true of place i.
   virtual uint32_t project_eight(EightPlaces& p, int n, double reach) const {
-    uint32_t on_surface = 0;
-    for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
-      Vec3d q = p[i];
-      on_surface |= uint32_t{project(q, reach)} << i;
-      p.set(i, q);
-    }
-    return on_surface;
+    return project_each(*this, p, n, reach);
   }
   /// A point in the nearest closed piece of the surface that is hardly larger than the grid's cells, of holes in
   /// what is inside, or of what is not a hole. False where none is near.

@@ -1,11 +1,28 @@
 // kernels.cpp — what libcommon vectorizes with Highway, one element after the other: for a build by nvcc alone.
 #include "contour/samples_kernel.hpp"
 #include "contour/surface_sample.hpp"
+#include "density/values_kernel.hpp"
+#include "improve/guard.hpp"
+#include "improve/probe_kernel.hpp"
 #include "improve/quality.hpp"
 #include "improve/quality_kernel.hpp"
 #include "improve/spokes_kernel.hpp"
 #include <algorithm>
+#include <array>
 #include <bit>
+
+namespace molmesh::density {
+
+int32_t pack_part(const float* packed, const uint64_t* stored, const uint64_t* active, float* out) {
+  int32_t n = 0;
+  for (int w = 0; w < 8; ++w)
+    for (uint64_t left = stored[w]; left; left &= left - 1, ++packed)
+      if (active[w] & left & -left)
+        out[n++] = *packed;
+  return n;
+}
+
+} // namespace molmesh::density
 
 namespace molmesh::improve {
 namespace {
@@ -19,6 +36,18 @@ float judge(const SpokesView& s, int32_t k, Vec3f x) {
 }
 
 } // namespace
+
+void make_spokes(const SpokeCorners& from, Vec3d origin, double inverse, SpokeGroup& to) {
+  for (int l = 0; l < SpokeGroup::lanes; ++l) {
+    Vec3f corner[3];
+    for (int k = 0; k < SpokeCorners::fields; ++k)
+      corner[k / 3][k % 3] = static_cast<float>((from.field[k][l] - origin[k % 3]) * inverse);
+    const auto field =
+        std::bit_cast<std::array<float, SpokeGroup::fields>>(make_spoke(corner[0], corner[1], corner[2]));
+    for (size_t k = 0; k < field.size(); ++k)
+      to.field[k][l] = field[k];
+  }
+}
 
 float worst_spoke(const SpokesView& s, Vec3f x, float) {
   float worst = 2;
@@ -45,6 +74,29 @@ int first_place_above(const SpokesView& s, const Places& places, int from, int n
     if (q = worst_spoke(s, {places.x[k], places.y[k], places.z[k]}, above); q > above)
       return k;
   return n;
+}
+
+void probe_eight(const IsosurfaceView& surface, const EightPlaces& p, int n, EightProbes& out) {
+  probe_each(surface, p, n, out);
+}
+
+uint32_t project_eight(const IsosurfaceView& surface, EightPlaces& p, int n, double reach) {
+  return project_each(surface, p, n, reach);
+}
+
+void centroids(const EightTriangles& t, EightPlaces& out) {
+  for (size_t i = 0; i < 8; ++i)
+    out.set(i, (t.a[i] + t.b[i] + t.c[i]) / 3.);
+}
+
+void misfits(const EightTriangles& t, const EightProbes& at, double far, double most_tilt, double (&out)[8]) {
+  for (size_t i = 0; i < 8; ++i) {
+    const Vec3d n = cross(t.b[i] - t.a[i], t.c[i] - t.a[i]), along = at.normal[i];
+    const double area[3] = {n.x, n.y, n.z}, normal[3] = {along.x, along.y, along.z};
+    misfit_at(area, norm(n), at.distance[i], normal, far, most_tilt, out[i]);
+    if (!at.is_known(i))
+      out[i] = unknown_misfit;
+  }
 }
 
 void qualities(const EightElements& e, float (&quality)[8], double shape) {
