@@ -13,6 +13,22 @@ const float* active_values(const BandBlock& block, BlockValues& room) {
   return room.data();
 }
 
+namespace {
+
+/// All 512 points of a block; inactive ones hold their side's value.
+void unpack(const BandBlock& block, double inside_value, float* out) {
+  BlockValues room;
+  const float* active = active_values(block, room);
+  for (size_t s = 0; s < 512; ++s) {
+    const uint64_t bit = uint64_t{1} << (s & 63);
+    out[s] = block.active[s >> 6] & bit  ? *active++
+             : block.above[s >> 6] & bit ? static_cast<float>(inside_value)
+                                         : 0.0f;
+  }
+}
+
+} // namespace
+
 BlockGrid to_block_grid(const Band& band, int threads) {
   const size_t n = band.block.size();
   BlockGrid grid;
@@ -26,14 +42,7 @@ BlockGrid to_block_grid(const Band& band, int threads) {
     const auto b = static_cast<size_t>(i);
     const BandBlock& block = band.block[b];
     grid.corner[b] = block.corner;
-    BlockValues room;
-    const float* packed = active_values(block, room);
-    for (size_t s = 0; s < 512; ++s) {
-      const uint64_t bit = uint64_t{1} << (s & 63);
-      grid.value[512 * b + s] = block.active[s >> 6] & bit  ? *packed++
-                                : block.above[s >> 6] & bit ? static_cast<float>(band.info.inside_value)
-                                                            : 0.0f;
-    }
+    unpack(block, band.info.inside_value, &grid.value[512 * b]);
     std::copy(block.active.begin(), block.active.end(), &grid.active[8 * b]);
   });
   return grid;
@@ -53,12 +62,7 @@ bool wall_cuts_surface(const Band& band) {
   };
   for (const BandBlock& b : band.block) {
     float value[512];
-    BlockValues room;
-    const float* packed = active_values(b, room);
-    for (size_t s = 0; s < 512; ++s) {
-      const bool active = b.active[s >> 6] >> (s & 63) & 1, above = b.above[s >> 6] >> (s & 63) & 1;
-      value[s] = active ? *packed++ : above ? static_cast<float>(band.info.inside_value) : 0.0f;
-    }
+    unpack(b, band.info.inside_value, value);
     if (cut(b.corner, [&](int s) { return value[s] > band.info.isovalue; }))
       return true;
   }
