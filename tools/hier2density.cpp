@@ -7,6 +7,7 @@
 #include "cuda/report.hpp"
 #include "density/density.hpp"
 #include "formats/hier/hier.hpp"
+#include "formats/vdb/leaves.hpp"
 #include "formats/vdb/vdb.hpp"
 
 using namespace molmesh;
@@ -75,7 +76,7 @@ density::Options density_options(const Options& o) {
   return d;
 }
 
-void report(cli::Run& r, const density::Band& band, const density::Counts& counts) {
+void report(cli::Run& r, const density::Band& band, const formats::Leaves& leaves, const density::Counts& counts) {
   const Vec3i n = band.frame.points;
   r.counts["atoms"] = band.info.atoms;
   r.counts["grid_points"] = {n.x, n.y, n.z};
@@ -84,7 +85,7 @@ void report(cli::Run& r, const density::Band& band, const density::Counts& count
   r.counts["analyzed_points"] = band.info.analyzed_points;
   r.counts["k_A"] = double(band.info.analyzed_points) / (double(n.x) * n.y * n.z);
   r.counts["active_points"] = counts.search.active_points;
-  r.counts["blocks"] = band.block.size();
+  r.counts["blocks"] = leaves.leaf().size();
   r.counts["inside_blocks"] = band.inside.size();
   r.counts["blocks_visited"] = counts.search.blocks_visited;
   r.counts["blocks_evaluated"] = counts.search.blocks_evaluated;
@@ -98,6 +99,12 @@ Status run(const Options& o, cli::Run& r) {
   cli::OutputFile out(o.output);
   r.phase("read");
   const Hierarchy h = formats::read_hier(in.stream(), in.name());
+  formats::Leaves leaves(o.resolved_threads());
+  d.take = [&](const FieldInfo& info, std::span<const density::BandBlocks> runs) {
+    r.phase("write");
+    leaves.add(runs, static_cast<float>(info.inside_value));
+    r.phase("density");
+  };
   r.phase("density");
   density::Counts counts;
   density::Band band;
@@ -113,9 +120,9 @@ Status run(const Options& o, cli::Run& r) {
     }
   }
   band.info.creator = cli::creator(r.tool);
-  report(r, band, counts);
+  report(r, band, leaves, counts);
   r.phase("write");
-  formats::write_vdb(out.stream(), band, o.resolved_threads());
+  formats::write_vdb(out.stream(), band.frame, band.info, band.inside, leaves);
   out.commit();
   return Status::good;
 }

@@ -2,6 +2,7 @@
 #include "cli/run.hpp"
 #include "cli/help.hpp"
 #include "par/par.hpp"
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -30,16 +31,18 @@ int Common::resolved_threads() const {
 
 void Run::phase(const std::string& name) {
   end_phase();
-  phases.push_back({name, 0});
+  open_ = static_cast<size_t>(
+      std::find_if(phases.begin(), phases.end(), [&](const Phase& p) { return p.name == name; }) - phases.begin());
+  if (open_ == phases.size())
+    phases.push_back({name, 0});
   started_ = std::chrono::steady_clock::now();
-  open_ = true;
 }
 
 void Run::end_phase() {
-  if (!open_)
+  if (open_ == none)
     return;
-  phases.back().seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
-  open_ = false;
+  phases[open_].seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+  open_ = none;
 }
 
 void Run::note(const std::string& line) const {

@@ -39,7 +39,7 @@ struct Common {
 /// Phases and counts of one run, for --report and -v.
 class Run {
 public:
-  /// Ends the phase before, starts this one.
+  /// Ends the phase before, starts this one or goes on with it.
   void phase(const std::string& name);
   void end_phase();
   nlohmann::ordered_json counts = nlohmann::ordered_json::object();
@@ -56,7 +56,8 @@ public:
 
 private:
   std::chrono::steady_clock::time_point started_;
-  bool open_ = false;
+  static constexpr auto none = static_cast<size_t>(-1);
+  size_t open_ = none; ///< of phases
 };
 
 /// "hier2density 0.1.0"

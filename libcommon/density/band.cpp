@@ -48,26 +48,34 @@ BlockGrid to_block_grid(const Band& band, int threads) {
   return grid;
 }
 
-bool wall_cuts_surface(const Band& band) {
-  const Vec3i lo = band.frame.lower, last = lo + band.frame.points - Vec3i{1, 1, 1};
-  const auto cut = [&](Vec3i corner, auto inside) {
-    for (int s = 0; s < 512; ++s) {
-      const Vec3i p = corner + Vec3i{s >> 6, s >> 3 & 7, s & 7};
-      const bool wall =
-          p.x == lo.x || p.y == lo.y || p.z == lo.z || p.x == last.x || p.y == last.y || p.z == last.z;
-      if (wall && inside(s))
-        return true;
-    }
-    return false;
-  };
-  for (const BandBlock& b : band.block) {
-    float value[512];
-    unpack(b, band.info.inside_value, value);
-    if (cut(b.corner, [&](int s) { return value[s] > band.info.isovalue; }))
+namespace {
+
+/// above(s): is point s of the block at `corner` above the isovalue?
+template <class Above>
+bool cut(const GridFrame& frame, Vec3i corner, Above&& above) {
+  const Vec3i lo = frame.lower, last = lo + frame.points - Vec3i{1, 1, 1};
+  for (int s = 0; s < 512; ++s) {
+    const Vec3i p = corner + Vec3i{s >> 6, s >> 3 & 7, s & 7};
+    const bool wall = p.x == lo.x || p.y == lo.y || p.z == lo.z || p.x == last.x || p.y == last.y || p.z == last.z;
+    if (wall && above(s))
       return true;
   }
-  return std::any_of(band.inside.begin(), band.inside.end(),
-                     [&](Vec3i c) { return cut(c, [](int) { return true; }); });
+  return false;
+}
+
+} // namespace
+
+bool wall_cuts_surface(const GridFrame& frame, const FieldInfo& info, BandBlocks blocks) {
+  return std::any_of(blocks.begin(), blocks.end(), [&](const BandBlock& b) {
+    float value[512];
+    unpack(b, info.inside_value, value);
+    return cut(frame, b.corner, [&](int s) { return value[s] > info.isovalue; });
+  });
+}
+
+bool wall_cuts_surface(const GridFrame& frame, std::span<const Vec3i> inside) {
+  return std::any_of(inside.begin(), inside.end(),
+                     [&](Vec3i c) { return cut(frame, c, [](int) { return true; }); });
 }
 
 } // namespace molmesh::density

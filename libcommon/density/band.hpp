@@ -3,6 +3,7 @@
 #pragma once
 #include "density/block_grid.hpp"
 #include <array>
+#include <span>
 
 namespace molmesh::density {
 
@@ -17,6 +18,8 @@ struct BandBlock {
   const float* value; ///< G of the stored points, in order; belongs to the band
 };
 
+using BandBlocks = std::span<const BandBlock>;
+
 /// Room for the values of a block, and for what vectors write behind them.
 using BlockValues = std::array<float, 512 + 16>;
 /// G of the active points of a block, in order: the block's own where it stores no other, else in `room`.
@@ -26,15 +29,17 @@ const float* active_values(const BandBlock& block, BlockValues& room);
 struct Band {
   GridFrame frame;
   FieldInfo info;
-  LargeArray<BandBlock> block; ///< ascending
+  LargeArray<BandBlock> block; ///< ascending; none where they have been given away as they were found
   std::vector<Vec3i> inside;   ///< ascending
   int64_t active_points = 0;
   std::vector<LargeArray<float>> storage;
 };
 BlockGrid to_block_grid(const Band& band, int threads);
 
-/// True when a point on the grid's outermost layer has G > isovalue: the wall cuts the surface.
-bool wall_cuts_surface(const Band& band);
+/// True when a point on the grid's outermost layer has G > isovalue: the wall cuts the surface. Asked of active
+/// blocks and of blocks that lie wholly inside.
+bool wall_cuts_surface(const GridFrame& frame, const FieldInfo& info, BandBlocks blocks);
+bool wall_cuts_surface(const GridFrame& frame, std::span<const Vec3i> inside);
 
 } // namespace molmesh::density
 

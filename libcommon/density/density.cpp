@@ -32,8 +32,8 @@ void check_band(const Options& o) {
 }
 
 /// Every active value is a number in the file.
-void check_values(const Band& band) {
-  for (const BandBlock& b : band.block) {
+void check_values(BandBlocks blocks) {
+  for (const BandBlock& b : blocks) {
     BlockValues room;
     const float* const value = active_values(b, room);
     int64_t n = 0;
@@ -72,8 +72,22 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
   counts.margin = margin;
   const GridFrame frame =
       o.grid_points > 0 ? frame_with_points(box, margin, o.grid_points) : frame_with_spacing(box, margin, h);
+  bool cut = false;
+  const BandSink look = [&](const FieldInfo& info, std::span<const BandBlocks> runs) {
+    for (const BandBlocks& blocks : runs) {
+      if (f.ln_highest > 88)
+        check_values(blocks);
+      cut = cut || (!derived && wall_cuts_surface(frame, info, blocks));
+    }
+    if (o.take)
+      o.take(info, runs);
+  };
+  if (o.take)
+    s.take = look;
   Band band = find(f, frame, s, counts.search);
-  if (band.block.empty()) {
+  const BandBlocks left = band.block; // nothing was taken, or this finder cannot give away
+  look(band.info, {&left, 1});
+  if (band.active_points == 0) {
     char text[160];
     std::snprintf(
         text, sizeof text,
@@ -81,12 +95,12 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
         o.band_lower, o.band_upper, h);
     fail(Status::failed, text);
   }
-  if (f.ln_highest > 88)
-    check_values(band);
+  if (o.take)
+    band.block = {}, band.storage = {};
   band.info.source = hierarchy.source;
   for (const Level& l : hierarchy.level)
     band.info.levels += (band.info.levels.empty() ? "" : " ") + l.name;
-  if (!derived && wall_cuts_surface(band)) {
+  if (cut || (!derived && wall_cuts_surface(frame, band.inside))) {
     char text[128];
     std::snprintf(text, sizeof text,
                   "the grid's wall cuts the surface: a margin of %g Å is too small, %.2f Å suffices", margin,

@@ -16,6 +16,7 @@ struct Options {
   AtomSearch atoms = AtomSearch::bvh;
   int threads = 1;
   std::function<void(int64_t done, int64_t total)> progress;
+  BandSink take; ///< gets the blocks of the band, which then has none; empty: the band keeps them
 };
 
 struct Counts {

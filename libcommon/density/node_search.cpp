@@ -147,8 +147,8 @@ void NodeSearch::evaluate_left_out(uint64_t blocks, Vec3i node, Workspace& w) co
 }
 
 const float* NodeSearch::pack(int b, const uint64_t* points, Workspace& w) const {
-  float* const to = w.packed.take(512 + 16);
-  w.packed.keep(static_cast<size_t>(pack_active(w.value[b], points, to)));
+  float* const to = w.packed().take(512 + 16);
+  w.packed().keep(static_cast<size_t>(pack_active(w.value[b], points, to)));
   return to;
 }
 

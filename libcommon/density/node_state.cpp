@@ -76,7 +76,7 @@ void add_needed(const SlabState& before, SlabState& slab, const SlabState& after
             [](const NodeState& a, const NodeState& b) { return a.corner < b.corner; });
 }
 
-SlabAppend::SlabAppend(const SlabState& slab, Band& band) : slab_(slab) {
+SlabAppend::SlabAppend(const SlabState& slab, bool with_blocks, Band& band) : slab_(slab), blocks_(with_blocks) {
   for (size_t i = 0; i < slab.node.size(); ++i)
     if (rows_.empty() || slab.node[i].corner.y != slab.node[rows_.back().begin].corner.y)
       rows_.push_back({i, i + 1});
@@ -87,7 +87,7 @@ SlabAppend::SlabAppend(const SlabState& slab, Band& band) : slab_(slab) {
     for (const Row& row : rows_) {
       int64_t k = 0, c = 0;
       for (size_t i = row.begin; i < row.end; ++i) {
-        k += std::popcount(slab.node[i].kept >> 16 * x & 0xffff);
+        k += blocks_ ? std::popcount(slab.node[i].kept >> 16 * x & 0xffff) : 0;
         c += std::popcount(slab.node[i].closed >> 16 * x & 0xffff);
       }
       kept.push_back(k);
@@ -123,8 +123,10 @@ void SlabAppend::copy(int64_t part) const {
     BandBlock* block = block_[r];
     Vec3i* inside = inside_[r];
     for_runs(r, [&](const NodeState& s, int first) {
-      const auto skipped = std::popcount(s.kept & ((uint64_t{1} << first) - 1));
-      block = std::copy_n(s.band.begin() + skipped, std::popcount(run(s.kept, first)), block);
+      if (blocks_) {
+        const auto skipped = std::popcount(s.kept & ((uint64_t{1} << first) - 1));
+        block = std::copy_n(s.band.begin() + skipped, std::popcount(run(s.kept, first)), block);
+      }
       for (int z = 0; z < node_blocks; ++z)
         if (s.closed >> (first + z) & 1)
           *inside++ = 8 * (s.corner + block_at(first + z));

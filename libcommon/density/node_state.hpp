@@ -56,8 +56,8 @@ void add_needed(const SlabState& before, SlabState& slab, const SlabState& after
 /// Puts what a slab keeps and encloses at the end of the band, ascending.
 class SlabAppend {
 public:
-  /// Makes room. The slab stays where and as it is until all parts are copied.
-  SlabAppend(const SlabState& slab, Band& band);
+  /// blocks: not only what is inside. Makes room. The slab stays where and as it is until all parts are copied.
+  SlabAppend(const SlabState& slab, bool blocks, Band& band);
   int64_t parts() const { return parts_; }
   /// Calls for different parts are independent.
   void copy(int64_t part) const;
@@ -72,6 +72,7 @@ private:
   void for_runs(size_t layer_of_row, Use&& use) const;
 
   const SlabState& slab_;
+  const bool blocks_;
   std::vector<Row> rows_;
   std::vector<BandBlock*> block_; ///< where each layer of each row begins, layer by layer; then the end
   std::vector<Vec3i*> inside_;

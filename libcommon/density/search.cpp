@@ -2,6 +2,7 @@
 #include "density/search.hpp"
 #include "density/node_search.hpp"
 #include "par/par.hpp"
+#include "par/pool.hpp"
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -19,6 +20,7 @@ private:
   SlabState slab_at(int32_t x) const;
   void find(SlabState& slab, size_t node, Workspace& w);
   void finish(const SlabState& before, SlabState& slab, const SlabState& after, size_t node, Workspace& w) const;
+  void give_away(const SlabState& slab, const FieldInfo& info);
   template <class Work>
   void with_workspace(Work&& work);
 
@@ -28,18 +30,34 @@ private:
   const Arithmetic arithmetic_;
   NodeList nodes_;
   const NodeSearch node_{f_, frame_, o_, nodes_};
-  Workspaces workspaces_;
+  par::Pool<Workspace> workspaces_;
+  size_t turn_ = 0; ///< of Workspace::begin
   std::atomic<int64_t> done_{0};
 };
 
 template <class Work>
 void Search::with_workspace(Work&& work) {
-  std::unique_ptr<Workspace> w = workspaces_.borrow([this] {
+  const auto make = [this] {
     return std::make_unique<Workspace>(
         Workspace{Selection(f_, budget_for(o_), o_.band_lower, o_.band_upper, arithmetic_)});
+  };
+  workspaces_.with(make, [&](Workspace& w) {
+    w.begin(turn_);
+    work(w);
   });
-  work(*w);
-  workspaces_.give_back(std::move(w));
+}
+
+/// The blocks of a finished slab, where the band does not keep them.
+void Search::give_away(const SlabState& slab, const FieldInfo& info) {
+  if (!o_.take)
+    return;
+  std::vector<BandBlocks> runs;
+  for (const NodeState& s : slab.node)
+    if (!s.band.empty())
+      runs.push_back(s.band);
+  if (!runs.empty())
+    o_.take(info, runs);
+  ++turn_;
 }
 
 SlabState Search::slab_at(int32_t x) const {
@@ -77,14 +95,15 @@ Band Search::run(SearchCounts& counts) {
   nodes_ = o_.atoms == AtomSearch::kdtree ? nodes_by_tree(f_, frame_, o_.full, o_.threads)
                                           : nodes_by_halving(f_, frame_, o_.full, o_.threads);
   constexpr size_t many = size_t{1} << 22;
-  band.block.reserve(std::min(blocks_a_node * nodes_.node.size(), many)); // pages come when they are used
+  if (!o_.take)
+    band.block.reserve(std::min(blocks_a_node * nodes_.node.size(), many)); // pages come when they are used
   const int32_t first = first_block(frame_).x, end = (frame_.lower.x + frame_.points.x + 7) >> 3;
-  std::array<SlabState, 5> slab; // new, found, to be finished, finished, forgotten
+  std::array<SlabState, slabs_at_work> slab;
   for (int32_t x = first; x < end + 3 * node_blocks; x += node_blocks) {
     std::rotate(slab.begin(), slab.end() - 1, slab.end());
     slab[0] = slab_at(x);
     add_needed(slab[3], slab[2], slab[1]);
-    const SlabAppend append(slab[3], band);
+    const SlabAppend append(slab[3], !o_.take, band);
     const int64_t finds = slab[0].nodes(), finishes = finds + slab[2].nodes(), copies = finishes + append.parts(),
                   all = copies + slab[4].nodes();
     par::for_n(all, o_.threads, 1, [&](int64_t i) {
@@ -99,6 +118,7 @@ Band Search::run(SearchCounts& counts) {
           w.spares.forget(slab[4].node[static_cast<size_t>(i - copies)]);
       });
     });
+    give_away(slab[2], band.info);
   }
   int64_t points = 0;
   counts = {};
@@ -109,8 +129,9 @@ Band Search::run(SearchCounts& counts) {
     counts.atom_visits += w->counts.atom_visits;
     counts.active_points += w->counts.active_points;
     points += w->points;
-    for (LargeArray<float>& chunk : w->packed.release())
-      band.storage.push_back(std::move(chunk));
+    if (!o_.take)
+      for (LargeArray<float>& chunk : w->packed().release())
+        band.storage.push_back(std::move(chunk));
   }
   band.active_points = counts.active_points;
   band.info.analyzed_points = o_.full ? int64_t{frame_.points.x} * frame_.points.y * frame_.points.z : points;

@@ -6,6 +6,7 @@
 #include "density/search_counts.hpp"
 #include "density/selection.hpp"
 #include <functional>
+#include <span>
 
 namespace molmesh::density {
 
@@ -16,6 +17,10 @@ enum class AtomSearch {
   all     ///< no search: every atom counts everywhere
 };
 
+/// Takes blocks of the band as they are found, every block once, in runs of any order. They and what they point to
+/// are gone afterwards. info: the numbers that empty_band() knows.
+using BandSink = std::function<void(const FieldInfo& info, std::span<const BandBlocks> runs)>;
+
 struct SearchOptions {
   double isovalue = 1, band_lower = 0.9, band_upper = 1.1; ///< in units of G
   double tolerance = 1e-4;                                 ///< ε of I1
@@ -23,6 +28,7 @@ struct SearchOptions {
   AtomSearch atoms = AtomSearch::bvh;
   int threads = 1;
   std::function<void(int64_t done, int64_t total)> progress; ///< called from any thread; may be empty
+  BandSink take; ///< empty: the band keeps its blocks, and their memory grows with the surface
 };
 
 /// The field must be made with budget_for(options).far. The result has frame, values, sides and the numbers of

@@ -2,40 +2,14 @@
 #pragma once
 #include "density/band_kernel.hpp"
 #include "density/evaluate.hpp"
-#include "density/large_array.hpp"
 #include "density/node_state.hpp"
 #include "density/search_counts.hpp"
 #include "density/selection.hpp"
-#include <memory>
-#include <mutex>
+#include "par/arena.hpp"
 #include <type_traits>
 #include <vector>
 
 namespace molmesh::density {
-
-/// Floats handed out piece by piece; they stay where they are.
-class Arena {
-public:
-  /// A piece of at most `most` ≤ 2^15 floats; keep() says how many of them stay.
-  float* take(size_t most) {
-    if (chunk_.empty() || used_ + most > size) {
-      chunk_.emplace_back(size);
-      used_ = ready_ = 0;
-    }
-    if (used_ + most > ready_) {
-      prepare_pages(chunk_.back().data() + ready_, at_once * sizeof(float));
-      ready_ += at_once;
-    }
-    return chunk_.back().data() + used_;
-  }
-  void keep(size_t n) { used_ += n; }
-  std::vector<LargeArray<float>> release() { return std::move(chunk_); }
-
-private:
-  static constexpr size_t size = size_t{1} << 21, at_once = size_t{1} << 15; // 8 MiB, 128 KiB
-  std::vector<LargeArray<float>> chunk_;
-  size_t used_ = 0, ready_ = 0; ///< of the last chunk
-};
 
 /// What nodes that nobody needs any more leave to the next ones.
 class Spares {
@@ -44,7 +18,7 @@ public:
     if (!sides_.empty())
       return last_of(sides_);
     constexpr size_t size = sizeof(NodePoints) / sizeof(float);
-    static_assert(alignof(NodePoints) <= 16 && sizeof(NodePoints) % 16 == 0 && size <= size_t{1} << 15 &&
+    static_assert(alignof(NodePoints) <= 16 && sizeof(NodePoints) % 16 == 0 && size <= par::Arena<float>::largest &&
                   std::is_trivially_destructible_v<NodePoints>); // as the arena has them
     NodePoints* const sides = new (points_.take(size)) NodePoints;
     points_.keep(size);
@@ -67,10 +41,13 @@ private:
     v.pop_back();
     return t;
   }
-  Arena points_;
+  par::Arena<float> points_;
   std::vector<NodePoints*> sides_;
   std::vector<std::vector<BandBlock>> band_;
 };
+
+/// Slabs of a search: new, found, to be finished, finished, forgotten.
+constexpr size_t slabs_at_work = 5;
 
 struct Workspace {
   Selection selection;
@@ -79,34 +56,20 @@ struct Workspace {
   NodeWords below = {}, above = {}, far_below = {}, far_above = {}, active = {};
   NodeBits rows = {};
   Sides beyond = {};
-  Arena packed = {}; ///< of the band
+  /// Values of the band, by the turn of the search that packed them.
+  std::array<par::Arena<float>, slabs_at_work - 2> values = {};
+  size_t turn = 0;
+  par::Arena<float>& packed() { return values[turn % values.size()]; }
+  /// A new turn takes the room of the one whose slab has been given away.
+  void begin(size_t new_turn) {
+    if (turn == new_turn)
+      return;
+    turn = new_turn;
+    packed().restart();
+  }
   Spares spares = {};
   SearchCounts counts = {};
   int64_t points = 0; ///< of the grid, evaluated
-};
-
-/// Hands workspaces to whoever works; as many as ever worked at once.
-class Workspaces {
-public:
-  template <class Make>
-  std::unique_ptr<Workspace> borrow(Make&& make) {
-    const std::lock_guard<std::mutex> lock(guard_);
-    if (free_.empty())
-      return make();
-    std::unique_ptr<Workspace> w = std::move(free_.back());
-    free_.pop_back();
-    return w;
-  }
-  void give_back(std::unique_ptr<Workspace> w) {
-    const std::lock_guard<std::mutex> lock(guard_);
-    free_.push_back(std::move(w));
-  }
-  /// When nobody works.
-  std::vector<std::unique_ptr<Workspace>>& all() { return free_; }
-
-private:
-  std::mutex guard_;
-  std::vector<std::unique_ptr<Workspace>> free_;
 };
 
 } // namespace molmesh::density

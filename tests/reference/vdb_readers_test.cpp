@@ -69,12 +69,12 @@ void read_by(const char* program, const char* needs) {
     density::Options o;
     o.spacing = spacing;
     density::Counts counts;
-    density::Band band = density::compute(h, o, counts);
-    band.info.creator = "hier2density 0.1.0";
+    BlockGrid grid = density::to_block_grid(density::compute(h, o, counts), 1);
+    grid.info.creator = "hier2density 0.1.0";
     const std::string stem = (folder / std::to_string(int(4 * spacing))).string();
     std::ofstream out(stem + ".vdb", std::ios::binary);
-    formats::write_vdb(out, band);
-    std::ofstream(stem + ".json") << expected(density::to_block_grid(band, 1));
+    formats::write_vdb(out, grid);
+    std::ofstream(stem + ".json") << expected(grid);
   }
   const std::string log = (folder / "log").string();
   const std::string command = std::string("/usr/bin/python3 " MOLMESH_SOURCE_DIR "/tests/reference/read_vdb.py ") +

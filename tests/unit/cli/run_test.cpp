@@ -28,6 +28,8 @@ using Body = std::function<Status(const Options&, cli::Run&)>;
 
 Status write_spacing(const Options& o, cli::Run& run) {
   run.phase("work");
+  run.phase("rest");
+  run.phase("work"); // goes on
   run.counts["points"] = 27;
   cli::OutputFile file(o.output);
   file.stream() << o.spacing << '\n';
@@ -154,9 +156,10 @@ TEST_CASE("the run report holds the keys of the contract and the options in forc
   CHECK(j.at("output") == folder / "out");
   CHECK(j.at("options") == nlohmann::json::parse(R"({"mode": "omp", "threads": 3, "spacing": 0.5, "parts": 8,
                                                      "rule": ["*", "//A"], "domains": "", "fill": true})"));
-  REQUIRE(j.at("phases").size() == 1);
+  REQUIRE(j.at("phases").size() == 2);
   CHECK(j["phases"][0].at("name") == "work");
   CHECK(j["phases"][0].at("seconds").get<double>() >= 0);
+  CHECK(j["phases"][1].at("name") == "rest");
   CHECK(j.at("counts").at("points") == 27);
   CHECK(j.at("peak_rss_bytes").get<int64_t>() > 1'000'000);
 }

@@ -1,6 +1,9 @@
 // vdb_test.cpp — what is written is read back, what is broken is refused.
+#include "density/density.hpp"
 #include "error.hpp"
+#include "formats/vdb/leaves.hpp"
 #include "formats/vdb/vdb.hpp"
+#include "unit/density/oracle.hpp"
 #include "unit/refusal.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -87,6 +90,32 @@ TEST_CASE("a grid written is read back bit for bit") {
   CHECK(r.value == g.value);
   CHECK(r.active == g.active);
   CHECK(r.inside == g.inside);
+}
+
+TEST_CASE("blocks that are given away as they are found make the file of the whole band") {
+  const Hierarchy h = test::random_chains(4, 60, 8, {0.4, 1}, 3);
+  density::Options o;
+  o.spacing = 0.4; // several slabs
+  density::Counts counts;
+  const BlockGrid kept = density::to_block_grid(density::compute(h, o, counts), 1);
+  const auto after_uuid = [](const std::string& file) { return file.substr(60); };
+  const std::string whole = after_uuid(bytes(kept));
+  for (const int threads : {1, 3}) {
+    o.threads = threads;
+    formats::Leaves leaves(threads);
+    int calls = 0;
+    o.take = [&](const FieldInfo& info, std::span<const density::BandBlocks> runs) {
+      leaves.add(runs, static_cast<float>(info.inside_value));
+      ++calls;
+    };
+    const density::Band band = density::compute(h, o, counts);
+    CHECK(band.block.empty());
+    CHECK(leaves.leaf().size() == kept.corner.size());
+    CHECK(calls > 3); // memory is used again
+    std::ostringstream out;
+    formats::write_vdb(out, band.frame, band.info, band.inside, leaves);
+    CHECK(after_uuid(out.str()) == whole);
+  }
 }
 
 TEST_CASE("an empty grid is a valid file") {
