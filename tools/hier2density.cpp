@@ -85,7 +85,7 @@ void report(cli::Run& r, const density::Band& band, const formats::Leaves& leave
   r.counts["analyzed_points"] = band.info.analyzed_points;
   r.counts["k_A"] = double(band.info.analyzed_points) / (double(n.x) * n.y * n.z);
   r.counts["active_points"] = counts.search.active_points;
-  r.counts["blocks"] = leaves.leaf().size();
+  r.counts["blocks"] = leaves.size();
   r.counts["inside_blocks"] = band.inside.size();
   r.counts["blocks_visited"] = counts.search.blocks_visited;
   r.counts["blocks_evaluated"] = counts.search.blocks_evaluated;

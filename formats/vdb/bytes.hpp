@@ -3,6 +3,7 @@
 #include "geom/vec.hpp"
 #include <cstdint>
 #include <cstring>
+#include <ostream>
 #include <string>
 #include <string_view>
 
@@ -26,9 +27,12 @@ public:
     for (int a = 0; a < 3; ++a)
       number(v[a]);
   }
-  /// Room for n bytes in all.
-  void reserve(size_t n) { bytes_.reserve(n); }
   const std::string& str() const { return bytes_; }
+  /// Hands on what is there, and begins anew.
+  void flush(std::ostream& out) {
+    out.write(bytes_.data(), static_cast<std::streamsize>(bytes_.size()));
+    bytes_.clear();
+  }
 
 private:
   std::string bytes_;

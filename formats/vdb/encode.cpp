@@ -14,11 +14,10 @@ constexpr Vec3i shifted(Vec3i p, int bits) {
   return {p.x >> bits, p.y >> bits, p.z >> bits};
 }
 
-/// A leaf (its position in Leaves) or an inside tile (leaf < 0).
 struct Entry {
   Vec3i corner;
-  int64_t leaf;
-  uint64_t key; ///< the same order by one comparison, where the grid is not too wide for it
+  const Leaves::Leaf* leaf; ///< null: a tile, inside
+  uint64_t key;             ///< the same order by one comparison, where the grid is not too wide for it
 };
 
 /// OpenVDB's depth-first order: by root child (4096 points), then lower node (128), then leaf (8).
@@ -83,7 +82,8 @@ Iterator end_of(Iterator begin, Iterator end, int bits) {
   return std::find_if(begin, end, [&](const Entry& e) { return !(shifted(e.corner, bits) == p); });
 }
 
-void write_topology(Bytes& out, float inside_value, const std::vector<Entry>& entry, const Leaves& leaves) {
+void write_topology(Bytes& out, float inside_value, const std::vector<Entry>& entry, std::ostream& stream) {
+  constexpr size_t at_once = size_t{1} << 20;
   out.number(int32_t{1});  // buffers
   out.number(0.0f);        // background
   out.number(uint32_t{0}); // root tiles
@@ -97,7 +97,7 @@ void write_topology(Bytes& out, float inside_value, const std::vector<Entry>& en
     out.vec({root.x * 4096, root.y * 4096, root.z * 4096});
     Node<5> upper;
     const auto wholly_inside = [](Iterator b, Iterator e) {
-      return e - b == 4096 && std::all_of(b, e, [](const Entry& x) { return x.leaf < 0; });
+      return e - b == 4096 && std::all_of(b, e, [](const Entry& x) { return !x.leaf; });
     };
     for (Iterator b = r, e; b != root_end; b = e) {
       e = end_of(b, root_end, 7);
@@ -112,25 +112,27 @@ void write_topology(Bytes& out, float inside_value, const std::vector<Entry>& en
       Node<4> lower;
       for (Iterator x = b; x != e; ++x) {
         const size_t i = Node<4>::offset(x->corner, 3);
-        x->leaf < 0 ? lower.set_inside(i) : lower.set_child(i);
+        x->leaf ? lower.set_child(i) : lower.set_inside(i);
       }
       lower.write(out, inside_value);
       for (Iterator x = b; x != e; ++x)
-        if (x->leaf >= 0)
-          out.raw(leaves.leaf()[static_cast<size_t>(x->leaf)].bytes, Leaves::Leaf::mask_size);
+        if (x->leaf)
+          out.raw(x->leaf->bytes, Leaves::Leaf::mask_size);
+      if (out.str().size() >= at_once)
+        out.flush(stream);
     }
   }
 }
 
 /// In large pieces: gathered by all threads, while one writes those gathered before.
-void write_leaves(std::ostream& out, const std::vector<Entry>& entry, const Leaves& leaves) {
+void write_leaves(std::ostream& out, const std::vector<Entry>& entry, int threads) {
   constexpr int64_t a_piece = 256, pieces_at_once = 32;
   const auto n = static_cast<int64_t>(entry.size()), pieces = (n + a_piece - 1) / a_piece;
   std::vector<std::string> ready(pieces_at_once), next(pieces_at_once);
   int64_t gathered = 0;
   for (int64_t first = 0; (first < pieces || gathered > 0) && out; first += pieces_at_once) {
     const int64_t now = std::clamp<int64_t>(pieces - first, 0, pieces_at_once);
-    par::for_n(now + 1, leaves.threads(), 1, [&](int64_t task) {
+    par::for_n(now + 1, threads, 1, [&](int64_t task) {
       if (task == 0) {
         for (int64_t i = 0; i < gathered; ++i) {
           const std::string& piece = ready[static_cast<size_t>(i)];
@@ -142,8 +144,8 @@ void write_leaves(std::ostream& out, const std::vector<Entry>& entry, const Leav
       piece.clear();
       const int64_t begin = (first + task - 1) * a_piece;
       for (int64_t i = begin; i < std::min(n, begin + a_piece); ++i) {
-        const Leaves::Leaf& l = leaves.leaf()[static_cast<size_t>(entry[static_cast<size_t>(i)].leaf)];
-        piece.append(l.bytes, l.size);
+        const Leaves::Leaf* const l = entry[static_cast<size_t>(i)].leaf;
+        piece.append(l->bytes, l->size);
       }
     });
     gathered = now;
@@ -155,23 +157,21 @@ void write_leaves(std::ostream& out, const std::vector<Entry>& entry, const Leav
 
 void write_vdb(std::ostream& out, const GridFrame& frame, const FieldInfo& info, const std::vector<Vec3i>& inside,
                const Leaves& leaves) {
-  const std::vector<Leaves::Leaf>& leaf = leaves.leaf();
   std::vector<Entry> entry;
-  entry.reserve(leaf.size() + inside.size());
-  for (size_t i = 0; i < leaf.size(); ++i)
-    entry.push_back({leaf[i].corner, static_cast<int64_t>(i), 0});
+  entry.reserve(leaves.size() + inside.size());
+  for (const Leaves::Run& run : leaves.runs())
+    for (const Leaves::Leaf& l : run)
+      entry.push_back({l.corner, &l, 0});
   for (const Vec3i& c : inside)
-    entry.push_back({c, -1, 0});
+    entry.push_back({c, nullptr, 0});
   set_keys(entry, frame);
   par::sort(entry, leaves.threads(), depth_first);
   Bytes head;
-  constexpr size_t above_a_leaf = 8; // the nodes' masks, mostly
-  head.reserve((Leaves::Leaf::mask_size + above_a_leaf) * leaf.size());
   write_preamble(head, frame, info);
-  write_topology(head, static_cast<float>(info.inside_value), entry, leaves);
-  out.write(head.str().data(), static_cast<std::streamsize>(head.str().size()));
-  std::erase_if(entry, [](const Entry& e) { return e.leaf < 0; });
-  write_leaves(out, entry, leaves);
+  write_topology(head, static_cast<float>(info.inside_value), entry, out);
+  head.flush(out);
+  std::erase_if(entry, [](const Entry& e) { return !e.leaf; });
+  write_leaves(out, entry, leaves.threads());
 }
 
 void write_vdb(std::ostream& out, const BlockGrid& grid, int threads) {

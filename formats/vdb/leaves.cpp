@@ -45,6 +45,13 @@ Leaves::Leaf Leaves::encode(const View& view, float inside_value, par::Arena<cha
   return {view.corner, static_cast<uint32_t>(all), begin};
 }
 
+size_t Leaves::size() const {
+  size_t n = 0;
+  for (const Run& run : runs_)
+    n += run.size();
+  return n;
+}
+
 template <class Work>
 void Leaves::for_parts(size_t parts, Work&& work) {
   par::for_n(static_cast<int64_t>(parts), threads_, 1, [&](int64_t part) {
@@ -54,14 +61,14 @@ void Leaves::for_parts(size_t parts, Work&& work) {
 }
 
 void Leaves::add(std::span<const density::BandBlocks> runs, float inside_value) {
-  std::vector<size_t> first(1, leaf_.size());
+  std::vector<size_t> first(1);
   for (const density::BandBlocks& run : runs)
     first.push_back(first.back() + run.size());
-  leaf_.resize(first.back());
+  Run& leaf = runs_.emplace_back(first.back());
   constexpr size_t at_once = 8; // nodes of some 20 blocks
   for_parts((runs.size() + at_once - 1) / at_once, [&](size_t part, par::Arena<char>& arena) {
     for (size_t r = part * at_once; r < std::min(runs.size(), (part + 1) * at_once); ++r) {
-      Leaf* to = &leaf_[first[r]];
+      Leaf* to = &leaf[first[r]];
       for (const density::BandBlock& b : runs[r]) {
         density::BlockValues room;
         *to++ = encode({b.corner, b.active.data(), b.above.data(), density::active_values(b, room)}, inside_value,
@@ -72,8 +79,8 @@ void Leaves::add(std::span<const density::BandBlocks> runs, float inside_value) 
 }
 
 void Leaves::add(const BlockGrid& grid) {
-  const size_t n = grid.corner.size(), first = leaf_.size();
-  leaf_.resize(first + n);
+  const size_t n = grid.corner.size();
+  Run& leaf = runs_.emplace_back(n);
   constexpr size_t at_once = 256;
   for_parts((n + at_once - 1) / at_once, [&](size_t part, par::Arena<char>& arena) {
     for (size_t b = part * at_once; b < std::min(n, (part + 1) * at_once); ++b) {
@@ -89,8 +96,7 @@ void Leaves::add(const BlockGrid& grid) {
         else if (value[s] != 0)
           inside[s >> 6] |= bit;
       }
-      leaf_[first + b] =
-          encode({grid.corner[b], active, inside, packed}, static_cast<float>(grid.info.inside_value), arena);
+      leaf[b] = encode({grid.corner[b], active, inside, packed}, static_cast<float>(grid.info.inside_value), arena);
     }
   });
 }

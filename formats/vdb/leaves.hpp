@@ -23,7 +23,9 @@ public:
     const char* bytes; ///< first the mask of active points
     static constexpr size_t mask_size = 64;
   };
-  const std::vector<Leaf>& leaf() const { return leaf_; } ///< in no order
+  using Run = std::vector<Leaf>;
+  const std::vector<Run>& runs() const { return runs_; } ///< one for each add()
+  size_t size() const;
   int threads() const { return threads_; }
 
 private:
@@ -39,7 +41,7 @@ private:
   static Leaf encode(const View& view, float inside_value, par::Arena<char>& to);
 
   int threads_;
-  std::vector<Leaf> leaf_;
+  std::vector<Run> runs_;
   par::Pool<par::Arena<char>> bytes_;
 };
 

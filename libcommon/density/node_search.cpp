@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace molmesh::density {
@@ -226,21 +227,20 @@ void NodeSearch::finish(NodeState& s, const FacedBits* const* below, const Faced
     evaluate_left_out(wanting, s.corner, w);
   }
   s.band = w.spares.band();
-  s.band.clear();
-  s.band.reserve(static_cast<size_t>(std::popcount(s.kept)));
+  s.band.resize(static_cast<size_t>(std::popcount(s.kept)));
+  BandBlock* to = s.band.data();
   for (uint64_t left = s.kept; left; left &= left - 1) {
     const int b = std::countr_zero(left);
     const bool again = wanting >> b & 1;
     const uint64_t *const active = w.active.word[b], *const stored = again ? active : s.sides->stored.word[b];
-    BandBlock to;
-    to.corner = 8 * (s.corner + block_at(b));
-    std::copy_n(active, 8, to.active.begin());
-    std::copy_n(w.above.word[b], 8, to.above.begin());
-    std::copy_n(stored, 8, to.stored.begin());
-    to.value = again ? pack(b, active, w) : s.sides->value[b];
-    for (const uint64_t word : to.active)
+    to->corner = 8 * (s.corner + block_at(b));
+    std::memcpy(to->active.data(), active, sizeof(Mask));
+    std::memcpy(to->above.data(), w.above.word[b], sizeof(Mask));
+    std::memcpy(to->stored.data(), stored, sizeof(Mask));
+    to->value = again ? pack(b, active, w) : s.sides->value[b];
+    for (const uint64_t word : to->active)
       w.counts.active_points += std::popcount(word);
-    s.band.push_back(to);
+    ++to;
   }
 }
 

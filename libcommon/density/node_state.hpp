@@ -31,7 +31,7 @@ struct NodeState {
   NodePoints* sides = nullptr;    ///< none: all below the band, or all above it when `inside` is full
   std::vector<Vec3i> needed;      ///< nodes without clusters that this one may give corners of band cells
   uint64_t kept = 0, closed = 0;  ///< blocks with active points; without and inside
-  std::vector<BandBlock> band;    ///< of kept, in order
+  LargeArray<BandBlock> band;     ///< of kept, in order
 };
 
 /// The nodes that begin at block x.

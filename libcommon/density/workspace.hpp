@@ -24,7 +24,7 @@ public:
     points_.keep(size);
     return sides;
   }
-  std::vector<BandBlock> band() { return band_.empty() ? std::vector<BandBlock>() : last_of(band_); }
+  LargeArray<BandBlock> band() { return band_.empty() ? LargeArray<BandBlock>() : last_of(band_); }
   void forget(NodeState& s) {
     if (s.sides)
       sides_.push_back(s.sides);
@@ -43,7 +43,7 @@ private:
   }
   par::Arena<float> points_;
   std::vector<NodePoints*> sides_;
-  std::vector<std::vector<BandBlock>> band_;
+  std::vector<LargeArray<BandBlock>> band_;
 };
 
 /// Slabs of a search: new, found, to be finished, finished, forgotten.

@@ -110,7 +110,7 @@ TEST_CASE("blocks that are given away as they are found make the file of the who
     };
     const density::Band band = density::compute(h, o, counts);
     CHECK(band.block.empty());
-    CHECK(leaves.leaf().size() == kept.corner.size());
+    CHECK(leaves.size() == kept.corner.size());
     CHECK(calls > 3); // memory is used again
     std::ostringstream out;
     formats::write_vdb(out, band.frame, band.info, band.inside, leaves);
