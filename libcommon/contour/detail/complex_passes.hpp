@@ -6,6 +6,7 @@
 #include "contour/detail/dual_items.hpp"
 #include "contour/detail/numbering_items.hpp"
 #include "contour/detail/passes.hpp"
+#include "contour/detail/raise.hpp"
 #include "error.hpp"
 #include <utility>
 
@@ -53,44 +54,39 @@ struct GatherNear {
     return near;
   }
 };
-/// Moved grid points among a vertex and the corners of its leaf.
-struct GatherSpoiling {
+// Flags raised, by many vertices or leaves at once.
+/// At moved grid points among a vertex and the corners of its leaf.
+struct RaiseSpoiling {
   ComplexView c;
   const int32_t* spoiled;
-  HD int64_t operator()(int64_t i, int32_t* out) const {
+  uint8_t* flag; ///< [grid vertices]
+  HD void operator()(int64_t i) const {
     const int32_t v = spoiled[i], leaf = c.leaf_of(v);
-    int64_t n = 0;
     for (int k = leaf >= 0 ? 0 : 8; k < 9; ++k)
-      if (const int32_t u = k < 8 ? c.corner_vertex(leaf, k) : v; c.moved(u)) {
-        if (out)
-          out[n] = u;
-        ++n;
-      }
-    return n;
+      if (const int32_t u = k < 8 ? c.corner_vertex(leaf, k) : v; c.moved(u))
+        raise(flag[u]);
   }
 };
-struct GatherLeavesRound {
+/// At leaves with one of these grid points as a corner.
+struct RaiseLeavesRound {
+  static constexpr int64_t grain = 64;
   ComplexView c;
   const int32_t* vertex;
-  HD int64_t operator()(int64_t i, int32_t* out) const {
+  uint8_t* flag; ///< [leaves]
+  HD void operator()(int64_t i) const {
     NearLeaves near(c.tree);
-    int64_t n = 0;
     for (int octant = 0; octant < 8; ++octant)
-      if (const int32_t leaf = leaf_with_corner(near, c.point[vertex[i]], octant); leaf >= 0) {
-        if (out)
-          out[n] = leaf;
-        ++n;
-      }
-    return n;
+      if (const int32_t leaf = leaf_with_corner(near, c.point[vertex[i]], octant); leaf >= 0)
+        raise(flag[leaf]);
   }
 };
-struct GatherCorners {
+struct RaiseCorners {
   ComplexView c;
   const int32_t* leaf;
-  HD int64_t operator()(int64_t i, int32_t* out) const {
-    for (int k = 0; out && k < 8; ++k)
-      out[k] = c.corner_vertex(leaf[i], k);
-    return 8;
+  uint8_t* flag; ///< [grid vertices]
+  HD void operator()(int64_t i) const {
+    for (int k = 0; k < 8; ++k)
+      raise(flag[c.corner_vertex(leaf[i], k)]);
   }
 };
 struct PlaceDuals {
@@ -98,22 +94,6 @@ struct PlaceDuals {
   const int32_t* leaf;
   HD void operator()(int64_t i) const { place(leaf[i]); }
 };
-struct ToKeys {
-  const int32_t* from;
-  uint32_t *key, *value;
-  HD void operator()(int64_t i) const { key[i] = value[i] = static_cast<uint32_t>(from[i]); }
-};
-struct Once {
-  const uint32_t* key;
-  HD int64_t operator()(int64_t i, int32_t* out) const {
-    if (i > 0 && key[i] == key[i - 1])
-      return 0;
-    if (out)
-      *out = static_cast<int32_t>(key[i]);
-    return 1;
-  }
-};
-
 /// The passes on a complex in a launcher's memory.
 template <class Launcher, class Memory = Launcher>
 class ComplexPasses : public ComplexArrays<Memory> {
@@ -212,25 +192,21 @@ private:
     store = m_.template array<T>(n);
     return store.data();
   }
-  Ids ascending_once(const Ids& ids) {
-    auto key = m_.template array<uint32_t>(ids.n), other = m_.template array<uint32_t>(ids.n);
-    m_.for_n("keys", ids.n, ToKeys{ids.data(), key.data(), other.data()});
-    m_.sort_pairs("sort ids", key.data(), other.data(), ids.n);
-    return gather<int32_t>(m_, "unique", ids.n, Once{key.data()});
+  /// What Raise, from these ids, raises of `most` flags, ascending.
+  template <class Raise>
+  Ids raised(const char* name, const Ids& ids, int64_t most) {
+    auto flag = m_.filled(most, uint8_t{0});
+    m_.for_n(name, ids.n, Raise{this->view, ids.data(), flag.data()});
+    return flagged(m_, name, most, flag.data());
   }
-  /// Leaves with one of these grid points as a corner, ascending.
-  Ids leaves_round(const Ids& ids) {
-    return ascending_once(gather<int32_t>(m_, "leaves round", ids.n, GatherLeavesRound{this->view, ids.data()}));
-  }
-  Ids corners_of(const Ids& leaves) {
-    return ascending_once(gather<int32_t>(m_, "corners", leaves.n, GatherCorners{this->view, leaves.data()}));
-  }
+  /// Leaves with one of these grid points as a corner.
+  Ids leaves_round(const Ids& ids) { return raised<RaiseLeavesRound>("leaves round", ids, this->view.tree.leaves); }
+  Ids corners_of(const Ids& leaves) { return raised<RaiseCorners>("corners", leaves, this->view.grid_vertices); }
   /// Moved grid points that elements without positive volume hang on: themselves, or through the dual vertex of a
   /// cell with such a corner; all that are moved where that is none, since a ring may hang on a face point, and
   /// that on grid points further on.
   Ids spoiling_vertices(const Ids& spoiled, bool all) {
-    Ids spoiling =
-        ascending_once(gather<int32_t>(m_, "spoiling", spoiled.n, GatherSpoiling{this->view, spoiled.data()}));
+    Ids spoiling = raised<RaiseSpoiling>("spoiling", spoiled, this->view.grid_vertices);
     if (all || spoiling.n == 0)
       spoiling = gather<int32_t>(m_, "moved", this->view.grid_vertices, GatherMoved{this->view});
     if (spoiling.n == 0)
