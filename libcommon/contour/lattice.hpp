@@ -73,22 +73,6 @@ struct LatticeView {
     v = any_cut && on_cut(p) ? value(p) : grid[512 * b + slot(q)];
     return true;
   }
-  /// At the corners c = x + 2 y + 4 z of the fine cell at p.
-  HD void corner_values(Vec3i p, float v[8]) const {
-    const Vec3i q = base + p;
-    if (!any_cut && (q.x & 7) < 7 && (q.y & 7) < 7 && (q.z & 7) < 7)
-      if (const int64_t b = index.find(q); b >= 0) {
-        const float* first = grid + 512 * b + slot(q);
-        for (int c = 0; c < 8; ++c)
-          v[c] = first[(c & 1) << 6 | (c >> 1 & 1) << 3 | c >> 2];
-        return;
-      }
-    BlockIndexView::Last last;
-    for (int c = 0; c < 8; ++c) {
-      const Vec3i step{c & 1, c >> 1 & 1, c >> 2};
-      v[c] = any_cut ? value(p + step) : value_in(index.find(q + step, last), q + step);
-    }
-  }
   HD Vec3d position(Vec3i p) const { return {axis[0][p.x], axis[1][p.y], axis[2][p.z]}; }
   /// Between lattice points, each axis by itself; p within 0 … cells.
   HD Vec3d between(Vec3d p) const {
@@ -106,11 +90,14 @@ struct LatticeView {
     const int s = slot(grid_point);
     return words[8 * block + (s >> 6)] >> (s & 63) & 1;
   }
+  /// At a point that block b, as the index names it, holds; grid_point: by its place within the block.
+  HD float value_in(int64_t b, Vec3i grid_point) const {
+    return b == BlockIndexView::outside  ? 0
+           : b == BlockIndexView::inside ? inside_value
+                                         : grid[512 * b + slot(grid_point)];
+  }
 
 private:
-  HD float value_in(int64_t b, Vec3i p) const {
-    return b == BlockIndexView::outside ? 0 : b == BlockIndexView::inside ? inside_value : grid[512 * b + slot(p)];
-  }
   /// On the wall of axis a, at one of its two planes; on further cut axes at the nearer plane.
   HD double cut_value(Vec3i p, int a, int32_t plane) const {
     Vec3i q = base + p;

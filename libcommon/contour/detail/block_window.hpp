@@ -1,5 +1,5 @@
 // block_window.hpp — which of the 9³ points, or fewer, of 8³ cells of the lattice are inside, or active, as rows of
-// bits.
+// bits; and their values.
 #pragma once
 #include "contour/lattice.hpp"
 
@@ -31,6 +31,23 @@ public:
         if (const Vec3i p = corner_ + Vec3i{x, y, z}; lattice_.on_cut(p))
           bits = (bits & ~(1u << z)) | uint32_t{lattice_.value(p) > lattice_.isovalue} << z;
     return bits;
+  }
+  /// At the corners c = x + 2 y + 4 z of the cell there, 0 … 7 along each axis.
+  HD void corner_values(Vec3i cell, float v[8]) const {
+    const Vec3i first = offset_ + cell;
+    const auto block_of = [&](Vec3i p) { return block_[p.x >> 3 | p.y >> 3 << 1 | p.z >> 3 << 2]; };
+    const int64_t b = block_of(first);
+    if (b >= 0 && !lattice_.any_cut && (first.x & 7) < 7 && (first.y & 7) < 7 && (first.z & 7) < 7) {
+      const float* const at = lattice_.grid + 512 * b + slot(first);
+      for (int c = 0; c < 8; ++c)
+        v[c] = at[(c & 1) << 6 | (c >> 1 & 1) << 3 | c >> 2];
+      return;
+    }
+    for (int c = 0; c < 8; ++c) {
+      const Vec3i step{c & 1, c >> 1 & 1, c >> 2};
+      v[c] = lattice_.any_cut ? lattice_.value(corner_ + cell + step)
+                              : lattice_.value_in(block_of(first + step), first + step);
+    }
   }
   HD uint32_t active(int x, int y) const { return row(lattice_.active_words, x, y, false); }
 

@@ -91,16 +91,21 @@ private:
   }
 };
 
-/// The cells of word i.
+/// The cells of word i, 4³ of them at most.
 struct MakeSurfaceCells {
   LatticeView l;
   const KeyedWord* block;
   const uint64_t* crossed;
   HD int64_t operator()(int64_t i, SurfaceCell* out) const {
-    for (uint64_t bits = crossed[i]; out && bits; bits &= bits - 1, ++out) {
-      out->key =
-          block[i >> 3].key << 9 | static_cast<uint64_t>(i & 7) << 6 | static_cast<uint64_t>(lowest_bit(bits));
-      l.corner_values(morton_point(out->key), out->value);
+    if (out && crossed[i]) {
+      const uint64_t first = block[i >> 3].key << 9 | static_cast<uint64_t>(i & 7) << 6;
+      const BlockWindow window(l, morton_point(first), 4);
+      for (uint64_t bits = crossed[i]; bits; bits &= bits - 1, ++out) {
+        const int k = lowest_bit(bits);
+        out->key = first | static_cast<uint64_t>(k);
+        window.corner_values({(k & 1) | (k >> 2 & 2), (k >> 1 & 1) | (k >> 3 & 2), (k >> 2 & 1) | (k >> 4 & 2)},
+                             out->value);
+      }
     }
     return count_bits(crossed[i]);
   }
