@@ -4,6 +4,7 @@
 #include "contour/detail/at.hpp"
 #include "par/launcher.hpp"
 #include <algorithm>
+#include <utility>
 
 namespace molmesh::contour {
 
@@ -20,39 +21,38 @@ public:
   Tri* tris(int64_t n) { return room(mesh_.tri, n); }
   int32_t* boundaries(int64_t n) { return room(mesh_.boundary, n); }
 
-  /// As detail::number_points, in two passes over the elements less. Runs of elements side by side: a point belongs
-  /// to the first run that uses it.
+  /// As detail::number_points, in one pass over the elements. Runs of elements side by side: a point belongs to the
+  /// first run that uses it.
   LargeArray<int32_t> number_points(const Tet* tet, int64_t tets, const ElementsView& e) {
     const int64_t runs = std::max(1, threads_), words = (e.positions + 63) / 64;
-    const auto bound = [&](int64_t r) { return tets * r / runs; };
-    std::vector<LargeArray<uint64_t>> used(at(runs)); // [points] bits; by this run and those before
-    par::for_n(runs - 1, threads_, 1, [&](int64_t r) {
-      used[at(r)].assign(at(words), 0);
-      for (int64_t t = bound(r); t < bound(r + 1); ++t)
-        for (int32_t v : tet[t])
-          used[at(r)][at(v >> 6)] |= uint64_t{1} << (v & 63);
-    });
-    par::for_n(words, threads_, [&](int64_t w) {
-      for (int64_t r = 1; r < runs - 1; ++r)
-        used[at(r)][at(w)] |= used[at(r - 1)][at(w)];
-    });
-    LargeArray<int32_t> number(at(e.positions));
-    par::for_n(e.positions, threads_, [&](int64_t v) { number[at(v)] = -1; });
-    std::vector<LargeArray<int32_t>> own(at(runs)); // points of each run, as first used
+    std::vector<LargeArray<uint64_t>> used(at(runs)); // [points] bits
+    std::vector<LargeArray<int32_t>> own(at(runs));   // points of each run, as first used
     par::for_n(runs, threads_, 1, [&](int64_t r) {
-      const uint64_t* before = r > 0 ? used[at(r - 1)].data() : nullptr;
-      for (int64_t t = bound(r); t < bound(r + 1); ++t)
-        for (int32_t v : tet[t]) {
-          if ((before && before[v >> 6] >> (v & 63) & 1) || number[at(v)] >= 0)
-            continue;
-          number[at(v)] = static_cast<int32_t>(own[at(r)].size());
-          own[at(r)].push_back(v);
-        }
+      LargeArray<uint64_t> bits(at(words), 0);
+      LargeArray<int32_t> list;
+      for (int64_t t = tets * r / runs; t < tets * (r + 1) / runs; ++t)
+        for (int32_t v : tet[t])
+          if (uint64_t& word = bits[at(v >> 6)], bit = uint64_t{1} << (v & 63); !(word & bit)) {
+            word |= bit;
+            list.push_back(v);
+          }
+      used[at(r)] = std::move(bits);
+      own[at(r)] = std::move(list);
+    });
+    par::for_n(words, threads_, [&](int64_t w) { // each run's becomes that of all before
+      uint64_t before = 0;
+      for (auto& of_run : used)
+        before |= std::exchange(of_run[at(w)], before);
+    });
+    par::for_n(runs - 1, threads_, 1, [&](int64_t r) {
+      const LargeArray<uint64_t>& before = used[at(r + 1)];
+      std::erase_if(own[at(r + 1)], [&](int32_t v) { return before[at(v >> 6)] >> (v & 63) & 1; });
     });
     std::vector<int64_t> start;
     for (const auto& list : own)
       start.push_back(static_cast<int64_t>(list.size()));
     Vec3d* const point = points(par::exclusive_scan(start));
+    LargeArray<int32_t> number(at(e.positions));
     for (int64_t r = 0; r < runs; ++r)
       par::for_n(static_cast<int64_t>(own[at(r)].size()), threads_, [&](int64_t i) {
         const int32_t v = own[at(r)][at(i)];
