@@ -4,7 +4,6 @@
 #include "density/block_grid.hpp"
 #include "improve/isosurface_view.hpp"
 #include "improve/target.hpp"
-#include <vector>
 
 namespace molmesh::improve {
 
@@ -38,7 +37,7 @@ public:
 private:
   GridFrame frame_;
   BlockIndex index_;
-  std::vector<float> log_; ///< [512 n], NaN where not active
+  LargeArray<float> log_; ///< [512 n], NaN where not active
   double offset_ = 0;
 };
 

@@ -2,7 +2,9 @@
 #include "contour/samples_kernel.hpp"
 #include "contour/surface_sample.hpp"
 #include "density/values_kernel.hpp"
+#include "geom/log.hpp"
 #include "improve/guard.hpp"
+#include "improve/logs_kernel.hpp"
 #include "improve/probe_kernel.hpp"
 #include "improve/quality.hpp"
 #include "improve/quality_kernel.hpp"
@@ -10,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 
 namespace molmesh::density {
 
@@ -97,6 +100,12 @@ void misfits(const EightTriangles& t, const EightProbes& at, double far, double 
     if (!at.is_known(i))
       out[i] = unknown_misfit;
   }
+}
+
+void log_ratios(const float* value, uint64_t active, double isovalue, float* out) {
+  for (int i = 0; i < 64; ++i)
+    out[i] = active >> i & 1 && value[i] > 0 ? static_cast<float>(portable_log(value[i] / isovalue))
+                                             : std::numeric_limits<float>::quiet_NaN();
 }
 
 void qualities(const EightElements& e, float (&quality)[8], double shape) {

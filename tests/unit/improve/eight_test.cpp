@@ -1,7 +1,9 @@
 // eight_test.cpp — what is asked of eight places or sixteen elements at once is what is asked one by one, to the
 // last bit, by every instruction set.
+#include "geom/log.hpp"
 #include "improve/guard.hpp"
 #include "improve/isosurface.hpp"
+#include "improve/logs_kernel.hpp"
 #include "improve/probe_kernel.hpp"
 #include "improve/spokes.hpp"
 #include "lattice_mesh.hpp"
@@ -114,6 +116,28 @@ TEST_CASE("eight places are put on the isosurface as one is") {
     }
     CHECK(on > 100);
     CHECK(on < 900);
+  });
+}
+
+TEST_CASE("the logarithms of 64 values are taken as one is") {
+  constexpr double isovalue = 0.7;
+  with_every_instruction_set([&] {
+    std::uniform_real_distribution<float> value(-0.2f, 1.5f);
+    for (int round = 0; round < 100; ++round) {
+      float v[64], log[64];
+      for (float& of : v)
+        of = value(generator);
+      v[3] = 0, v[7] = 1e-30f, v[20] = static_cast<float>(isovalue), v[33] = 3e38f;
+      const uint64_t active = round == 0   ? 0
+                              : round == 1 ? ~uint64_t{0}
+                                           : uint64_t{generator()} << 32 | uint64_t{generator()};
+      improve::log_ratios(v, active, isovalue, log);
+      for (int i = 0; i < 64; ++i)
+        if (active >> i & 1 && v[i] > 0)
+          CHECK(log[i] == static_cast<float>(portable_log(v[i] / isovalue)));
+        else
+          CHECK(std::isnan(log[i]));
+    }
   });
 }
 
