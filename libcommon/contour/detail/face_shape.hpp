@@ -3,14 +3,16 @@
 #pragma once
 #include "contour/detail/crossing.hpp"
 #include "contour/detail/element_shape.hpp"
+#include "geom/tet_measures.hpp"
 #include <cmath>
 
 namespace molmesh::contour::detail {
 
 /// A convex polygon of vertices of the complex, counter-clockwise seen from the cell in front.
 struct Polygon {
+  static constexpr int most = 8;
   int n = 0;
-  int32_t vertex[8];
+  int32_t vertex[most];
   HD void add(int32_t v) { vertex[n++] = v; }
   HD int next(int i) const { return i + 1 < n ? i + 1 : 0; }
 };
@@ -41,19 +43,33 @@ HD inline bool pierced(const ComplexView& c, const Polygon& p, int32_t behind, i
 
 /// The least sine of the elements without a face point, and with one.
 HD inline double direct_shape(const ComplexView& c, const Polygon& p, int32_t behind, int32_t front) {
+  double of[Polygon::most];
+  least_sines(
+      p.n,
+      [&](int i, int k) {
+        return c.position[k == 0 ? p.vertex[i] : k == 1 ? p.vertex[p.next(i)] : k == 2 ? behind : front];
+      },
+      of);
   double least = 1;
   for (int i = 0; i < p.n; ++i)
-    least = lesser(least, least_sine(c.position[p.vertex[i]], c.position[p.vertex[p.next(i)]], c.position[behind],
-                                     c.position[front]));
+    least = lesser(least, of[i]);
   return least;
 }
 HD inline double via_shape(const ComplexView& c, const Polygon& p, int32_t behind, Vec3d via, int32_t front) {
+  double of[2 * Polygon::most]; // two by two, behind and in front
+  least_sines(
+      2 * p.n,
+      [&](int i, int k) {
+        const bool is_via = k == (i % 2 ? 2 : 3);
+        return is_via   ? via
+               : k == 0 ? c.position[p.vertex[i / 2]]
+               : k == 1 ? c.position[p.vertex[p.next(i / 2)]]
+                        : c.position[k == 2 ? behind : front];
+      },
+      of);
   double least = 1;
-  for (int i = 0; i < p.n; ++i) {
-    const Vec3d a = c.position[p.vertex[i]], b = c.position[p.vertex[p.next(i)]];
-    least =
-        lesser(least, lesser(least_sine(a, b, c.position[behind], via), least_sine(a, b, via, c.position[front])));
-  }
+  for (int i = 0; i < p.n; ++i)
+    least = lesser(least, lesser(of[2 * i], of[2 * i + 1]));
   return least;
 }
 

@@ -128,36 +128,49 @@ HD void make_ring(const RingVertices& v, const Link* begin, const Link* end, Out
   if (Out::checks && plain && clearly_positive(v, a, b, ring))
     return;
 
-  // Quality of a split into triangles without a new point: the worst of the tetrahedra on both sides.
-  const auto triangle_quality = [&](Tri t) {
-    return lesser(least_sine(x(a), x(t[0]), x(t[1]), x(t[2])), least_sine(x(b), x(t[0]), x(t[2]), x(t[1])));
-  };
+  // Quality of a split into triangles without a new point: the worst of the tetrahedra on both sides. A ring of
+  // four has two splits of two triangles each, t / 2 and t % 2.
+  const auto triangle = [&](int t, int i) { return ring.vertex[k == 3 ? i : (t / 2 + 2 * (t % 2) + i) & 3]; };
   Tri split[2] = {};
   int triangles = 0;
   double best = 0;
-  if (plain && k == 3) {
-    split[0] = {p(0), p(1), p(2)};
-    best = triangle_quality(split[0]);
-    triangles = best > 0 ? 1 : 0;
-  } else if (plain) {
-    for (int s = 0; s < 2; ++s) {
-      const Tri first{p(s), p(s + 1), p(s + 2)}, second{p(s + 2), p(s + 3), p(s)};
-      const double quality = lesser(triangle_quality(first), triangle_quality(second));
+  if (plain) {
+    double sine[8]; // inside and outside of each triangle
+    least_sines(
+        k == 3 ? 2 : 8,
+        [&](int i, int corner) {
+          const bool outside = i % 2 != 0;
+          return x(corner == 0 ? outside ? b : a
+                               : triangle(i / 2, corner == 1                ? 0
+                                                 : (corner == 2) != outside ? 1
+                                                                            : 2));
+        },
+        sine);
+    const auto quality_of = [&](int t) { return lesser(sine[2 * t], sine[2 * t + 1]); };
+    for (int s = 0; s < (k == 3 ? 1 : 2); ++s) {
+      const double quality = k == 3 ? quality_of(0) : lesser(quality_of(2 * s), quality_of(2 * s + 1));
       if (quality <= best)
         continue;
       best = quality;
-      split[0] = first;
-      split[1] = second;
-      triangles = 2;
+      triangles = k - 2;
+      for (int t = 0; t < triangles; ++t)
+        split[t] = {triangle(2 * s + t, 0), triangle(2 * s + t, 1), triangle(2 * s + t, 2)};
     }
   }
   constexpr double good = 0.3; // no point would be better by much
   const Vec3d m = best >= good ? Vec3d{} : crossing(v.complex, a, b);
   double with_point = 1;
-  if (triangles > 0 && best < good)
-    for (int i = 0; i < (ring.closed ? k : k - 1); ++i)
-      with_point = lesser(
-          with_point, lesser(least_sine(x(a), m, x(p(i)), x(p(i + 1))), least_sine(m, x(b), x(p(i)), x(p(i + 1)))));
+  if (triangles > 0 && best < good) {
+    double sine[8]; // inside and outside of each of the ring's edges
+    least_sines(
+        2 * k,
+        [&](int i, int corner) {
+          return corner == i % 2 ? x(i % 2 ? b : a) : corner < 2 ? m : x(p(i / 2 + corner - 2));
+        },
+        sine);
+    for (int i = 0; i < k; ++i)
+      with_point = lesser(with_point, lesser(sine[2 * i], sine[2 * i + 1]));
+  }
   if (triangles > 0 && (best >= good || best >= with_point)) {
     if constexpr (!Out::checks)
       for (int t = 0; t < triangles; ++t) {

@@ -1,5 +1,6 @@
 // kernels.cpp — what libcommon vectorizes with Highway, one element after the other: for a build by nvcc alone.
 #include "contour/samples_kernel.hpp"
+#include "contour/shape_kernel.hpp"
 #include "contour/surface_sample.hpp"
 #include "density/values_kernel.hpp"
 #include "geom/log.hpp"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 namespace molmesh::density {
@@ -128,6 +130,19 @@ void make_samples(const SurfaceCell (&cell)[8], double isovalue, EightSamples& s
       samples.point[a][n] = point[a];
       samples.gradient[a][n] = gradient[a];
     }
+  }
+}
+
+void eight_least_sines(const improve::EightElements& e, double (&least)[8]) {
+  for (size_t l = 0; l < 8; ++l) {
+    improve::Corners<double> p;
+    for (size_t i = 0; i < 4; ++i)
+      p.x[i] = e.x[i][l], p.y[i] = e.y[i][l], p.z[i] = e.z[i][l];
+    Sines<double> sines;
+    begin_sines(p, sines);
+    for (double& length : sines.length)
+      length = std::sqrt(length);
+    least_of(sines, least[l]);
   }
 }
 
