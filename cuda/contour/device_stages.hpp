@@ -99,7 +99,7 @@ private:
   int64_t complex_bytes() const {
     const int64_t leaves = selection_.leaves.key.n, cells = selection_.surface.cells.n;
     const int64_t points = leaves + leaves / 4 + 1024; // a leaf has about one corner of its own
-    const int64_t complex = leaves * (1 + 32 + 4 + 4 + 28) + points * (28 + 12 + 8 + 1 + 4);
+    const int64_t complex = leaves * (1 + 32 + 24 + 4 + 4 + 28) + points * (28 + 12 + 8 + 1 + 4);
     const int64_t passes = std::max(leaves * (32 + 4 + 4) + points, cells * 200 + (leaves + points) * 9);
     return 24 * selection_.leaves.block.n + complex + passes;
   }

@@ -17,6 +17,7 @@ struct ComplexArrays {
 
   Array<Side> side;           ///< [leaves]
   Array<int32_t> grid_vertex; ///< [8·leaves] vertex id of each corner
+  Array<int32_t> beside;      ///< [6·leaves] NearLeaves::neighbour across each face
   Array<int32_t> first_cell;  ///< [leaves] first surface cell within, -1 none
   Array<int32_t> split;       ///< [leaves] first vertex id of a split cell (its centre), -1: not split
   Array<int32_t> split_leaf;  ///< [vertices after the leaves' duals]

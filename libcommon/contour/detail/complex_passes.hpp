@@ -119,13 +119,14 @@ public:
     m.for_n("find surface", surface_cells, ClaimLeaf{v}, {double(surface_cells) * 44});
     v.side = take(this->side, leaves);
     v.grid_vertex = take(this->grid_vertex, 8 * leaves);
+    v.beside = take(this->beside, 6 * leaves);
     v.split = take(this->split, leaves);
     this->face_points = m.filled(leaves, uint16_t{0});
     v.face_points = this->face_points.data();
     {
       auto owned = m.template array<int32_t>(8 * leaves), first = m.template array<int32_t>(leaves + 1),
            extra = m.template array<int32_t>(leaves + 1);
-      m.for_n("own corners", leaves, OwnCorners{tree, owned.data(), first.data()}, {double(leaves) * 45});
+      m.for_n("own corners", leaves, OwnCorners{tree, owned.data(), first.data(), v.beside}, {double(leaves) * 69});
       m.for_n("count pieces", leaves, CountPieces{v, extra.data()},
               {double(leaves) * 9 + double(surface_cells) * 40});
       v.grid_vertices = v.dual0 = m.scan("scan", first.data(), leaves);

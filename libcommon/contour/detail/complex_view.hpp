@@ -19,7 +19,7 @@ struct ComplexView {
   int32_t pieces = 0; ///< vertices after the leaves' duals
 
   Side* side = nullptr;
-  int32_t *first_cell = nullptr, *grid_vertex = nullptr, *split = nullptr, *split_leaf = nullptr;
+  int32_t *first_cell = nullptr, *grid_vertex = nullptr, *beside = nullptr, *split = nullptr, *split_leaf = nullptr;
   Vec3d* position = nullptr;
   float* value = nullptr;
   Vec3i* point = nullptr;
@@ -40,6 +40,7 @@ struct ComplexView {
   HD int32_t dual(int32_t leaf) const { return dual0 + leaf; }
   HD bool moved(int32_t vertex) const { return vertex < grid_vertices && has_moved[vertex]; }
   HD int32_t corner_vertex(int32_t leaf, int corner) const { return grid_vertex[int64_t{8} * leaf + corner]; }
+  HD int32_t neighbour(int32_t leaf, int face) const { return beside[int64_t{6} * leaf + face]; }
   HD int32_t leaf_of(int32_t vertex) const {
     const int32_t leaf = vertex - dual0, piece = leaf - tree.leaves;
     return leaf < 0 || piece >= pieces ? -1 : piece < 0 ? leaf : split_leaf[piece];

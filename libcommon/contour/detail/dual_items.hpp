@@ -123,7 +123,7 @@ private:
     const double from_face = upper ? 1 - share : share;
     double least = off_any / c.tree.extent(leaf);
     if (least < off_smaller && from_face < off_smaller)
-      if (const int32_t other = NearLeaves(c.tree).neighbour(leaf, 2 * axis + upper);
+      if (const int32_t other = c.neighbour(leaf, 2 * axis + upper);
           other >= 0 && c.tree.level[other] < c.tree.level[leaf])
         least = off_smaller;
     return from_face >= least ? share : upper ? 1 - least : least;

@@ -20,7 +20,7 @@ public:
     if constexpr (Out::checks)
       c_.face_points[leaf] = 0;
     for (int f = 0; f < 6; ++f) {
-      other[f] = near_.neighbour(leaf, f);
+      other[f] = c_.neighbour(leaf, f);
       smaller_ |= unsigned(other[f] >= 0 && c_.tree.level[other[f]] < level) << f;
     }
     for (int f = 0; f < 6; ++f) {

@@ -24,10 +24,10 @@ struct ClaimLeaf {
 
 /// A grid point belongs to the last of the eight octants around it whose leaf has the point as a corner.
 /// owned: [8·leaves] leaf and corner that it is there, as one number, 8·leaf + corner. first: [leaves] points
-/// owned.
+/// owned. beside: as ComplexView has it, found with the same blocks at hand.
 struct OwnCorners {
   OctreeView tree;
-  int32_t *owned, *first;
+  int32_t *owned, *first, *beside;
 
   HD void operator()(int64_t leaf) const {
     NearLeaves near(tree);
@@ -39,6 +39,8 @@ struct OwnCorners {
       own += o == 8 * leaf + c;
     }
     first[leaf] = own;
+    for (int f = 0; f < 6; ++f)
+      beside[6 * leaf + f] = near.neighbour(static_cast<int32_t>(leaf), f);
   }
 
 private:
