@@ -64,10 +64,10 @@ struct LatticeView {
     const int64_t b = index.find(base + p, last);
     return b == BlockIndexView::inside || (b >= 0 && bit(inside_words, b, base + p));
   }
-  /// Whether the grid holds G there, not only the side; v: value(p) then.
-  HD bool active(Vec3i p, float& v) const {
+  /// Whether the grid holds G there, not only the side; v: value(p) then. last: as for inside.
+  HD bool active(Vec3i p, float& v, BlockIndexView::Last& last) const {
     const Vec3i q = base + p;
-    const int64_t b = index.find(q);
+    const int64_t b = index.find(q, last);
     if (b < 0 || !bit(active_words, b, q))
       return false;
     v = any_cut && on_cut(p) ? value(p) : grid[512 * b + slot(q)];

@@ -103,7 +103,8 @@ private:
     const Vec3i p = c.point[v];
     const double here = c.value[v];
     float there;
-    if (here > 0 && c.lattice.active(p, there)) {
+    BlockIndexView::Last home;
+    if (here > 0 && c.lattice.active(p, there, home)) {
       // Gradient of log G, from whichever neighbours the band knows.
       Vec3d gradient;
       for (int a = 0; a < 3; ++a) {
@@ -114,7 +115,8 @@ private:
           q[a] += step;
           if (q[a] < 0 || q[a] > c.lattice.cells[a])
             continue;
-          if (!c.lattice.active(q, there) || !(there > 0))
+          BlockIndexView::Last last = home;
+          if (!c.lattice.active(q, there, last) || !(there > 0))
             continue;
           sum += portable_log(double(there) / here) / (c.lattice.position(q)[a] - c.lattice.position(p)[a]);
           ++n;
