@@ -19,6 +19,14 @@ void HostStages::select_leaves(const RefineOptions& options) {
 
 void HostStages::make_dual(const std::function<void(const std::string&)>& on_phase) {
   dual_ = contour::make_dual(dual_input(), on_phase);
+  // Nothing asks for these any more: relaxation's arrays take their memory.
+  surface_.samples = LargeArray<SurfaceSample>();
+  dual_.complex.position = LargeArray<Vec3d>();
+  dual_.complex.beside = LargeArray<int32_t>();
+  ComplexView& view = dual_.complex.view;
+  view.samples = nullptr;
+  view.position = nullptr;
+  view.beside = nullptr;
 }
 
 void HostStages::relax() {

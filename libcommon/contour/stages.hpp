@@ -42,8 +42,8 @@ public:
   void count(Summary& summary) const override;
 
   const Octree& tree() const { return *tree_; }
-  const Surface& surface() const { return surface_; }
-  const Dual& dual() const { return dual_; }
+  const Surface& surface() const { return surface_; } ///< without samples when make_dual is done
+  const Dual& dual() const { return dual_; }          ///< the elements' positions stand for the complex's
   const Components& regions() const { return regions_; }
 
 private:
