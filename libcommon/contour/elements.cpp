@@ -58,6 +58,7 @@ void join(const std::vector<Batch>& batches, int32_t first, Joined& out, int thr
   par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t i) {
     const Batch& b = batches[at(i)];
     const Start& to = start[at(i)];
+    prepare_pages(e.tet.data() + to.tet, b.tet.size() * sizeof(Tet));
     const int32_t zero = first + static_cast<int32_t>(to.point) - 1;
     const auto number = [&](int32_t v) { return v >= 0 || v == detail::no_vertex ? v : zero - v; };
     for (size_t k = 0; k < b.tet.size(); ++k)

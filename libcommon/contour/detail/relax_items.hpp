@@ -38,12 +38,12 @@ struct Qualities {
                                                       e.position[v[3]], shape);
   }
   HD bool of_lattice(const Tet& t) const {
-    for (size_t c = 0; c < 4; ++c)
-      if (t[c] >= known)
-        return false;
-    const uint8_t* of = lattice_class;
-    return of[t[0]] == 1 && of[t[1]] == 1 && of[t[2]] >= 2 && of[t[2]] == of[t[3]];
+    const uint8_t dual = class_of(t[2]); // near the surface this one says it
+    return dual >= 2 && class_of(t[3]) == dual && class_of(t[0]) == 1 && class_of(t[1]) == 1;
   }
+
+private:
+  HD uint8_t class_of(int32_t vertex) const { return vertex < known ? lattice_class[vertex] : uint8_t{0}; }
 };
 
 /// What a vertex is bound to, by 4 flags: a wall across x, y, z, and the surface.
