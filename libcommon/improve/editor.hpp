@@ -9,6 +9,7 @@
 #pragma once
 #include "improve/dynamic_mesh.hpp"
 #include "improve/guard.hpp"
+#include "improve/part_copy.hpp"
 #include "improve/parts.hpp"
 #include "improve/piece.hpp"
 #include "improve/search.hpp"
@@ -58,6 +59,9 @@ public:
   /// stamp [elements] is scratch: nothing above `clock`.
   Editor(DynamicMesh& mesh, const Target* target, const Sheets* sheets, const Parts& parts,
          std::vector<uint32_t>& stamp, PartRoom& room, Guard guard, uint32_t clock = 0);
+  /// Works on a copy as `like`, which is alone(), does on the part.
+  Editor(const Editor& like, PartCopy& part, std::vector<uint32_t>& stamp)
+      : Editor(part.mesh, like.target_, nullptr, part.parts, stamp, part.room, like.guard_) {}
 
   uint32_t clock() const { return clock_; } ///< nothing above it has been stamped
 
@@ -94,12 +98,17 @@ public:
   /// under `floor`.
   bool approach(int32_t v, float floor);
 
+  int32_t part() const { return room_.part; }
   /// Slots that new elements may come to lie in.
   const std::vector<int32_t>& reserve() const { return room_.element; }
   /// Of the elements `inner`, all of this part, as they are now, and of what the part has in reserve.
   Snapshot save(const std::vector<int32_t>& inner) const;
   /// Everything as it was: operations since save() were on those elements and on reserved slots.
   void restore(const Snapshot& s);
+  /// Of the part.
+  PartCopy copy(const std::vector<int32_t>& slots) const { return copy_part(m_, parts_, room_, slots); }
+  /// There are no sheets to cross.
+  bool alone() const { return !sheets_; }
   /// All vertices in this part.
   bool owned(int32_t e) const;
 

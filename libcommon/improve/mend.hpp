@@ -2,6 +2,7 @@
 #pragma once
 #include "improve/faults.hpp"
 #include "improve/schedule.hpp"
+#include "par/helpers.hpp"
 #include <cstdint>
 #include <vector>
 
@@ -10,8 +11,10 @@ namespace molmesh::improve {
 /// Works on the elements in `slots`, all that elements of the part may be in.
 class Mending {
 public:
-  Mending(Editor& editor, DynamicMesh& m, const std::vector<int32_t>& slots, const Pass& pass)
-      : editor_(editor), m_(m), slots_(slots), pass_(pass) {}
+  /// helpers: threads for shake(), or null.
+  Mending(Editor& editor, DynamicMesh& m, const std::vector<int32_t>& slots, const Pass& pass,
+          par::Helpers* helpers)
+      : editor_(editor), m_(m), slots_(slots), pass_(pass), helpers_(helpers) {}
 
   float floor = 0.01f; ///< share of the goal: what an operation that sets out may leave for the mending
   bool loose = false;  ///< Editor::loose, while mending
@@ -37,11 +40,19 @@ private:
   std::vector<int32_t> below(float goal, const std::vector<int32_t>& of) const; ///< of elements, in their order
   std::vector<int32_t> worst() const;
   bool operate(int32_t t, int k);
+  struct Trial;
+  struct Aim;
+  enum class Outcome : uint8_t { none, idle, worse, better };
+  Outcome attempt(const Trial& trial, FaultCount& faults, Aim& aim);
+  bool follows_mending() const;
+  size_t first_telling(const std::vector<Trial>& all, size_t from, FaultCount& faults, const Aim& aim,
+                       const Snapshot& here, int& trials);
 
   Editor& editor_;
   DynamicMesh& m_;
   const std::vector<int32_t>& slots_;
   const Pass& pass_;
+  par::Helpers* helpers_;
 };
 
 } // namespace molmesh::improve

@@ -1,10 +1,8 @@
 // recover.cpp — points off the target come back, or leave the surface, where the elements around can be mended
 // after.
-#include "improve/choose.hpp"
+#include "improve/recover.hpp"
 #include "improve/faults.hpp"
 #include "improve/mend.hpp"
-#include "improve/schedule.hpp"
-#include "par/par.hpp"
 #include <algorithm>
 #include <utility>
 
@@ -12,7 +10,6 @@ namespace molmesh::improve {
 namespace {
 
 constexpr size_t most_points = 64;
-constexpr size_t room_for_shells = 3072; // elements, Editor::nest
 constexpr size_t most_states = 4;
 constexpr int most_trials = 300, most_wide_trials = 6000; // of Mending::shake
 
@@ -27,9 +24,10 @@ constexpr Daring careful{0.01f, false, 0, false}, bold{1e-5f, true, 2, false}, i
 
 class Recovery {
 public:
-  Recovery(Editor& editor, DynamicMesh& m, std::vector<int32_t> slots, const Pass& pass, int32_t time)
+  Recovery(Editor& editor, DynamicMesh& m, std::vector<int32_t> slots, const Pass& pass, int32_t time,
+           par::Helpers& helpers)
       : editor_(editor), m_(m), slots_(std::move(slots)), pass_(pass), time_(time),
-        faults_(editor, m_, slots_, pass.goal), mending_(editor, m_, slots_, pass) {}
+        faults_(editor, m_, slots_, pass.goal), mending_(editor, m_, slots_, pass, &helpers) {}
 
   void run() {
     for (const Daring& daring : {careful, bold}) {
@@ -229,28 +227,9 @@ private:
 
 } // namespace
 
-Counts Schedule::recover(const Pass& pass) {
-  const int32_t time = ++time_;
-  PartRoom none;
-  const Editor look(m_, target_, nullptr, parts_, stamp_, none, pass.guard);
-  const std::vector<int32_t> points = choose(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
-    return m_.incident[size_t(v)] >= 0 && look.off(static_cast<int32_t>(v)) > 1;
-  });
-  if (points.empty())
-    return {};
-  set_parts_around(points, passes_++, pass.cell * cell_);
-  const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
-    const Element& e = m_.element[size_t(t)];
-    return e.alive() && part_of(e) >= 0;
-  });
-  return for_parts(
-      items, parts_of(items), pass.guard,
-      [&](Editor& editor, std::vector<int32_t>& list) {
-        std::vector<int32_t> slots = list;
-        slots.insert(slots.end(), editor.reserve().begin(), editor.reserve().end());
-        Recovery(editor, m_, std::move(slots), pass, time).run();
-      },
-      0.25, room_for_shells);
+void recover_part(Editor& editor, DynamicMesh& m, std::vector<int32_t> slots, const Pass& pass, int32_t time,
+                  par::Helpers& helpers) {
+  Recovery(editor, m, std::move(slots), pass, time, helpers).run();
 }
 
 } // namespace molmesh::improve

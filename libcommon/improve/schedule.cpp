@@ -2,6 +2,7 @@
 #include "improve/schedule.hpp"
 #include "par/pages.hpp"
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace molmesh::improve {
@@ -158,7 +159,7 @@ void Schedule::set_parts_around(const std::vector<int32_t>& points, int shift, d
 
 int32_t Schedule::part_of(const Element& e) const {
   const int32_t p = parts_.owner[size_t(e.v[0])];
-  return parts_.owns(p, e.v) ? p : -1;
+  return p >= 0 && parts_.owns(p, e.v) ? p : -1;
 }
 
 std::vector<int32_t> Schedule::parts_of(const std::vector<int32_t>& elements) const {
@@ -219,14 +220,21 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     largest_first.push_back(&job);
   std::stable_sort(largest_first.begin(), largest_first.end(),
                    [](const Job* a, const Job* b) { return a->items.size() > b->items.size(); });
-  par::for_n(static_cast<int64_t>(jobs.size()), threads_, 1, [&](int64_t j) {
-    Job& job = *largest_first[size_t(j)];
-    Editor editor(m_, target_, sheets_.alive() > 0 ? &sheets_ : nullptr, parts_, stamp_, job.room, guard,
-                  last_stamp_);
-    work(editor, job.items);
-    job.counts = editor.counts;
-    job.sheets = editor.changed_sheets();
-    job.clock = editor.clock();
+  std::atomic<size_t> next{0};
+  par::for_n(jobs.empty() ? 0 : threads_, threads_, 1, [&](int64_t) {
+    for (const par::Helpers::Busy busy(helpers_);;) {
+      const size_t j = next++;
+      if (j >= jobs.size())
+        break;
+      Job& job = *largest_first[j];
+      Editor editor(m_, target_, sheets_.alive() > 0 ? &sheets_ : nullptr, parts_, stamp_, job.room, guard,
+                    last_stamp_);
+      work(editor, job.items);
+      job.counts = editor.counts;
+      job.sheets = editor.changed_sheets();
+      job.clock = editor.clock();
+    }
+    helpers_.help();
   });
   Counts sum;
   for (Job& job : jobs) {

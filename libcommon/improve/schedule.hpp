@@ -1,24 +1,14 @@
 // schedule.hpp — passes over the bad elements, part by part.
 #pragma once
 #include "improve/editor.hpp"
+#include "improve/pass.hpp"
+#include "improve/vain.hpp"
+#include "par/helpers.hpp"
 #include <cstdint>
 #include <functional>
 #include <vector>
 
 namespace molmesh::improve {
-
-/// What a pass does with an element below its goal.
-struct Pass {
-  float goal = 0;  ///< quality
-  double cell = 1; ///< size of the parts, in the schedule's cells
-  bool worst_first = true;
-  /// 1: merges and splits too. Of recover(): 2: what cannot be mended is shaken; 3: the surface follows necks; 4:
-  /// all round the worst element is shaken.
-  int effort = 0;
-  float yield = 1; ///< Editor::yield
-  Guard guard;
-  bool operator==(const Pass&) const = default;
-};
 
 /// Runs passes over a mesh that lives as long as it.
 class Schedule {
@@ -66,7 +56,9 @@ private:
   int passes_ = 0, settles_ = 0;
   int32_t time_ = 0, since_ = 0; ///< sweeps so far; when this kind of pass began
   Pass last_;
+  Vain vain_; ///< recover()
   Parts parts_;
+  par::Helpers helpers_;        ///< threads that wait for the last parts
   std::vector<uint32_t> stamp_; ///< of the editors
   uint32_t last_stamp_ = 0;
   Sheets sheets_; ///< where the mesh ends in curved surfaces

@@ -37,7 +37,7 @@ TEST_CASE("points come back where mending alone leaves elements below the goal")
                                          : std::min(ball, across - std::max(0., slope * (along + h)) + 0.02 * h)));
   };
   const BlockGrid grid = lattice_grid(field, {0, 0, 0}, h, 20);
-  TetMesh mesh = lattice_mesh(field, {0, 0, 0}, h, 20, k.keep);
+  TetMesh mesh = lattice_mesh(field, {0, 0, 0}, h, 20, k.keep), helped = mesh;
   const int64_t shape = surface_shape(mesh).euler();
   const improve::Result result = improve::improve(mesh, &grid, {});
   CHECK(result.fidelity.points_off == 0);
@@ -45,4 +45,10 @@ TEST_CASE("points come back where mending alone leaves elements below the goal")
   CHECK(result.after.max <= 140);
   CHECK(surface_shape(mesh).euler() == shape);
   CHECK_NOTHROW(improve::build(mesh, 180, 1));
+  improve::Options three; // threads, two of which try what comes next
+  three.threads = 3;
+  improve::improve(helped, &grid, three);
+  CHECK(helped.point == mesh.point);
+  CHECK(helped.tet == mesh.tet);
+  CHECK(helped.region == mesh.region);
 }

@@ -1,0 +1,20 @@
+// pass.hpp — what a pass over a mesh aims at.
+#pragma once
+#include "improve/guard.hpp"
+
+namespace molmesh::improve {
+
+/// What a pass does with an element below its goal.
+struct Pass {
+  float goal = 0;  ///< quality
+  double cell = 1; ///< size of the parts, in the schedule's cells
+  bool worst_first = true;
+  /// 1: merges and splits too. Of recover(): 2: what cannot be mended is shaken; 3: the surface follows necks; 4:
+  /// all round the worst element is shaken.
+  int effort = 0;
+  float yield = 1; ///< Editor::yield
+  Guard guard;
+  bool operator==(const Pass&) const = default;
+};
+
+} // namespace molmesh::improve

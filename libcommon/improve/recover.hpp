@@ -1,0 +1,16 @@
+// recover.hpp — points of one part that are off the target come back, or leave the surface.
+#pragma once
+#include "improve/editor.hpp"
+#include "improve/pass.hpp"
+#include "par/helpers.hpp"
+#include <cstdint>
+#include <vector>
+
+namespace molmesh::improve {
+
+/// slots: all that elements of the part may be in. time: Editor::time. What does not leave the part better is put
+/// back, with its counts. helpers: threads for Mending::shake.
+void recover_part(Editor& editor, DynamicMesh& m, std::vector<int32_t> slots, const Pass& pass, int32_t time,
+                  par::Helpers& helpers);
+
+} // namespace molmesh::improve

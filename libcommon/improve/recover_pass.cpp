@@ -1,0 +1,56 @@
+// recover_pass.cpp — the points off the target and the parts around them, those left out where nothing has changed
+// since the same was in vain.
+#include "improve/choose.hpp"
+#include "improve/recover.hpp"
+#include "improve/schedule.hpp"
+#include "par/par.hpp"
+#include <algorithm>
+#include <utility>
+
+namespace molmesh::improve {
+
+constexpr size_t room_for_shells = 3072; // elements, Editor::nest
+
+Counts Schedule::recover(const Pass& pass) {
+  const int32_t time = ++time_;
+  PartRoom none;
+  const Editor look(m_, target_, nullptr, parts_, stamp_, none, pass.guard);
+  const std::vector<int32_t> points = choose(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
+    return m_.incident[size_t(v)] >= 0 && look.off(static_cast<int32_t>(v)) > 1;
+  });
+  if (points.empty())
+    return {};
+  set_parts_around(points, passes_++, pass.cell * cell_);
+  const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
+    const Element& e = m_.element[size_t(t)];
+    return e.alive() && part_of(e) >= 0;
+  });
+  std::vector<std::vector<int32_t>> off(static_cast<size_t>(parts_.count())); // of each part
+  for (const int32_t v : points)
+    if (const int32_t part = parts_.owner[size_t(v)]; part >= 0)
+      off[size_t(part)].push_back(v);
+  std::vector<uint8_t> failed(off.size());
+  vain_.begin(pass);
+  const Counts counts = for_parts(
+      items, parts_of(items), pass.guard,
+      [&](Editor& editor, std::vector<int32_t>& list) {
+        const auto part = static_cast<size_t>(editor.part());
+        int32_t touched = 0;
+        for (const int32_t t : list)
+          for (const int32_t v : m_.element[size_t(t)].v)
+            touched = std::max(touched, m_.touched[size_t(v)]);
+        if (vain_.knows(off[part], pass, touched))
+          return;
+        std::vector<int32_t> slots = list;
+        slots.insert(slots.end(), editor.reserve().begin(), editor.reserve().end());
+        recover_part(editor, m_, std::move(slots), pass, time, helpers_);
+        failed[part] = editor.counts.total() == 0;
+      },
+      0.25, room_for_shells);
+  for (size_t part = 0; part < off.size(); ++part)
+    if (failed[part])
+      vain_.note(off[part], pass, time);
+  return counts;
+}
+
+} // namespace molmesh::improve
