@@ -31,26 +31,30 @@ bool Editor::owned(int32_t e) const {
 // False when an element of the star is not ours. Only our elements are stamped, so no other editor sees the stamps.
 // Nearly without branches: which faces lead on is not to be guessed.
 bool Editor::star(int32_t v, std::vector<int32_t>& out) {
-  out.clear();
   ++clock_;
   const int32_t first = m_.incident[size_t(v)];
   if (!owned(first))
     return false;
-  stamp_[size_t(first)] = clock_;
-  out.push_back(first);
+  const Element* const element = m_.element.data();
+  const int32_t *const owner = parts_.owner.data(), part = room_.part;
+  uint32_t *const stamp = stamp_.data(), clock = clock_;
+  stamp[size_t(first)] = clock;
+  out.resize(std::max<size_t>(out.capacity(), 64));
+  out[0] = first;
   size_t found = 1;
   for (size_t i = 0; i < found; ++i) {
-    out.resize(found + 4);
+    if (found + 4 > out.size())
+      out.resize(2 * out.size());
     const int32_t t = out[i];
-    const Element& e = m_.element[size_t(t)];
+    const Element& e = element[size_t(t)];
     for (size_t f = 0; f < 4; ++f) {
       const int32_t next = e.v[f] != v && e.n[f] >= 0 ? e.n[f] : t;
-      const Element& beyond = m_.element[size_t(next)];
-      const bool fresh = stamp_[size_t(next)] != clock_;
+      const Element& beyond = element[size_t(next)];
+      const bool fresh = stamp[size_t(next)] != clock;
       // It shares three vertices with one of ours.
-      if (fresh & (parts_.owner[size_t(beyond.v[beyond.face_towards(t)])] != room_.part))
+      if (fresh & (owner[size_t(beyond.v[beyond.face_towards(t)])] != part))
         return false;
-      stamp_[size_t(next)] = clock_;
+      stamp[size_t(next)] = clock;
       out[found] = next;
       found += fresh;
     }

@@ -9,7 +9,7 @@
 namespace molmesh::improve {
 namespace {
 
-constexpr size_t most_points = 64;
+constexpr size_t most_points = 64; // more were let go here and there: that is what the rounds are for
 constexpr size_t most_states = 4;
 constexpr int most_trials = 300, most_wide_trials = 6000; // of Mending::shake
 
@@ -29,14 +29,21 @@ public:
       : editor_(editor), m_(m), slots_(std::move(slots)), pass_(pass), time_(time),
         faults_(editor, m_, slots_, pass.goal), mending_(editor, m_, slots_, pass, &helpers) {}
 
-  void run() {
+  /// shaken: all up to the necks has been in vain.
+  void run(bool shaken) {
+    if (shaken) {
+      editor_.worst_first = !pass_.worst_first; // as mending leaves it
+      if (faults_.points_off().size() <= most_points)
+        try_necks();
+      return;
+    }
     for (const Daring& daring : {careful, bold}) {
       if (pass_.effort > 1 && !daring.loose)
         continue; // in vain the time before
       dare(daring);
       const std::vector<int32_t> points = faults_.points_off();
       if (points.empty() || points.size() > most_points)
-        return; // more than was let go here and there: that is what the rounds are for
+        return;
       if (points.size() > 1)
         all_back(points);
       for (const int32_t v : faults_.points_off())
@@ -45,13 +52,15 @@ public:
     }
     if (pass_.effort > 1)
       try_harder();
-    if (pass_.effort > 2) {
-      follow_necks();
-      try_harder();
-    }
+    if (pass_.effort > 2)
+      try_necks();
   }
 
 private:
+  void try_necks() {
+    follow_necks();
+    try_harder();
+  }
   void dare(const Daring& daring) {
     daring_ = daring;
     mending_.floor = daring.floor;
@@ -228,8 +237,8 @@ private:
 } // namespace
 
 void recover_part(Editor& editor, DynamicMesh& m, std::vector<int32_t> slots, const Pass& pass, int32_t time,
-                  par::Helpers& helpers) {
-  Recovery(editor, m, std::move(slots), pass, time, helpers).run();
+                  bool shaken, par::Helpers& helpers) {
+  Recovery(editor, m, std::move(slots), pass, time, helpers).run(shaken);
 }
 
 } // namespace molmesh::improve

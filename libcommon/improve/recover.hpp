@@ -9,8 +9,9 @@
 namespace molmesh::improve {
 
 /// slots: all that elements of the part may be in. time: Editor::time. What does not leave the part better is put
-/// back, with its counts. helpers: threads for Mending::shake.
+/// back, with its counts. shaken: effort 2 is known to do nothing here, and effort 3 goes on from there. helpers:
+/// threads for Mending::shake.
 void recover_part(Editor& editor, DynamicMesh& m, std::vector<int32_t> slots, const Pass& pass, int32_t time,
-                  par::Helpers& helpers);
+                  bool shaken, par::Helpers& helpers);
 
 } // namespace molmesh::improve

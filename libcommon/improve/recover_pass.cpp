@@ -31,6 +31,8 @@ Counts Schedule::recover(const Pass& pass) {
       off[size_t(part)].push_back(v);
   std::vector<uint8_t> failed(off.size());
   vain_.begin(pass);
+  Pass shaking = pass;
+  shaking.effort = 2;
   const Counts counts = for_parts(
       items, parts_of(items), pass.guard,
       [&](Editor& editor, std::vector<int32_t>& list) {
@@ -41,9 +43,10 @@ Counts Schedule::recover(const Pass& pass) {
             touched = std::max(touched, m_.touched[size_t(v)]);
         if (vain_.knows(off[part], pass, touched))
           return;
+        const bool shaken = pass.effort == 3 && vain_.knows(off[part], shaking, touched);
         std::vector<int32_t> slots = list;
         slots.insert(slots.end(), editor.reserve().begin(), editor.reserve().end());
-        recover_part(editor, m_, std::move(slots), pass, time, helpers_);
+        recover_part(editor, m_, std::move(slots), pass, time, shaken, helpers_);
         failed[part] = editor.counts.total() == 0;
       },
       0.25, room_for_shells);
