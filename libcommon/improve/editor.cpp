@@ -82,11 +82,12 @@ bool Editor::ring(int32_t e, int32_t a, int32_t b, Ring& r) const {
     r.border.clear();
     r.label.clear();
     for (int32_t t = first;;) {
-      if (r.element.size() > longest || !owned(t))
-        return false;
       const Element& el = m_.element[size_t(t)];
       size_t behind, ahead;
       at_edge(el, behind, ahead);
+      // It shares three vertices with the one before.
+      if (r.element.size() > longest || !(t == first ? owned(t) : parts_.owner[size_t(el.v[behind])] == room_.part))
+        return false;
       if (el.label[behind] != 0) {
         r.border.push_back(static_cast<int>(r.vertex.size()));
         r.label.push_back(el.label[behind]);

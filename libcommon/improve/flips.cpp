@@ -56,6 +56,19 @@ private:
   int n_ = 0;
 };
 
+/// DynamicMesh::quality of both, side by side.
+std::array<float, 2> qualities(const DynamicMesh& m, const std::array<std::array<int32_t, 4>, 2>& v) {
+  using Two = double __attribute__((vector_size(16)));
+  Corners<Two> corners;
+  for (size_t i = 0; i < 4; ++i) {
+    const Vec3d &p = m.point[size_t(v[0][i])], &q = m.point[size_t(v[1][i])];
+    corners.x[i] = Two{p.x, q.x}, corners.y[i] = Two{p.y, q.y}, corners.z[i] = Two{p.z, q.z};
+  }
+  Two q;
+  corners_quality(corners, q, shape_weight);
+  return {static_cast<float>(q[0]), static_cast<float>(q[1])};
+}
+
 } // namespace
 
 bool Editor::edge_is_labelled(int32_t a, int32_t b) {
@@ -99,14 +112,12 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
   for (int side = 0; side < sides; ++side) {
     const int f = first[side];
     if (!polygon[size_t(side)].solve(vertices[side], above, [&](int x, int y, int z, float floor) {
-          float q = 2;
-          for (const auto& v : pair_of(f, x, y, z)) {
-            Candidate c{v, 0, 0, {}};
-            if (!judge(c, floor))
+          const auto pair = pair_of(f, x, y, z);
+          const auto q = qualities(m_, pair);
+          for (size_t k = 0; k < 2; ++k)
+            if (!is_above({pair[k], 0, q[k], {}}, floor))
               return -1.f;
-            q = std::min(q, c.q);
-          }
-          return q;
+          return std::min(q[0], q[1]);
         }))
       return false;
     const int32_t region = element(f).region;

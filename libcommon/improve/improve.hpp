@@ -3,7 +3,8 @@
 #include "density/block_grid.hpp"
 #include "improve/angles.hpp"
 #include "improve/fidelity.hpp"
-#include "improve/schedule.hpp"
+#include "improve/pass.hpp"
+#include "improve/snapshot.hpp"
 #include "mesh/tet_mesh.hpp"
 #include <functional>
 #include <string>

@@ -2,6 +2,7 @@
 #include "error.hpp"
 #include "improve/improve.hpp"
 #include "improve/isosurface.hpp"
+#include "improve/schedule.hpp"
 #include "lattice_mesh.hpp"
 #include "surface_shape.hpp"
 #include <catch2/catch.hpp>
