@@ -68,7 +68,7 @@ void Leaves::add(std::span<const density::BandBlocks> runs, float inside_value) 
   constexpr size_t at_once = 8; // nodes of some 20 blocks
   for_parts((runs.size() + at_once - 1) / at_once, [&](size_t part, par::Arena<char>& arena) {
     for (size_t r = part * at_once; r < std::min(runs.size(), (part + 1) * at_once); ++r) {
-      Leaf* to = &leaf[first[r]];
+      Leaf* to = leaf.data() + first[r];
       for (const density::BandBlock& b : runs[r]) {
         density::BlockValues room;
         *to++ = encode({b.corner, b.active.data(), b.above.data(), density::active_values(b, room)}, inside_value,

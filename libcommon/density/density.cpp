@@ -85,8 +85,8 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
   if (o.take)
     s.take = look;
   Band band = find(f, frame, s, counts.search);
-  const BandBlocks left = band.block; // nothing was taken, or this finder cannot give away
-  look(band.info, {&left, 1});
+  if (const BandBlocks left = band.block; !left.empty()) // nobody takes them, or this finder cannot give away
+    look(band.info, {&left, 1});
   if (band.active_points == 0) {
     char text[160];
     std::snprintf(

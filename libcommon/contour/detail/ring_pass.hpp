@@ -140,10 +140,10 @@ HD void make_ring(const RingVertices& v, const Link* begin, const Link* end, Out
         k == 3 ? 2 : 8,
         [&](int i, int corner) {
           const bool outside = i % 2 != 0;
-          return x(corner == 0 ? outside ? b : a
-                               : triangle(i / 2, corner == 1                ? 0
-                                                 : (corner == 2) != outside ? 1
-                                                                            : 2));
+          if (corner == 0)
+            return x(outside ? b : a);
+          const int at = corner == 1 || !outside ? corner - 1 : 4 - corner; // outside turns the other way round
+          return x(triangle(i / 2, at));
         },
         sine);
     const auto quality_of = [&](int t) { return lesser(sine[2 * t], sine[2 * t + 1]); };
