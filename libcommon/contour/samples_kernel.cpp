@@ -1,21 +1,19 @@
 // samples_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "contour/samples_kernel.hpp"
 #include "contour/surface_sample.hpp"
-#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "contour/samples_kernel.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "geom/double_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace molmesh::contour {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr int lanes = static_cast<int>(HWY_MIN(8, HWY_LANES(double)));
-typedef double V __attribute__((vector_size(sizeof(double) * lanes))); // sample_cells' text is the device's too
-typedef uint64_t U __attribute__((vector_size(sizeof(double) * lanes)));
+using namespace molmesh::HWY_NAMESPACE;
 
 void make_samples_simd(const SurfaceCell (&cell)[8], double isovalue, EightSamples& samples) {
   alignas(64) double value[8][8]; // [corner][cell]
@@ -25,11 +23,11 @@ void make_samples_simd(const SurfaceCell (&cell)[8], double isovalue, EightSampl
   for (int l = 0; l < 8; l += lanes) {
     V v[8], point[3], gradient[3];
     for (int c = 0; c < 8; ++c)
-      std::memcpy(&v[c], value[c] + l, sizeof(V));
+      load(value[c] + l, v[c]);
     sample_cells<V, U>(v, isovalue, point, gradient);
     for (int a = 0; a < 3; ++a) {
-      std::memcpy(samples.point[a] + l, &point[a], sizeof(V));
-      std::memcpy(samples.gradient[a] + l, &gradient[a], sizeof(V));
+      store(point[a], samples.point[a] + l);
+      store(gradient[a], samples.gradient[a] + l);
     }
   }
 }

@@ -1,6 +1,7 @@
 // shape_kernel.hpp — the least sines of eight elements' dihedral angles, vectorized for the best instruction set of
 // this machine.
 #pragma once
+#include "improve/lanes.hpp"
 #include "improve/quality_kernel.hpp"
 
 namespace molmesh::contour {
@@ -33,7 +34,7 @@ HD __attribute__((always_inline)) inline void begin_sines(const improve::Corners
   set_normal(e[0], e[2], n[2]), set_normal(e[1], e[0], n[3]);
   for (int k = 0; k < 10; ++k) {
     const V(&v)[3] = k < 6 ? e[k] : n[k - 6];
-    s.length[k] = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    improve::squared_length(v, s.length[k]);
   }
   s.six_volume = -(n[3][0] * e[2][0] + n[3][1] * e[2][1] + n[3][2] * e[2][2]);
 }

@@ -1,26 +1,22 @@
 // logs_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "improve/logs_kernel.hpp"
 #include "geom/log.hpp"
-#include <cstring>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "improve/logs_kernel.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "geom/double_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace molmesh::improve {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::CappedTag<double, 8>;
-constexpr F f{};
+using namespace molmesh::HWY_NAMESPACE;
+
 constexpr hn::Rebind<float, F> single{};
-constexpr int lanes = static_cast<int>(HWY_MIN(8, HWY_LANES(double)));
-typedef double V __attribute__((vector_size(sizeof(double) * lanes))); // portable_logs' text is the device's too
-typedef uint64_t U __attribute__((vector_size(sizeof(double) * lanes)));
 
 void log_ratios_simd(const float* value, uint64_t active, double isovalue, float* out) {
   const auto unknown = hn::Set(single, std::numeric_limits<float>::quiet_NaN());

@@ -3,34 +3,19 @@
 #include "improve/guard.hpp"
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "improve/probe_kernel.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "geom/double_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace molmesh::improve {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::CappedTag<double, 8>;
-constexpr F f{};
-constexpr int lanes = static_cast<int>(HWY_MIN(8, HWY_LANES(double)));
-typedef double V __attribute__((vector_size(sizeof(double) * lanes))); // the formulas' text is the device's too
-
-HWY_INLINE void load(const double* from, V& v) {
-  std::memcpy(&v, from, sizeof v);
-}
-HWY_INLINE void store(const V& v, double* to) {
-  std::memcpy(to, &v, sizeof v);
-}
-HWY_INLINE void take_root(V& v) {
-  auto* const p = reinterpret_cast<double*>(&v);
-  hn::Store(hn::Sqrt(hn::Load(f, p)), f, p);
-}
+using namespace molmesh::HWY_NAMESPACE;
 
 /// Values at the corners of eight cells, corner k of cell i at value[k][i], and the cells' lower corners.
 struct Cells {

@@ -1,31 +1,23 @@
 // quality_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "improve/quality_kernel.hpp"
-#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "improve/quality_kernel.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "geom/double_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace molmesh::improve {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::CappedTag<double, 8>;
-constexpr F f{};
-constexpr int lanes = static_cast<int>(HWY_MIN(8, HWY_LANES(double)));
-typedef double V __attribute__((vector_size(sizeof(double) * lanes))); // tet_quality's text is the device's too
+using namespace molmesh::HWY_NAMESPACE;
 
 void qualities_simd(const EightElements& e, float (&quality)[8], double shape) {
   for (int l = 0; l < 8; l += lanes) {
     Corners<V> p;
-    for (int i = 0; i < 4; ++i) {
-      std::memcpy(&p.x[i], e.x[i] + l, sizeof(V));
-      std::memcpy(&p.y[i], e.y[i] + l, sizeof(V));
-      std::memcpy(&p.z[i], e.z[i] + l, sizeof(V));
-    }
+    e.load(l, p);
     V q;
     corners_quality(p, q, shape);
     const hn::Rebind<float, F> to;

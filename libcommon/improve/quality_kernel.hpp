@@ -3,6 +3,7 @@
 #include "improve/quality.hpp"
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 
 namespace molmesh::improve {
 
@@ -14,6 +15,15 @@ struct alignas(64) EightElements {
     x[corner][element] = p.x, y[corner][element] = p.y, z[corner][element] = p.z;
   }
   Vec3d corner(size_t element, size_t i) const { return {x[i][element], y[i][element], z[i][element]}; }
+  /// Of as many elements as V has lanes, from `first` on.
+  template <class V>
+  __attribute__((always_inline)) void load(int first, Corners<V>& p) const {
+    for (int i = 0; i < 4; ++i) {
+      std::memcpy(&p.x[i], x[i] + first, sizeof(V));
+      std::memcpy(&p.y[i], y[i] + first, sizeof(V));
+      std::memcpy(&p.z[i], z[i] + first, sizeof(V));
+    }
+  }
 };
 
 /// As tet_quality, to the last bit.
