@@ -146,7 +146,9 @@ std::optional<double> Editor::off_at(Vec3d x) const {
 }
 
 double Editor::off(int32_t v) const {
-  return m_.vertex[size_t(v)].kind == Kind::surface ? off_at(m_.point[size_t(v)]).value_or(0) : 0;
+  constexpr double two_spacings = 100; // where the target is not known: it is not near
+  return m_.vertex[size_t(v)].kind == Kind::surface && target_ ? off_at(m_.point[size_t(v)]).value_or(two_spacings)
+                                                               : 0;
 }
 
 // Whether t and three triangles of beyond_, one across each of its edges, close a hole that is inside out.

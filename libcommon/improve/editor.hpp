@@ -89,7 +89,8 @@ public:
   bool follow_neck(int32_t v, const Neck& neck, double ratio);
   /// Whether the face is a surface triangle, counted from this side, that does not keep the guard.
   bool bent(int32_t e, size_t face) const;
-  /// Of a surface vertex: how far off the target, in units of a fiftieth of a spacing (what I8 allows).
+  /// Of a surface vertex: how far off the target, in units of a fiftieth of a spacing (what I8 allows);
+  /// two spacings where the target is not known.
   double off(int32_t v) const;
   /// Moves a surface vertex onto the target, all the way or part of it; no element falls under `floor`;
   /// floor ≥ 1: to less than half its quality.

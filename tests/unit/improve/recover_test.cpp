@@ -4,6 +4,7 @@
 #include "lattice_mesh.hpp"
 #include "recovery_pass.hpp"
 #include "surface_shape.hpp"
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 using namespace molmesh;
@@ -69,6 +70,42 @@ TEST_CASE("points pushed off the isosurface are recovered, no element is the wor
   CHECK(schedule.below(0.94f * pass.goal) <= below);
   CHECK(surface_shape(improve::extract(c.m)).euler() == 2);
   CHECK_NOTHROW(improve::build(improve::extract(c.m), 180, 1));
+}
+
+TEST_CASE("points where the isosurface is not known count as off, and come back") {
+  Case c;
+  const auto is_known = [&](size_t v) {
+    double distance;
+    Vec3d normal;
+    return c.surface.probe(c.m.point[v], distance, normal);
+  };
+  int lost = 0;
+  for (size_t v = 0; v < c.m.point.size() && lost < 8; ++v) {
+    double distance;
+    Vec3d normal;
+    const Vec3d from = c.m.point[v];
+    if (c.m.vertex[v].kind != improve::Kind::surface || !c.surface.probe(from, distance, normal))
+      continue;
+    const std::vector<int32_t> star = c.star(static_cast<int32_t>(v));
+    for (double step = 0.3; step < 1.5 && is_known(v); step += 0.05)
+      c.m.point[v] = from + step * h * normal;
+    const bool positive = std::all_of(star.begin(), star.end(),
+                                      [&](int32_t e) { return c.m.quality(c.m.element[size_t(e)].v) > 1e-4f; });
+    if (is_known(v) || !positive)
+      c.m.point[v] = from;
+    else
+      ++lost;
+    for (const int32_t e : star) {
+      c.m.element[size_t(e)].q = c.m.quality(c.m.element[size_t(e)].v);
+      c.m.note_change(e);
+    }
+  }
+  REQUIRE(lost > 2);
+  REQUIRE(improve::measure_fidelity(c.m, c.surface, 1).points_off == lost);
+  improve::Schedule schedule(c.m, &c.surface, 32 * h, 1);
+  for (int k = 0; k < 4; ++k)
+    schedule.recover(recovery_pass(0.5));
+  CHECK(improve::measure_fidelity(c.m, c.surface, 1).points_off == 0);
 }
 
 TEST_CASE("one pass has room around every point, wherever the lattice of the parts lies") {
