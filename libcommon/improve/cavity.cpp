@@ -156,7 +156,7 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
       id = room_.element.back(), room_.element.pop_back();
     made_.push_back(id);
     Element& e = m_.element[size_t(id)];
-    m_.note_change(id);
+    note_change(id);
     e = {};
     e.v = now[k].v;
     e.region = now[k].region;
@@ -169,7 +169,7 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
   }
   for (size_t k = now.size(); k < old.size(); ++k) {
     m_.element[size_t(old[k])] = {};
-    m_.note_change(old[k]);
+    note_change(old[k]);
     room_.element.push_back(old[k]);
   }
   const auto join = [&](int32_t a, size_t f, int32_t b, size_t g, uint8_t label) {
@@ -193,6 +193,8 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
     const FaceEntry& x = table_[size_t(i)];
     const int32_t id = x.first < 0 ? -1 : made_[size_t(x.first / 4)];
     const size_t face = size_t(x.first & 3);
+    if (x.outer && x.element >= 0)
+      note_side(x.element);
     if (x.outer && x.first < 0) {
       if (x.element >= 0)
         bare(x.element, x.face);

@@ -228,7 +228,7 @@ bool Editor::merge(int32_t e, int i, int j) {
     for (const int32_t v : el.v)
       m_.touched[size_t(v)] = time;
     el.q = q[t];
-    m_.note_change(kept[t]);
+    note_change(kept[t]);
     changed.push_back(kept[t]);
   }
   return true;

@@ -7,6 +7,7 @@
 // its vertices, region or quality. Arrays do not grow while editors run: slots for new elements are reserved
 // before.
 #pragma once
+#include "improve/change_log.hpp"
 #include "improve/dynamic_mesh.hpp"
 #include "improve/guard.hpp"
 #include "improve/part_copy.hpp"
@@ -103,8 +104,9 @@ public:
   /// Slots that new elements may come to lie in.
   const std::vector<int32_t>& reserve() const { return room_.element; }
   /// Of the elements `inner`, all of this part, as they are now, and of what the part has in reserve.
-  Snapshot save(const std::vector<int32_t>& inner) const;
-  /// Everything as it was: operations since save() were on those elements and on reserved slots.
+  Snapshot save(const std::vector<int32_t>& inner);
+  /// Everything as it was: operations since save() were on those elements and on reserved slots. What has not been
+  /// written since is left alone.
   void restore(const Snapshot& s);
   /// Of the part.
   PartCopy copy(const std::vector<int32_t>& slots) const { return copy_part(m_, parts_, room_, slots); }
@@ -113,6 +115,8 @@ public:
   /// All vertices in this part.
   bool owned(int32_t e) const;
 
+  /// Elements of the part that were written, their sides too, once it is kept.
+  ChangeLog log;
   /// Elements made or changed by operations since the caller last cleared it.
   std::vector<int32_t> changed;
   /// How sheets differs now.
@@ -136,6 +140,17 @@ private:
   /// triangles that have moved with the operation already; surface: the operation may change them.
   bool replace(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface,
                bool rim_moved = false);
+  /// An element of the part is written, and its quality may change.
+  void note_change(int32_t e) {
+    m_.note_change(e);
+    log.add(e);
+  }
+  /// A side of an element is written.
+  void note_side(int32_t e) {
+    if (log.kept())
+      log.add(owned(e) ? e : ChangeLog::beyond);
+  }
+  bool restore_written(const Snapshot& s);
   void list_rim(const std::vector<Candidate>& now);
   void list_rim(const std::vector<int32_t>& elements, int32_t v, int32_t without);
   uint8_t lost_label() const;
@@ -241,6 +256,9 @@ private:
   Ring ring_;
   Spokes spokes_;
   std::vector<Sail> sails_;
+  uint64_t saved_ = 0, restored_ = 0; ///< numbers of snapshots: of the last one, and of what was last brought back
+  ChangeLog::Moment restored_then_;   ///< when it was
+  std::vector<int32_t> written_;
 };
 
 } // namespace molmesh::improve

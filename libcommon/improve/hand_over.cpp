@@ -97,13 +97,14 @@ bool Editor::hand_over(int32_t v) {
     return back();
   for (size_t i = 0; i < now_.size(); ++i) {
     m_.element[size_t(star2_[i])].q = now_[i].q;
-    m_.note_change(star2_[i]);
+    note_change(star2_[i]);
   }
   for (const int32_t t : side.element) {
     Element& e = m_.element[size_t(t)];
     e.region = side.to;
     for (size_t f = 0; f < 4; ++f) {
       Element& beyond = m_.element[size_t(e.n[f])];
+      note_side(e.n[f]);
       if (e.v[f] == v)
         m_.note_label(t), m_.note_label(e.n[f]);
       for (size_t g = 0; g < 4; ++g)
@@ -119,9 +120,11 @@ bool Editor::hand_over(int32_t v) {
     changed.insert(changed.end(), star2_.begin(), star2_.end());
   for (const auto* list : {&star_, &star2_})
     for (const int32_t t : *list)
-      if (list == &star_ || u >= 0)
+      if (list == &star_ || u >= 0) {
+        log.add(t);
         for (const int32_t w : m_.element[size_t(t)].v)
           m_.touched[size_t(w)] = time;
+      }
   ++counts.hand_overs;
   return true;
 }

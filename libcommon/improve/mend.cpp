@@ -15,6 +15,10 @@ std::vector<int32_t> Mending::below(float goal, const std::vector<int32_t>& of) 
   return list;
 }
 
+std::vector<int32_t> Mending::bad() {
+  return below(FaultCount::share * pass_.goal, below_goal_());
+}
+
 std::vector<int32_t> Mending::elements() const {
   std::vector<int32_t> all;
   for (const int32_t t : slots_)
@@ -47,7 +51,7 @@ void Mending::mend(int rounds) {
   for (int k = 0, idle = 0; k < rounds && idle < 2; ++k) { // after two in vain, one of each kind, all are
     const int64_t done = editor_.counts.total();
     editor_.worst_first = (k % 2 == 0) == pass_.worst_first;
-    std::vector<int32_t> list = below(pass_.goal, slots_);
+    std::vector<int32_t> list = below_goal_();
     if (list.empty())
       return;
     for (int sweep = 0; sweep < 4 && !list.empty(); ++sweep) {
@@ -77,9 +81,9 @@ void Mending::straighten() {
   flatten();
 }
 
-double Mending::deficit() const {
+double Mending::deficit() {
   double sum = 0;
-  for (const int32_t t : below(FaultCount::share * pass_.goal, slots_))
+  for (const int32_t t : bad())
     sum += 1.2 - std::sqrt(m_.element[size_t(t)].q / pass_.goal);
   return sum;
 }

@@ -1,6 +1,7 @@
 // mend.hpp — a part after a trial: its triangles made to fit, its elements brought over the goal.
 #pragma once
 #include "improve/faults.hpp"
+#include "improve/low_elements.hpp"
 #include "improve/schedule.hpp"
 #include "par/helpers.hpp"
 #include <cstdint>
@@ -14,7 +15,10 @@ public:
   /// helpers: threads for shake(), or null.
   Mending(Editor& editor, DynamicMesh& m, const std::vector<int32_t>& slots, const Pass& pass,
           par::Helpers* helpers)
-      : editor_(editor), m_(m), slots_(slots), pass_(pass), helpers_(helpers) {}
+      : editor_(editor), m_(m), slots_(slots), pass_(pass), helpers_(helpers),
+        below_goal_(m, slots, editor.log, pass.goal) {
+    editor.log.keep();
+  }
 
   float floor = 0.01f; ///< share of the goal: what an operation that sets out may leave for the mending
   bool loose = false;  ///< Editor::loose, while mending
@@ -34,11 +38,12 @@ public:
 
   std::vector<int32_t> elements() const;
   /// 0 where no element is far enough below the goal to count as a fault; more for every one, and for worse ones.
-  double deficit() const;
+  double deficit();
 
 private:
   std::vector<int32_t> below(float goal, const std::vector<int32_t>& of) const; ///< of elements, in their order
-  std::vector<int32_t> worst() const;
+  std::vector<int32_t> bad();                                                   ///< in the order of the slots
+  std::vector<int32_t> worst();
   bool operate(int32_t t, int k);
   struct Trial;
   struct Aim;
@@ -53,6 +58,7 @@ private:
   const std::vector<int32_t>& slots_;
   const Pass& pass_;
   par::Helpers* helpers_;
+  LowElements below_goal_;
 };
 
 } // namespace molmesh::improve

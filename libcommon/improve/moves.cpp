@@ -161,7 +161,7 @@ bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, f
   for (size_t i = 0; i < elements.size(); ++i) {
     Element& e = m_.element[size_t(elements[i])];
     e.q = now_[i].q;
-    m_.note_change(elements[i]);
+    note_change(elements[i]);
     for (const int32_t w : e.v)
       m_.touched[size_t(w)] = time;
   }

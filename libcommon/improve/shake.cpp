@@ -10,9 +10,9 @@ namespace molmesh::improve {
 constexpr int operations = 34;
 
 // The worst elements and those beside them; with effort 4 all at the worst one's corners too.
-std::vector<int32_t> Mending::worst() const {
+std::vector<int32_t> Mending::worst() {
   constexpr size_t most = 4;
-  std::vector<int32_t> list = below(FaultCount::share * pass_.goal, slots_);
+  std::vector<int32_t> list = bad();
   sort_worst_first(m_, list);
   list.resize(std::min(list.size(), most));
   for (size_t i = 0, n = list.size(); i < n; ++i)

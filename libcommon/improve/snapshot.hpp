@@ -1,7 +1,9 @@
 // snapshot.hpp — what the operations on one part may touch, how many were done, and all of it put by.
 #pragma once
+#include "improve/change_log.hpp"
 #include "improve/dynamic_mesh.hpp"
 #include "improve/sheets.hpp"
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -36,12 +38,15 @@ struct Snapshot {
     int32_t element, n;
     uint8_t face, label;
   };
-  std::vector<std::pair<int32_t, Element>> element;
+  std::vector<std::pair<int32_t, Element>> element; ///< ascending
+  std::vector<std::array<uint32_t, 4>> corner_of;   ///< [element] in `corner`
   std::vector<Corner> corner;
   std::vector<Side> side; ///< faces of other parts' elements towards these
   PartRoom room;
   Sheets sheets{1};
   Counts counts;
+  uint64_t number = 0; ///< of the editor's
+  ChangeLog::Moment taken;
 };
 
 } // namespace molmesh::improve

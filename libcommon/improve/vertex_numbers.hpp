@@ -13,6 +13,7 @@ public:
   }
   /// Those met so far, by their numbers.
   const std::vector<int32_t>& met() const { return met_; }
+  bool knows(int32_t vertex) const { return number_.find(static_cast<uint32_t>(vertex)) != nullptr; }
   /// The vertex' number: met().size() of before when it is new.
   size_t operator()(int32_t vertex) {
     int32_t& number = number_[static_cast<uint32_t>(vertex)];

@@ -1,4 +1,5 @@
 // recover_test.cpp — points that were pushed off the isosurface come back or leave it; what fails leaves no trace.
+#include "improve/faults.hpp"
 #include "improve/improve.hpp"
 #include "improve/schedule.hpp"
 #include "lattice_mesh.hpp"
@@ -210,20 +211,56 @@ TEST_CASE("what is restored is as it was saved") {
   for (size_t e = 0; e < then.element.size(); ++e)
     REQUIRE((c.m.element[e].v == then.element[e].v && c.m.element[e].n == then.element[e].n &&
              c.m.element[e].label == then.element[e].label));
+  const auto as_before = [&] {
+    for (int32_t v = 0; v < points; ++v)
+      REQUIRE((c.m.point[size_t(v)] == before.point[size_t(v)] &&
+               c.m.incident[size_t(v)] == before.incident[size_t(v)] &&
+               c.m.touched[size_t(v)] == before.touched[size_t(v)] &&
+               c.m.vertex[size_t(v)].kind == before.vertex[size_t(v)].kind));
+    for (int32_t e = 0; e < size + 1000; ++e) {
+      const improve::Element& x = c.m.element[size_t(e)];
+      if (e >= size)
+        REQUIRE_FALSE(x.alive());
+      else
+        REQUIRE((x.v == before.element[size_t(e)].v && x.n == before.element[size_t(e)].n &&
+                 x.label == before.element[size_t(e)].label && x.q == before.element[size_t(e)].q));
+    }
+  };
   editor.restore(snapshot);
   CHECK(editor.counts.total() == 0);
   CHECK(room.element.size() == 1000);
-  for (int32_t v = 0; v < points; ++v)
-    REQUIRE(
-        (c.m.point[size_t(v)] == before.point[size_t(v)] && c.m.incident[size_t(v)] == before.incident[size_t(v)]));
-  for (int32_t e = 0; e < size + 1000; ++e) {
-    const improve::Element& x = c.m.element[size_t(e)];
-    if (e >= size)
-      REQUIRE_FALSE(x.alive());
-    else
-      REQUIRE((x.v == before.element[size_t(e)].v && x.n == before.element[size_t(e)].n &&
-               x.label == before.element[size_t(e)].label && x.q == before.element[size_t(e)].q));
+  as_before();
+  // Again and again, where little has been written; and faults, counted by what was written.
+  std::vector<int32_t> slots = inner;
+  slots.insert(slots.end(), room.element.begin(), room.element.end());
+  const auto goal = static_cast<float>(improve::angle_quality(35));
+  improve::FaultCount kept(editor, c.m, slots, goal);
+  const auto counts_as_anew = [&] {
+    improve::FaultCount anew(editor, c.m, slots, goal);
+    const improve::Faults a = kept(), b = anew();
+    REQUIRE((a.off == b.off && a.bent == b.bent && a.below == b.below && a.worst == b.worst));
+    REQUIRE(kept.points_off() == anew.points_off());
+  };
+  counts_as_anew();
+  int64_t done = 0;
+  for (size_t k = 0; k < inner.size(); k += 1 + inner.size() / 40) {
+    const improve::Snapshot here = editor.save(inner);
+    for (const bool bold : {true, false}) {
+      editor.straighten = editor.bold = bold;
+      editor.goal = bold ? 1e-4f : goal;
+      for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j)
+          if (const improve::Element& e = c.m.element[size_t(inner[k])]; i != j && e.alive())
+            editor.remove_edge(inner[k], i, j) || editor.split(inner[k], i, j) || editor.contract(inner[k], i, j) ||
+                editor.hand_over(e.v[size_t(i)]) || editor.smooth(e.v[size_t(i)]);
+      counts_as_anew();
+    }
+    done += editor.counts.total();
+    editor.restore(k % 2 == 0 ? here : snapshot);
+    as_before();
+    counts_as_anew();
   }
+  CHECK(done > 20);
 }
 
 TEST_CASE("a surface point that leaves the surface leaves a surface behind") {
