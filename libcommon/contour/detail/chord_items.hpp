@@ -19,7 +19,7 @@ HD inline double sample_area(const SurfaceSample& s) {
 /// Volume that the chords from the sample of cell i to those of the next cells along the axes cut off, less where
 /// the surface is hollow, in cubed fine spacings. Along a chord d inward normals turn so that Δn · d = -κ d², and a
 /// quadrangle of four chords lies a twelfth of their sum off on average.
-/// Of large surfaces every so many cells speak for all.
+/// Of large surfaces every so many cells speak for all: item i is the cell that many times i.
 struct CutByCells {
   static constexpr int64_t enough = 1 << 17;
   const SurfaceCell* cell;
@@ -27,11 +27,10 @@ struct CutByCells {
   const uint64_t* key; ///< of the cells
   int64_t n;
   float isovalue;
-  double* cut = nullptr;
-  HD void operator()(int64_t i) const {
-    const int64_t every = 1 + n / enough;
-    cut[i] = i % every == 0 ? static_cast<double>(every) * of_cell(i) : 0;
-  }
+  double* cut = nullptr; ///< [items(n)]
+  HD static int64_t every(int64_t n) { return 1 + n / enough; }
+  HD static int64_t items(int64_t n) { return (n + every(n) - 1) / every(n); }
+  HD void operator()(int64_t i) const { cut[i] = static_cast<double>(every(n)) * of_cell(i * every(n)); }
 
   HD double of_cell(int64_t i) const {
     double sum = 0;
@@ -67,7 +66,8 @@ private:
 
 /// The same by nodes of a level, of the chords of leaves: chords twice as long cut off four times as much.
 struct CutByNodes {
-  const double* cell_cut;
+  const double* cell_cut; ///< of every so many cells
+  int64_t every;
   SurfaceNodes nodes;
   NodeSet refined; ///< of this level
   int level;
@@ -77,12 +77,18 @@ struct CutByNodes {
     const bool leaf = !(refined.word(nodes.key[i] >> 6) >> (nodes.key[i] & 63) & 1);
     const bool of_cells = leaf || !child_cut;
     const double* const from = of_cells ? cell_cut : child_cut;
-    const int64_t begin = of_cells ? nodes.cell_begin(i) : nodes.child_begin(i),
-                  end = of_cells ? nodes.cell_begin(i + 1) : nodes.child_begin(i + 1);
+    const int64_t begin = of_cells ? first_sample(nodes.cell_begin(i)) : nodes.child_begin(i),
+                  end = of_cells ? first_sample(nodes.cell_begin(i + 1)) : nodes.child_begin(i + 1);
     double sum = 0;
     for (int64_t c = begin; c < end; ++c)
       sum += from[c];
     cut[i] = leaf ? sum * (1 << 2 * level) : sum;
+  }
+
+private:
+  /// Of cells from this one on; both are below 2^31.
+  HD int64_t first_sample(int64_t cell) const {
+    return static_cast<uint32_t>(cell + every - 1) / static_cast<uint32_t>(every);
   }
 };
 

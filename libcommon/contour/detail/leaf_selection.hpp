@@ -56,7 +56,7 @@ private:
   struct Level {
     Array<uint64_t> key;
     Array<int32_t> child, cell;
-    Array<uint8_t> flags;
+    Array<uint8_t> flags, corners;
     SurfaceNodes view;
   };
   static constexpr int most_merges = 5; // surface cells of 32 fine spacings at most
@@ -73,9 +73,10 @@ private:
     const int64_t cells = surface_.n;
     fine.key = m_.template array<uint64_t>(cells);
     fine.flags = m_.template array<uint8_t>(cells);
+    fine.corners = m_.template array<uint8_t>(cells);
     m_.for_n("start from cells", cells,
-             StartFromCells{surface_.cell, l_.isovalue, fine.key.data(), fine.flags.data()});
-    fine.view = {fine.key.data(), nullptr, nullptr, fine.flags.data(), cells, 0, cells};
+             StartFromCells{surface_.cell, l_.isovalue, fine.key.data(), fine.flags.data(), fine.corners.data()});
+    fine.view = {fine.key.data(), nullptr, nullptr, fine.flags.data(), fine.corners.data(), cells, 0, cells};
     level_.push_back(std::move(fine));
     for (int l = 1; l <= top_ + 2; ++l) {
       const SurfaceNodes below = surface_nodes(l - 1);
@@ -84,10 +85,13 @@ private:
       here.key = m_.template array<uint64_t>(child.n);
       here.cell = m_.template array<int32_t>(child.n);
       here.flags = m_.template filled<uint8_t>(child.n, 0);
+      here.corners = m_.template array<uint8_t>(child.n);
       here.child = std::move(child.array);
-      m_.for_n("make parents", child.n, MakeParents{below, here.child.data(), here.key.data(), here.cell.data()});
-      here.view = {
-          here.key.data(), here.child.data(), here.cell.data(), here.flags.data(), child.n, below.n, cells};
+      m_.for_n(
+          "make parents", child.n,
+          MakeParents{below, here.child.data(), child.n, here.key.data(), here.cell.data(), here.corners.data()});
+      here.view = {here.key.data(),     here.child.data(), here.cell.data(), here.flags.data(),
+                   here.corners.data(), child.n,           below.n,          cells};
       level_.push_back(std::move(here));
     }
   }
@@ -96,7 +100,7 @@ private:
   void select(double tolerance) {
     for (int l = 1; options_.adapt > 0 && l <= std::min(most_merges, top_); ++l)
       m_.for_n("merge nodes", surface_nodes(l).n,
-               MergeNodes{l_, surface_.sample, surface_nodes(l), surface_nodes(l - 1).flags, l, tolerance});
+               MergeNodes{l_.cells, surface_.sample, surface_nodes(l), surface_nodes(l - 1), l, tolerance});
     refined_.clear();
     refined_.resize(static_cast<size_t>(levels_) + 1);
     for (int level = 1; level <= levels_; ++level)
@@ -113,8 +117,8 @@ private:
     return improve::most_offset * all.area + most_cut * all.volume();
   }
   void find_cuts() {
-    cell_cut_ = m_.template array<double>(surface_.n);
-    m_.for_n("cut by cells", surface_.n,
+    cell_cut_ = m_.template array<double>(CutByCells::items(surface_.n));
+    m_.for_n("cut by cells", CutByCells::items(surface_.n),
              CutByCells{surface_.cell, surface_.sample, surface_nodes(0).key, surface_.n, l_.isovalue,
                         cell_cut_.data()});
   }
@@ -124,9 +128,9 @@ private:
     for (int l = 1; l <= std::min(most_merges, top_); ++l) {
       n = surface_nodes(l).n;
       auto here = m_.template array<double>(n);
-      m_.for_n(
-          "cut by nodes", n,
-          CutByNodes{cell_cut_.data(), surface_nodes(l), set(l), l, l > 1 ? cut.data() : nullptr, here.data()});
+      m_.for_n("cut by nodes", n,
+               CutByNodes{cell_cut_.data(), CutByCells::every(surface_.n), surface_nodes(l), set(l), l,
+                          l > 1 ? cut.data() : nullptr, here.data()});
       cut = std::move(here);
     }
     return sum(cut, n, 0.);
@@ -242,7 +246,7 @@ private:
   SurfaceView surface_;
   RefineOptions options_;
   std::vector<Level> level_;   ///< [top + 3]
-  Array<double> cell_cut_;     ///< [cells] CutByCells
+  Array<double> cell_cut_;     ///< CutByCells
   std::vector<Nodes> refined_; ///< [levels + 1] nodes with children
 };
 

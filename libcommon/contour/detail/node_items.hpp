@@ -1,9 +1,7 @@
 // node_items.hpp — the octree's nodes that hold surface cells: which of them may be one cell.
 #pragma once
 #include "contour/cube.hpp"
-#include "contour/detail/block_window.hpp"
 #include "contour/detail/node_mask.hpp"
-#include "contour/lattice.hpp"
 #include "contour/surface_sample.hpp"
 
 namespace molmesh::contour::detail {
@@ -18,11 +16,33 @@ struct SurfaceNodes {
   const int32_t* child = nullptr; ///< first node of the level below; its nodes follow each other. Level 0: null
   const int32_t* cell = nullptr;  ///< first surface cell. Level 0: null
   uint8_t* flags = nullptr;       ///< `whole` and near faces
+  uint8_t* corners = nullptr;     ///< bit c: corner c is inside; of nodes within the domain
   int64_t n = 0, below = 0, cells = 0; ///< nodes here, of the level below, surface cells
 
   HD int64_t child_begin(int64_t i) const { return i < n ? child[i] : below; }
   HD int64_t cell_begin(int64_t i) const { return i >= n ? cells : cell ? cell[i] : i; }
 };
+
+/// Bit x + 3 y + 9 z: of the 27 corners of a node's children, (x, y, z) is inside. The children that the surface
+/// crosses are nodes begin … end - 1; the others lie on one side, that of the corner that all eight share.
+HD inline uint32_t inside_points(const SurfaceNodes& children, int64_t begin, int64_t end) {
+  const auto of_child = [](uint32_t octant, uint32_t corners) {
+    const uint32_t points =
+        (corners & 0x03) | (corners & 0x0C) << 1 | (corners & 0x30) << 5 | (corners & 0xC0) << 6;
+    return points << ((octant & 1) + 3 * (octant >> 1 & 1) + 9 * (octant >> 2));
+  };
+  constexpr uint32_t middle = 1 << 13;
+  uint32_t in = 0, crossed = 0;
+  for (int64_t k = begin; k < end; ++k) {
+    const auto octant = static_cast<uint32_t>(children.key[k] & 7);
+    in |= of_child(octant, children.corners[k]);
+    crossed |= 1u << octant;
+  }
+  for (uint32_t octant = 0; (in & middle) && octant < 8; ++octant)
+    if (!(crossed >> octant & 1))
+      in |= of_child(octant, 0xFF);
+  return in;
+}
 
 /// Of each set of inside corners: whether the surface within the cell is one disc and no face is ambiguous, that
 /// is, inside and outside corners are each joined by edges, and so are those of each face.
@@ -64,11 +84,13 @@ struct StartFromCells {
   const SurfaceCell* from;
   float isovalue;
   uint64_t* key;
-  uint8_t* flags;
+  uint8_t *flags, *corners;
   OneDisc one_disc{};
   HD void operator()(int64_t i) const {
+    const uint32_t inside = inside_corners(from[i], isovalue);
     key[i] = from[i].key;
-    flags[i] = one_disc(inside_corners(from[i], isovalue)) ? whole : uint8_t{0};
+    corners[i] = static_cast<uint8_t>(inside);
+    flags[i] = one_disc(inside) ? whole : uint8_t{0};
   }
 };
 
@@ -86,11 +108,18 @@ struct FirstChildren {
 struct MakeParents {
   SurfaceNodes below;
   const int32_t* child;
+  int64_t n;
   uint64_t* key;
   int32_t* cell;
+  uint8_t* corners;
   HD void operator()(int64_t i) const {
     key[i] = below.key[child[i]] >> 3;
     cell[i] = static_cast<int32_t>(below.cell_begin(child[i]));
+    const uint32_t in = inside_points(below, child[i], i + 1 < n ? child[i + 1] : below.n);
+    uint32_t of_node = 0;
+    for (int c = 0; c < 8; ++c)
+      of_node |= (in >> (2 * (c & 1) + 6 * (c >> 1 & 1) + 18 * (c >> 2)) & 1) << c;
+    corners[i] = static_cast<uint8_t>(of_node);
   }
 };
 
@@ -121,10 +150,9 @@ struct MergeNodes {
   /// surface. Nodes of two fine spacings are nearer to it.
   static constexpr double least_margin = 0.15, least_margin_of_two = 0.1;
 
-  LatticeView l;
+  Vec3i cells; ///< of the domain
   const SurfaceSample* sample;
-  SurfaceNodes nodes;
-  const uint8_t* child_flags;
+  SurfaceNodes nodes, children;
   int level;
   double tolerance; ///< distance of the samples from their mean plane, fine spacings
   OneDisc one_disc{};
@@ -134,14 +162,16 @@ struct MergeNodes {
     flags = 0;
     const Vec3i corner = morton_point(nodes.key[i] << 3 * level);
     const int32_t extent = 1 << level;
-    if (corner.x + extent > l.cells.x || corner.y + extent > l.cells.y || corner.z + extent > l.cells.z)
+    if (corner.x + extent > cells.x || corner.y + extent > cells.y || corner.z + extent > cells.z)
       return;
     for (int64_t c = nodes.child_begin(i); c < nodes.child_begin(i + 1); ++c)
-      if (!(child_flags[c] & whole))
+      if (!(children.flags[c] & whole))
         return;
+    if (!keeps_topology(i))
+      return;
     const SurfaceSample *const begin = sample + nodes.cell_begin(i), *const end = sample + nodes.cell_begin(i + 1);
     const Sheet sheet(begin, end);
-    if (nearly_plane(begin, end, sheet) && keeps_topology(corner, extent / 2))
+    if (nearly_plane(begin, end, sheet))
       flags = static_cast<uint8_t>(whole | near_faces(sheet.middle, corner, extent));
   }
 
@@ -152,31 +182,11 @@ private:
         return false;
     return true;
   }
-  /// Bit x + 3 y + 9 z: of the 27 corners of the children, `half` apart, (x, y, z) is inside.
-  HD uint32_t inside_points(Vec3i corner, int32_t half) const {
-    uint32_t in = 0;
-    if (half <= 4) {
-      const BlockWindow window(l, corner, 2 * half);
-      for (int x = 0; x < 3; ++x)
-        for (int y = 0; y < 3; ++y) {
-          const uint32_t row = window.inside(half * x, half * y);
-          in |= ((row & 1) | (row >> half & 1) << 9 | (row >> 2 * half & 1) << 18) << (x + 3 * y);
-        }
-      return in;
-    }
-    BlockIndexView::Last last;
-    for (int n = 0; n < 27; ++n)
-      in |= uint32_t{l.inside(corner + half * Vec3i{n % 3, n / 3 % 3, n / 9}, last)} << n;
-    return in;
-  }
-  HD bool keeps_topology(Vec3i corner, int32_t half) const {
+  HD bool keeps_topology(int64_t i) const {
     constexpr uint32_t corner_bits = 0x5140145, half_way[3] = {0x2492492, 0xE07038, 0x3FE00};
-    const uint32_t in = inside_points(corner, half);
-    uint32_t corners = 0;
-    for (int c = 0; c < 8; ++c)
-      corners |= (in >> (2 * (c & 1) + 6 * (c >> 1 & 1) + 18 * (c >> 2)) & 1) << c;
-    if (!one_disc(corners))
+    if (!one_disc(nodes.corners[i]))
       return false;
+    const uint32_t in = inside_points(children, nodes.child_begin(i), nodes.child_begin(i + 1));
     // Whether any, and whether all of the corners of the edge, face or cell that a point is the middle of are
     // inside.
     uint32_t any = in & corner_bits, all = any;

@@ -165,10 +165,10 @@ TEST_CASE("what chords of fine cells cut off a ball is the same share of h²/r²
     std::vector<uint64_t> key;
     for (const contour::SurfaceCell& cell : surface.cells)
       key.push_back(cell.key);
-    std::vector<double> cut(key.size());
-    const contour::detail::CutByCells item{
-        surface.cells.data(), surface.samples.data(), key.data(), n, lattice.isovalue, cut.data()};
-    for (int64_t i = 0; i < n; ++i)
+    contour::detail::CutByCells item{surface.cells.data(), surface.samples.data(), key.data(), n, lattice.isovalue};
+    std::vector<double> cut(static_cast<size_t>(item.items(n)));
+    item.cut = cut.data();
+    for (int64_t i = 0; i < item.items(n); ++i)
       item(i);
     const double share = std::accumulate(cut.begin(), cut.end(), 0.) / (4 * std::acos(-1.) / 3 * radius);
     CHECK(share == Approx(0.355).epsilon(0.05));
