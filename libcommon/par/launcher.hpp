@@ -49,13 +49,18 @@ public:
   /// Loops of fewer pieces run on one thread: on cores shared with others every loop that all threads join may wait
   /// a time slice for the last of them, and many loops are short.
   static constexpr int64_t least_pieces = 8;
-  /// item(i) for i in [0, n), each independent of the others; Item::grain at a time where it has one.
+  /// item(i) for i in [0, n), each independent of the others; Item::grain at a time where it has one, and by
+  /// item.run(begin, end) where that does the same for many.
   template <class Item>
   void for_n(const char*, int64_t n, const Item& item, const Work& = {}) {
     int64_t grain = 256;
     if constexpr (requires { Item::grain; })
       grain = Item::grain;
-    par::for_n(n, threads_for(n, grain), grain, item);
+    if constexpr (requires { item.run(n, n); })
+      par::for_n((n + grain - 1) / grain, threads_for(n, grain), 1,
+                 [&](int64_t c) { item.run(c * grain, std::min(n, (c + 1) * grain)); });
+    else
+      par::for_n(n, threads_for(n, grain), grain, item);
   }
   /// count[i] → sum of count[0..i), in place; slot n, one more, gets the total.
   template <class T>

@@ -75,6 +75,16 @@ struct RaiseLeavesRound {
   uint8_t* flag; ///< [leaves]
   HD void operator()(int64_t i) const {
     NearLeaves near(c.tree);
+    of_point(near, i);
+  }
+  void run(int64_t begin, int64_t end) const {
+    NearLeaves near(c.tree);
+    for (int64_t i = begin; i < end; ++i)
+      of_point(near, i);
+  }
+
+private:
+  HD void of_point(NearLeaves& near, int64_t i) const {
     for (int octant = 0; octant < 8; ++octant)
       if (const int32_t leaf = leaf_with_corner(near, c.point[vertex[i]], octant); leaf >= 0)
         raise(flag[leaf]);

@@ -105,26 +105,36 @@ private:
     float there;
     BlockIndexView::Last home;
     if (here > 0 && c.lattice.active(p, there, home)) {
-      // Gradient of log G, from whichever neighbours the band knows.
+#ifndef __CUDA_ARCH__
+      for (const int step : {-64, -8, 8, 64}) // they are on their way while the index is asked for the first
+        if (const int64_t near = 512 * home.block + slot(c.lattice.base + p) + step; near >= 0)
+          __builtin_prefetch(c.lattice.grid + near);
+#endif
+      // Gradient of log G, from whichever neighbours the band knows: two an axis.
+      bool known[6];
+      double log[8];
+      for (int k = 0; k < 6; ++k) {
+        Vec3i q = p;
+        q[k / 2] += k % 2 ? 1 : -1;
+        BlockIndexView::Last last = home;
+        known[k] =
+            q[k / 2] >= 0 && q[k / 2] <= c.lattice.cells[k / 2] && c.lattice.active(q, there, last) && there > 0;
+        log[k] = known[k] ? double(there) / here : 1;
+      }
+      log[6] = log[7] = here / c.lattice.isovalue;
+      for (double& of : log) // some at once
+        portable_logs<double, uint64_t>(double{of}, of);
       Vec3d gradient;
       for (int a = 0; a < 3; ++a) {
         double sum = 0;
-        int n = 0;
-        for (int step = -1; step < 2; step += 2) {
-          Vec3i q = p;
-          q[a] += step;
-          if (q[a] < 0 || q[a] > c.lattice.cells[a])
-            continue;
-          BlockIndexView::Last last = home;
-          if (!c.lattice.active(q, there, last) || !(there > 0))
-            continue;
-          sum += portable_log(double(there) / here) / (c.lattice.position(q)[a] - c.lattice.position(p)[a]);
-          ++n;
-        }
+        for (int side = 0; side < 2; ++side)
+          if (known[2 * a + side])
+            sum += log[2 * a + side] / (c.lattice.axis[a][p[a] + (side ? 1 : -1)] - c.lattice.axis[a][p[a]]);
+        const int n = known[2 * a] + known[2 * a + 1];
         gradient[a] = n ? sum / n : 0;
       }
       if (const double slope = norm(gradient); slope > 0) {
-        d = portable_log(here / c.lattice.isovalue) / slope;
+        d = log[6] / slope;
         inwards = gradient / slope;
         if (std::fabs(d) <= gradient_reach * c.lattice.spacing)
           return true;

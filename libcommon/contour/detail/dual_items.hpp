@@ -30,19 +30,15 @@ public:
   }
   /// x moved onto the tangent plane of the nearest: the mean of a curved sheet's crossings lies on its hollow side.
   HD Vec3d onto_surface(Vec3d x) const {
-    Vec3d nearest;
-    int32_t which = -1;
-    double least = 1e300;
-    for (int32_t k = 0; k < size(); ++k) {
-      const Vec3d here = foot(k);
-      if (const double d = norm2(here - x); d < least) {
-        least = d;
-        nearest = here;
-        which = k;
-      }
+    int32_t which = 0;
+    uint64_t least = ~uint64_t{0};
+    for (int32_t k = 0; k < size(); ++k) { // no branches: bits of positive numbers are in the numbers' order
+      const auto d = std::bit_cast<uint64_t>(norm2(foot(k) - x));
+      which = d < least ? k : which;
+      least = d < least ? d : least;
     }
     const Vec3d normal = sample(which).normal;
-    return x + dot(nearest - x, normal) * normal;
+    return x + dot(foot(which) - x, normal) * normal;
   }
 
 private:

@@ -49,14 +49,19 @@ private:
     const bool across_u = smaller_ >> (2 * u + upper_u) & 1,
                across_v = !across_u && smaller_ >> (2 * v + upper_v) & 1;
     const bool diagonal = !across_u && !across_v;
+    // The first neighbour is known, and has the middle as a corner where the edge is on the face's lower side.
+    if (across_u && !upper_v)
+      return c_.corner_vertex(c_.neighbour(leaf, 2 * u + upper_u), 1 << axis | int(!upper_u) << u);
+    if (across_v && !upper_u)
+      return c_.corner_vertex(c_.neighbour(leaf, 2 * v + upper_v), 1 << axis | int(!upper_v) << v);
     uint64_t k = c_.tree.key[leaf] | uint64_t{1} << (3 * (level - 1) + axis); // the cell after the middle
     if ((across_u || diagonal) && !c_.tree.beyond(k, level, u, upper_u))
       return -1;
     if ((across_v || diagonal) && !c_.tree.beyond(k, level, v, upper_v))
       return -1;
-    if (across_u && upper_v)
+    if (across_u)
       k = morton_before(morton_after(k, v, level), v);
-    if (across_v && upper_u)
+    if (across_v)
       k = morton_before(morton_after(k, u, level), u);
     const int32_t other = near_.find_key(k);
     if (diagonal && c_.tree.level[other] >= level)

@@ -31,6 +31,17 @@ struct OwnCorners {
 
   HD void operator()(int64_t leaf) const {
     NearLeaves near(tree);
+    of_leaf(near, leaf);
+  }
+  /// Where many follow each other what held the last ones is known.
+  void run(int64_t begin, int64_t end) const {
+    NearLeaves near(tree);
+    for (int64_t leaf = begin; leaf < end; ++leaf)
+      of_leaf(near, leaf);
+  }
+
+private:
+  HD void of_leaf(NearLeaves& near, int64_t leaf) const {
     int32_t own = 1;
     owned[8 * leaf] = static_cast<int32_t>(8 * leaf);
     for (int c = 1; c < 8; ++c) {
@@ -42,25 +53,33 @@ struct OwnCorners {
     for (int f = 0; f < 6; ++f)
       beside[6 * leaf + f] = near.neighbour(static_cast<int32_t>(leaf), f);
   }
-
-private:
   HD int32_t owner(NearLeaves& near, int32_t leaf, int c) const {
     const int level = tree.level[leaf];
     uint64_t k = tree.key[leaf];
-    bool within = true; // the point's last octant is
     for (int a = 0; a < 3; ++a)
-      if (c >> a & 1) {
+      if (c >> a & 1)
         k = morton_after(k, a, level);
-        within = within && tree.before_end(k, a);
-      }
-    if (within)
+    int before = 0, after = 0; // bit a: the domain goes on there
+    for (int a = 0; a < 3; ++a) {
+      before |= int((k & morton_axis(a)) != 0) << a;
+      after |= int(tree.before_end(k, a)) << a;
+    }
+    if (after == 7)
       if (const int32_t last = near.starting_at(k); last >= 0)
         return 8 * last;
-    const Vec3i p = tree.corner(leaf) + tree.extent(leaf) * corner_step(c);
-    for (int octant = 1; octant < 8; ++octant)
-      if (const int32_t other = leaf_with_corner(near, p, octant); other >= 0)
-        return 8 * other + octant; // the point is as far from the leaf's lower corner
-    return 8 * leaf + c;           // not reached: the leaf's own octant is one of them
+    for (int octant = 1; octant < 8; ++octant) {
+      if ((octant & ~before) | (~octant & ~after & 7))
+        continue;
+      uint64_t q = k;
+      for (int a = 0; a < 3; ++a)
+        if (octant >> a & 1)
+          q = morton_before(q, a);
+      const int32_t other = near.find_key(q);
+      if ((k & ((uint64_t{1} << 3 * tree.level[other]) - 1)) ==
+          0) // the point is as far from the leaf's lower corner
+        return 8 * other + octant;
+    }
+    return 8 * leaf + c; // not reached: the leaf's own octant is one of them
   }
 };
 
