@@ -9,7 +9,7 @@
 
 namespace molmesh::contour::detail {
 
-/// [vertices of the complex] 1: a grid point of no surface cell; 2 + level: a dual vertex of no surface cell; 0:
+/// [vertices of the complex] 1: a grid point that has not moved; 2 + level: a dual vertex of no surface cell; 0:
 /// any other.
 struct LatticeClasses {
   ComplexView c;
@@ -17,7 +17,7 @@ struct LatticeClasses {
   HD void operator()(int64_t v) const {
     const int64_t leaf = v - c.dual0;
     if (leaf < 0)
-      of[v] = c.nearest[v] < 0;
+      of[v] = !c.has_moved[v];
     else
       of[v] = leaf < c.tree.leaves && c.side[leaf] != Side::crossed ? static_cast<uint8_t>(2 + c.tree.level[leaf])
                                                                     : uint8_t{0};
@@ -87,18 +87,35 @@ struct RelaxView {
   static constexpr uint32_t at_rest = ~uint32_t{0}; ///< of turn: does not want to move
 };
 
+/// Of run i of elements.
 struct WantVertices {
+  static constexpr int64_t run = 16;
   ElementsView e;
   Bounds bound;
   const float* quality;
   float goal;
   bool surface_moves;
   const int32_t* near;   ///< the elements that may be bad; null: all
+  int64_t n;             ///< how many
   const int32_t* number; ///< [vertices] of the pass before, where there was one
   uint8_t* wanted;       ///< [vertices]
   uint8_t* has_new;      ///< raised where one was no candidate before
   HD void operator()(int64_t i) const {
-    const int64_t t = near ? near[i] : i;
+    const int64_t begin = run * i, end = begin + run < n ? begin + run : n;
+    if (!near && end == begin + run && !any_bad(quality + begin))
+      return;
+    for (int64_t k = begin; k < end; ++k)
+      want(near ? near[k] : k);
+  }
+
+private:
+  HD bool any_bad(const float* of_run) const {
+    int bad = 0; // no branches: most runs have none
+    for (int64_t k = 0; k < run; ++k)
+      bad |= of_run[k] < goal;
+    return bad;
+  }
+  HD void want(int64_t t) const {
     for (size_t c = 0; quality[t] < goal && c < 4; ++c)
       if (const int32_t v = e.tet[t][c]; surface_moves || !bound.on_surface(v)) {
         raise(wanted[v]);

@@ -62,9 +62,9 @@ private:
     const bool again = vertex_.n > 0;
     auto wanted = m_.filled(e.positions, uint8_t{0}), has_new = m_.filled(1, uint8_t{!again});
     const int64_t may_be_bad = again ? near_.n : e.tets;
-    m_.for_n("want vertices", may_be_bad,
+    m_.for_n("want vertices", (may_be_bad + WantVertices::run - 1) / WantVertices::run,
              WantVertices{e, r_.bound, r_.quality, r_.goal, surface_moves_, again ? near_.data() : nullptr,
-                          again ? number_.data() : nullptr, wanted.data(), has_new.data()},
+                          may_be_bad, again ? number_.data() : nullptr, wanted.data(), has_new.data()},
              {double(may_be_bad) * 4});
     vertex_ = flagged(m_, "candidates", e.positions, wanted.data());
     const int64_t n = vertex_.n;
@@ -76,10 +76,11 @@ private:
     m_.download(has_new, 1, &all);
     near_ = all ? gather<int32_t>(m_, "near elements", e.tets, NearTets{e.tet, wanted.data(), nullptr})
                 : gather<int32_t>(m_, "near elements", near_.n, NearTets{e.tet, wanted.data(), near_.data()});
-    auto corner = m_.template array<std::array<int32_t, 4>>(near_.n);
-    m_.for_n("corner candidates", near_.n, CornerCandidates{e.tet, near_.data(), number_.data(), corner.data()},
-             {double(near_.n) * 52});
-    const CornerCandidate of{corner.data()};
+    auto described = m_.template array<NearElement>(near_.n);
+    m_.for_n("describe near", near_.n,
+             DescribeNear{e.tet, r_.quality, near_.data(), number_.data(), described.data()},
+             {double(near_.n) * 60});
+    const CornerCandidate of{described.data()};
     Array<int32_t> owner;
     int64_t entries = 0;
     place_by(m_, "stars", 4 * near_.n, n, of, [&](int64_t slots) {
@@ -91,13 +92,14 @@ private:
     first_ = m_.filled(n + 1, entries);
     m_.for_n("first of stars", entries, FirstOfStars{owner.data(), first_.data()}, {double(entries) * 4});
     neighbour_ = m_.template array<int32_t>(3 * entries + n);
-    m_.for_n("name stars", n,
-             NameStars{first_.data(), near_.data(), corner.data(), element_.data(), neighbour_.data()},
-             {double(entries) * 24});
     worst_ = m_.template array<float>(n);
+    m_.for_n(
+        "name stars", n,
+        NameStars{first_.data(), near_.data(), described.data(), element_.data(), neighbour_.data(), worst_.data()},
+        {double(entries) * 28});
     turn_ = m_.filled(n, RelaxView::at_rest);
     wakes_ = m_.filled(n, uint8_t{1});
-    changed_ = m_.filled(n, uint8_t{1});
+    changed_ = m_.filled(n, uint8_t{0});
     moves_ = m_.filled(n + 1, int32_t{0});
     r_.vertex = vertex_.data();
     r_.first = first_.data();

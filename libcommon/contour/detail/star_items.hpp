@@ -22,27 +22,29 @@ struct NearTets {
   HD int64_t operator()(int64_t i, int32_t* out) const {
     const int64_t t = among ? among[i] : i;
     const Tet& v = tet[t];
-    if (!(wanted[v[0]] | wanted[v[1]] | wanted[v[2]] | wanted[v[3]]))
-      return 0;
-    if (out)
+    if (out) // wanted or not, since there is no telling: the next one takes the place
       *out = static_cast<int32_t>(t);
-    return 1;
+    return (wanted[v[0]] | wanted[v[1]] | wanted[v[2]] | wanted[v[3]]) != 0;
   }
 };
-/// Of near element i: its corners' candidates, or -1.
-struct CornerCandidates {
+struct NearElement {
+  std::array<int32_t, 4> corner; ///< candidates, or -1
+  float quality;
+};
+struct DescribeNear {
   const Tet* tet;
+  const float* quality;
   const int32_t *near, *number;
-  std::array<int32_t, 4>* corner;
+  NearElement* out;
   HD void operator()(int64_t i) const {
     const Tet& t = tet[near[i]];
-    corner[i] = {number[t[0]], number[t[1]], number[t[2]], number[t[3]]};
+    out[i] = {{number[t[0]], number[t[1]], number[t[2]], number[t[3]]}, quality[near[i]]};
   }
 };
 /// Corner i % 4 of near element i / 4.
 struct CornerCandidate {
-  const std::array<int32_t, 4>* corner;
-  HD int64_t operator()(int64_t i) const { return corner[i >> 2][static_cast<size_t>(i & 3)]; }
+  const NearElement* element;
+  HD int64_t operator()(int64_t i) const { return element[i >> 2].corner[static_cast<size_t>(i & 3)]; }
 };
 /// In the order of the candidates, then of the elements.
 struct PlaceStars {
@@ -62,13 +64,14 @@ struct FirstOfStars {
   }
 };
 
-/// Of a candidate: its neighbours and its elements.
+/// Of a candidate: its neighbours, its elements and the worst one's quality.
 struct NameStars {
   const int64_t* first;
   const int32_t* near;
-  const std::array<int32_t, 4>* corner; ///< [near elements]
-  int32_t* element;                     ///< places in `near` become elements
-  int32_t* neighbour;                   ///< as RelaxView has it
+  const NearElement* described; ///< [near elements]
+  int32_t* element;             ///< places in `near` become elements
+  int32_t* neighbour;           ///< as RelaxView has it
+  float* worst;
   HD void operator()(int64_t c) const {
     constexpr int32_t kept = 16; // of those named last, which need not be named again
     int32_t last[kept];
@@ -76,9 +79,12 @@ struct NameStars {
       j = -1;
     int32_t* const list = neighbour + 3 * first[c] + c;
     int64_t n = 0;
+    float w = 1;
     for (int64_t k = first[c]; k < first[c + 1]; ++k) {
+      const NearElement& e = described[element[k]];
+      w = e.quality < w ? e.quality : w;
       for (size_t i = 0; i < 4; ++i) { // no branches: there is no telling
-        const int32_t j = corner[element[k]][i];
+        const int32_t j = e.corner[i];
         int32_t& known = last[j & (kept - 1)];
         list[n] = j;
         n += (j >= 0) & (j != c) & (j != known);
@@ -87,6 +93,7 @@ struct NameStars {
       element[k] = near[element[k]];
     }
     list[n] = -1;
+    worst[c] = w;
   }
 };
 
