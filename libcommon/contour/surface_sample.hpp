@@ -40,7 +40,7 @@ HD __attribute__((always_inline)) inline void sample_cells(const V* value, doubl
                                                            V (&gradient)[3]) {
   V logarithm[8]; // anything where a value is not positive
   for (int c = 0; c < 8; ++c)
-    portable_logs<V, U>(value[c] / isovalue, logarithm[c]);
+    portable_logs<V, U>(isovalue == 1 ? value[c] : value[c] / isovalue, logarithm[c]); // it mostly is
   V crossings{};
   const V zero{}, one = zero + 1;
   for (int axis = 0; axis < 3; ++axis)
