@@ -25,11 +25,12 @@ class Rows {
 public:
   using D = Tag<T>;
   using V = hn::Vec<D>;
-  Rows(V x, V y, V z, V constant) {
+  Rows(V x, V y, V z, V constant_x, V constant_yz) {
     hn::Store(x, D(), x_);
     hn::Store(y, D(), y_);
     hn::Store(z, D(), z_);
-    hn::Store(constant, D(), constant_);
+    hn::Store(constant_x, D(), constant_x_);
+    hn::Store(constant_yz, D(), constant_yz_);
   }
   template <bool bent>
   void write(int32_t row, const Bend<T>& bend, T* x, T* yz) const {
@@ -40,11 +41,11 @@ public:
       return exp2(d8, hn::MulAdd(hn::MulAdd(q, t, hn::Set(d8, slope)), t, hn::Set(d8, constant)));
     };
     for (int32_t l = 0; l < 8; l += lanes8) {
-      hn::StoreU(factors(l, x_[row], constant_[row]), d8, x + l);
+      hn::StoreU(factors(l, x_[row], constant_x_[row]), d8, x + l);
       hn::StoreU(factors(l, y_[row], 0), d8, y + l);
     }
     for (int32_t l = 0; l < 8; l += lanes8) {
-      const auto z = factors(l, z_[row], 0);
+      const auto z = factors(l, z_[row], constant_yz_[row]);
       for (int32_t j = 0; j < 8; ++j)
         hn::StoreU(hn::Mul(hn::Set(d8, y[j]), z), d8, yz + 8 * j + l);
     }
@@ -54,7 +55,8 @@ private:
   using D8 = hn::CappedTag<T, 8>;
   static constexpr D8 d8{};
   static constexpr int32_t lanes8 = HWY_MIN(8, lanes_of<T>);
-  HWY_ALIGN T x_[lanes_of<T>], y_[lanes_of<T>], z_[lanes_of<T>], constant_[lanes_of<T>];
+  HWY_ALIGN T x_[lanes_of<T>], y_[lanes_of<T>], z_[lanes_of<T>], constant_x_[lanes_of<T>],
+      constant_yz_[lanes_of<T>];
 };
 
 #if HWY_TARGET <= HWY_AVX3
@@ -80,10 +82,10 @@ struct Bend<float> {
 template <>
 class Rows<float> {
 public:
-  Rows(V x, V y, V z, V constant) {
+  Rows(V x, V y, V z, V constant_x, V constant_yz) {
     const V half = hn::Set(f, 0.5f);
-    hn::Store(exp2(hn::MulAdd(half, x, constant)), f, start_x_);
-    hn::Store(exp2(hn::Mul(half, hn::Add(y, z))), f, start_yz_);
+    hn::Store(exp2(hn::MulAdd(half, x, constant_x)), f, start_x_);
+    hn::Store(exp2(hn::MulAdd(half, hn::Add(y, z), constant_yz)), f, start_yz_);
     keep_powers(x, x_);
     keep_powers(y, y_);
     keep_powers(z, z_);
@@ -128,7 +130,9 @@ HWY_INLINE void make_atom_rows(const UnitsOf<T>& u, T curvature, T* x, T* yz) {
   size_t unit = 0;
   for (int32_t a = 0; a < atoms; a += lanes_of<T>) {
     const auto get = [&](const Numbers<T>& v) { return hn::LoadU(d, v.data() + a); };
-    const Rows<T> rows(get(u.atom_x), get(u.atom_y), get(u.atom_z), get(u.atom_constant));
+    // Half in either factor: what is lost by one that is too small is small itself.
+    const auto constant = get(u.atom_constant), share = hn::Mul(constant, hn::Set(d, direct ? T{0.5} : T{1}));
+    const Rows<T> rows(get(u.atom_x), get(u.atom_y), get(u.atom_z), share, hn::Sub(constant, share));
     for (int32_t l = 0; l < std::min(lanes_of<T>, atoms - a); ++l) {
       if (!direct)
         unit += a + l == u.begin[unit + 1];
@@ -147,7 +151,7 @@ HWY_INLINE void make_unit_rows(const UnitsOf<T>& u, const BlockShape<T>& b, T* x
     const auto along = [&](const Numbers<T>& center, int axis) {
       return hn::Mul(slope, hn::Sub(hn::LoadU(d, center.data() + n), hn::Set(d, b.middle[axis])));
     };
-    const Rows<T> rows(along(u.x, 0), along(u.y, 1), along(u.z, 2), hn::Zero(d));
+    const Rows<T> rows(along(u.x, 0), along(u.y, 1), along(u.z, 2), hn::Zero(d), hn::Zero(d));
     for (int32_t l = 0; l < std::min(lanes_of<T>, u.n - n); ++l) {
       const auto unit = static_cast<size_t>(n + l);
       const size_t row = static_cast<size_t>(u.begin[unit + 1]) + unit;

@@ -66,6 +66,7 @@ bool Selection::narrow(Vec3d middle, double h) {
   h_ = h;
   blur_ = blur(h);
   blurred_ = std::exp(std::min(blur_, 700.0));
+  bent_ = std::exp(std::min(f_.decay * f_.steepest * norm2(3.5 * h * Vec3d{1, 1, 1}), 700.0));
   octants_bounded_ = false;
   dropped_in_part_ = 0;
   const LocalBox part = local(middle, 7.5 * h * Vec3d{1, 1, 1});
@@ -126,8 +127,10 @@ bool Selection::take_atoms() {
                                 double{box.half[2]} * box.half[2]);
   u.direct = arithmetic == Arithmetic::in_single &&
              log2e * f_.decay * half * (2 * (reach_ + half) + half) < 1.4 * log2_range;
-  // Where no factor of y and z comes near to what single precision holds, nor does one of x with the unit's in it.
-  u.folded = u.direct && 2 * std::numbers::sqrt2 * log2e * f_.decay * box.half[0] * (reach_ + half) < 70;
+  // Where a factor of y and z is below 2^46 as long as that of x is below 2^-126, and the other way round: roots
+  // lose below 2^-40 with it, which no power above them makes more of.
+  u.folded = u.direct && f_.plain_above &&
+             log2e * (0.5 * largest_peak_ + 4 * f_.decay * box.half[0] * double{box.half[0]}) < 46;
   const size_t room = static_cast<size_t>(n) + 17, atom_room = 16 * near_.cluster.size() + 32;
   if (u.x.size() < room) {
     for (std::vector<int32_t>* v : {&u.begin, &u.center_slot})
@@ -141,9 +144,8 @@ bool Selection::take_atoms() {
       v->resize(2 * atom_room);
   }
   // Where units add so little together that their roots need few digits.
-  const float rough = u.folded && f_.plain_above
-                          ? static_cast<float>(budget_.roots) / (rough_root_error_ * static_cast<float>(n))
-                          : -1;
+  const float rough =
+      u.folded ? static_cast<float>(budget_.roots) / (rough_root_error_ * static_cast<float>(n)) : -1;
   constexpr float roots[2] = {0, 2}; // looked up: a branch would be guessed wrong too often
   for (size_t i = 0; i < static_cast<size_t>(n); ++i)
     u.root[i] = roots[effect_[static_cast<size_t>(kept_[i])] > rough];

@@ -89,6 +89,7 @@ private:
   double largest_peak_ = 0; ///< ln
   double blur_ = 0;         ///< what single precision can do to ln of a bound; 0 where slack_ covers that
   double blurred_ = 1;      ///< e^blur_
+  double bent_ = 1;         ///< what curvature alone may divide G by from a block's middle to its corner
   bool scaled_;             ///< upper bounds need more range than single precision has
   Vec3d node_middle_, part_middle_;
   double h_ = 0;

@@ -91,6 +91,8 @@ bool Selection::surely_inside(Vec3d middle, Vec3d half) {
   const auto decay = static_cast<float>(f_.decay);
   float sum, gradient[3];
   if (f_.plain_above) {
+    if (blurred_ * double{total_effect_} <= upper_ * bent_) // so is G in the middle
+      return false;
     // The largest terms alone say where the test below has no chance; a wrong guess costs time only.
     const BlockUnits& u = block_units;
     sum_of_powers(u.n, u.exponent.data(), u.log2_term.data(), u.x.data(), u.y.data(), u.z.data(), box, decay, &sum,

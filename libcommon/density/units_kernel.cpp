@@ -104,7 +104,8 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
     // field.md §4: what dropping an atom changes G by, or (not absolute) its unit's sum, relative;
     // log2 P ≤ (P - 1)/ln 2.
     const float p = to.exponent[s], term = to.log2_term[s], steep = 1.442696f * (p - 1);
-    to.log2_factor[s] = direct && to.folded && p == 0.5f ? to.root[s] : term;
+    const bool root = direct && to.folded && p == 0.5f;
+    to.log2_factor[s] = root ? to.root[s] : term;
     const V constant = hn::Set(f, to.log2_factor[s]);
     const V change = hn::Set(f, !absolute ? 0
                                 : p <= 1  ? p * term + steep
@@ -115,8 +116,11 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
             log2_largest = hn::Set(f, term), steepness = hn::Set(f, std::max(1.0f, p)); // T^P must hold, too
     const V cx = hn::Mul(hn::Sub(hn::Set(f, to.x[s]), mx), sx), cy = hn::Mul(hn::Sub(hn::Set(f, to.y[s]), my), sy),
             cz = hn::Mul(hn::Sub(hn::Set(f, to.z[s]), mz), sz);
+    // A folded root may become as small as it likes.
+    const V lift = hn::Set(f, root ? std::max(0.0f, 0.5f * term) : 0),
+            weighed = hn::Set(f, direct && !root ? 1 : 0);
     const auto along = [&](V x, V y, V z) {
-      return hn::Mul(hn::Set(f, 3.5f), hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z))));
+      return hn::MulAdd(hn::Set(f, 3.5f), hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z))), lift);
     };
     if (const float with = std::min(1.0f, p); absolute && with != bent_with) {
       bent_with = with;
@@ -144,7 +148,7 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
         y = hn::Sub(y, cy);
         z = hn::Sub(z, cz);
       }
-      const V swing = hn::Mul(direct ? hn::Add(along(x, y, z), weight) : along(x, y, z), steepness);
+      const V swing = hn::Mul(direct ? hn::MulAdd(weight, weighed, along(x, y, z)) : along(x, y, z), steepness);
       widest = hn::Max(widest, hn::IfThenElseZero(keep, swing));
       hn::StoreU(hn::Compress(x, keep), f, x_to + kept);
       hn::StoreU(hn::Compress(y, keep), f, y_to + kept);
@@ -170,7 +174,9 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
     }
     away = direct ? hn::MulAdd(away, twice, hn::Set(f, bend))
                   : hn::Mul(hn::Mul(away, twice), hn::LoadU(f, to.exponent.data() + u));
-    const auto used = hn::Lt(hn::Iota(f, static_cast<float>(u)), hn::Set(f, static_cast<float>(n)));
+    auto used = hn::Lt(hn::Iota(f, static_cast<float>(u)), hn::Set(f, static_cast<float>(n)));
+    if (direct && to.folded)
+      used = hn::And(used, hn::Ne(hn::LoadU(f, to.exponent.data() + u), hn::Set(f, 0.5f)));
     widest = hn::Max(widest, hn::IfThenElseZero(used, away));
   }
   return hn::GetLane(hn::MaxOfLanes(f, widest)) <= log2_range;
