@@ -95,6 +95,22 @@ HWY_INLINE void accumulate_roots(const float* x, const float* yz, int32_t n, flo
   });
 }
 
+/// The same of one atom's row: the factors have roots of their own. scale: 2 where it is exact.
+template <bool fresh>
+HWY_INLINE void accumulate_root_of_one(const float* x, const float* yz, float scale, float start, float* sum) {
+  constexpr hn::CappedTag<float, 8> d8{};
+  HWY_ALIGN float along[8];
+  for (size_t i = 0; i < 8; i += hn::Lanes(d8))
+    hn::Store(hn::Mul(hn::Set(d8, scale), hn::Sqrt(hn::LoadU(d8, x + i))), d8, along + i);
+  for (int32_t v = 0; v < 64; v += lanes) {
+    const V across = hn::Sqrt(hn::LoadU(f, yz + v));
+    for (int32_t i = 0; i < 8; ++i) {
+      float* const to = sum + 64 * i + v;
+      hn::StoreU(hn::MulAdd(hn::Set(f, along[i]), across, fresh ? hn::Set(f, start) : hn::LoadU(f, to)), f, to);
+    }
+  }
+}
+
 template <bool direct, class T>
 HWY_INLINE void add_unit(const UnitsOf<T>& u, const BlockRows<T>& rows, size_t s, T* sum) {
   const size_t row = static_cast<size_t>(u.begin[s]) + (direct ? 0 : s);
@@ -116,6 +132,8 @@ HWY_INLINE void add_folded_root(const BlockUnits& u, const BlockRows<float>& row
   const auto row = static_cast<size_t>(u.begin[s]);
   const int32_t atoms = u.begin[s + 1] - u.begin[s];
   const float *const x = &rows.x[8 * row], *const yz = &rows.yz[64 * row];
+  if (atoms == 1)
+    return accumulate_root_of_one<fresh>(x, yz, u.root[s] > 0 ? 2.0f : 1.0f, start, sum);
   u.root[s] > 0 ? accumulate_roots<true, fresh>(x, yz, atoms, start, sum)
                 : accumulate_roots<false, fresh>(x, yz, atoms, start, sum);
 }
