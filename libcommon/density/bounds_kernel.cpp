@@ -21,22 +21,25 @@ HWY_INLINE void place_cluster(const double* const* from, size_t count, const dou
 #if HWY_TARGET != HWY_SCALAR
   constexpr hn::CappedTag<double, 8> d;
   constexpr hn::Rebind<float, hn::CappedTag<double, 8>> h;
-  for (size_t a = 0; a < 16; a += hn::Lanes(d)) {
+  for (size_t a = 0; a < 16; a += lanes) {
+    // Whole vectors: a load from two stores just made would have to wait for both.
+    const auto floats = [&](int v, auto&& each) {
+      const auto half = [&](size_t at) { return hn::DemoteTo(h, each(hn::LoadU(d, from[v] + at))); };
+      return hn::Combine(f, half(a + lanes / 2), half(a));
+    };
     for (int v = 0; v < 3; ++v)
-      hn::StoreU(hn::DemoteTo(h, hn::Sub(hn::LoadU(d, from[v] + a), hn::Set(d, origin[v]))), h, to[v] + a);
-    hn::StoreU(hn::DemoteTo(h, hn::Mul(hn::LoadU(d, from[3] + a), hn::Set(d, log2e))), h, to[3] + a);
+      hn::StoreU(floats(v, [&](auto x) { return hn::Sub(x, hn::Set(d, origin[v])); }), f, to[v] + a);
+    const auto used = hn::Lt(hn::Iota(f, static_cast<float>(a)), hn::Set(f, static_cast<float>(count)));
+    const V peak = floats(3, [&](auto x) { return hn::Mul(x, hn::Set(d, log2e)); });
+    hn::StoreU(hn::IfThenElse(used, peak, hn::Set(f, -1e30f)), f, to[3] + a);
   }
 #else
   for (size_t a = 0; a < 16; ++a) {
     for (int v = 0; v < 3; ++v)
       to[v][a] = static_cast<float>(from[v][a] - origin[v]);
-    to[3][a] = static_cast<float>(log2e * from[3][a]);
+    to[3][a] = a < count ? static_cast<float>(log2e * from[3][a]) : -1e30f;
   }
 #endif
-  for (size_t a = 0; a < 16; a += lanes) {
-    const auto used = hn::Lt(hn::Iota(f, static_cast<float>(a)), hn::Set(f, static_cast<float>(count)));
-    hn::StoreU(hn::IfThenElse(used, hn::LoadU(f, to[3] + a), hn::Set(f, -1e30f)), f, to[3] + a);
-  }
 }
 
 void place_atoms_simd(const ClusteredAtoms& atoms, const int32_t* list, size_t n, const double* middle,
