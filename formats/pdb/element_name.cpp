@@ -55,4 +55,13 @@ gemmi::Element named_element(std::string_view atom, std::string_view residue) {
   return gemmi::impl::find_single_letter_element(letters[0]);
 }
 
+gemmi::Element take_element(std::vector<std::string_view>& word) {
+  if (word.empty() || word.back().size() > 2 || !std::all_of(word.back().begin(), word.back().end(), is_letter))
+    return gemmi::El::X;
+  const gemmi::Element element{std::string(word.back())};
+  if (element != gemmi::El::X)
+    word.pop_back();
+  return element;
+}
+
 } // namespace molmesh::formats

@@ -2,6 +2,7 @@
 #pragma once
 #include <gemmi/elem.hpp>
 #include <string_view>
+#include <vector>
 
 namespace molmesh::formats {
 
@@ -12,5 +13,8 @@ gemmi::Element ion_element(std::string_view atom, std::string_view residue);
 /// Of any atom: an ion's; otherwise the first letter, with halogens, silicon, selenium and the metals of
 /// cofactors by their two.
 gemmi::Element named_element(std::string_view atom, std::string_view residue);
+
+/// Takes a last word that is an element's symbol away; X when there is none.
+gemmi::Element take_element(std::vector<std::string_view>& word);
 
 } // namespace molmesh::formats

@@ -1,5 +1,5 @@
 // pqr.cpp — PQR: atoms with charge and radius. Fields between blanks, as APBS reads them; where coordinates run
-// together, the columns of the PDB format.
+// together, the columns of the PDB format. GROMACS and Open Babel add the element.
 #include "error.hpp"
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/parse.hpp"
@@ -15,6 +15,7 @@ struct PqrAtom {
   int number = 1;
   char insertion = ' ';
   double x, y, z, charge, radius;
+  gemmi::Element element = gemmi::El::X;
 };
 
 class PqrLines {
@@ -48,10 +49,11 @@ private:
 
   PqrAtom atom(std::string_view line) const {
     const size_t record = is_record(line, "HETATM") ? 6 : 4;
-    const std::vector<std::string_view> word = words(line.substr(record));
+    std::vector<std::string_view> word = words(line.substr(record));
+    PqrAtom a;
+    a.element = take_element(word);
     if (word.size() >= 5 + 3) {
       const size_t head = word.size() - 5;
-      PqrAtom a;
       if (numbers({word.begin() + static_cast<std::ptrdiff_t>(head), word.end()}, a) && labels(word, head, a))
         return a;
     }
@@ -104,6 +106,7 @@ private:
     std::vector<std::string_view> word = {field(30, 8), field(38, 8), field(46, 8)};
     for (const std::string_view w : words(field(54, line.size())))
       word.push_back(w);
+    a.element = take_element(word);
     if (word.size() > 5 || !numbers(word, a))
       refuse("found " + in_quotes(line) + ", expected serial, name, residue, number, x, y, z, charge, radius");
     a.name = field(12, 4);
@@ -129,7 +132,7 @@ private:
     }
     gemmi::Atom atom;
     atom.name = a.name;
-    atom.element = named_element(a.name, a.residue); // PQR has none
+    atom.element = a.element == gemmi::El::X ? named_element(a.name, a.residue) : a.element;
     atom.pos = {a.x, a.y, a.z};
     atom.serial = static_cast<int>(parsed_.pqr.size());
     chain.residues.back().atoms.push_back(atom);

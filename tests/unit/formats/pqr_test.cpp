@@ -48,6 +48,22 @@ TEST_CASE("PQR: coordinates that run together stand in the columns of the PDB fo
   CHECK(r.radius == 1.908);
 }
 
+TEST_CASE("PQR: an element behind the radius, as GROMACS and Open Babel write it") {
+  for (const char* line : {"ATOM      1  CA  CA  A   7      10.500  -2.250   3.125  0.30  1.85          Ca", // ion
+                           "ATOM      1  CA   CA A   7      10.500  -2.250   3.125  0.30000000   1.850 CA  ",
+                           "ATOM 1 CA CA A 7 10.5 -2.25 3.125 0.3 1.85 ca"}) {
+    INFO(line);
+    const Read r = one(line);
+    CHECK(r.listing == "A/CA:7/CA");
+    CHECK(r.charge == 0.3);
+    CHECK(r.radius == 1.85);
+    CHECK(r.element == "Ca");
+  }
+  CHECK(one("ATOM 1 CA LIG A 7 10.5 -2.25 3.125 0.3 1.85 Ca").element == "Ca"); // by the name C
+  CHECK(one("ATOM      2  CA  ALA     1    1999.9993000.064-900.490  0.0962 1.9080  C").radius == 1.908);
+  CHECK(refusal("ATOM 1 N ALA A 7 10.5 -2.25 3.125 -0.3 1.85 Qq\n", {}, "x.pqr").substr(0, 8) == "x.pqr:1:");
+}
+
 TEST_CASE("PQR is told from PDB by contents or name") {
   CHECK(one("ATOM  1 N      ALA A  7   10.50000  -2.25000   3.12500  -0.30000 1.85000", "<stdin>").radius == 1.85);
   CHECK(one("ATOM      1  I   ION     1       0.000   0.000  0.000  1.00  3.00", "<stdin>").radius == 3);
