@@ -44,8 +44,8 @@ void add_labels(TetMesh& m, const Places& places, Labels&& labels) {
   std::set<std::string> taken{"region", "boundary", "part", "patch"};
   for (const CellArray& a : m.cell_array)
     taken.insert(a.name);
-  for (const std::string& level : labels.level)
-    if (taken.count(level) + taken.count(level + "_share") > 0)
+  for (const std::string& level : labels.level) // two levels may be x and x_share
+    if (!taken.insert(level).second || !taken.insert(level + "_share").second)
       fail_input("level '" + level + "', expected a name that no array of the mesh has");
   for (size_t l = 0; l < labels.level.size(); ++l) {
     CellArray index{labels.level[l], std::vector<int32_t>(cells(m), -1), {}},

@@ -103,7 +103,7 @@ TEST_CASE("A mesh is labelled anew without a trace of the labels before") {
 }
 
 TEST_CASE("A level named like an array of the mesh is refused") {
-  for (const char* name : {"region", "boundary", "part", "patch", "mine"}) {
+  for (const char* name : {"region", "boundary", "part", "patch", "mine", "residue_share", "atom_share"}) {
     TetMesh m = half_box();
     m.cell_array.push_back({"mine", std::vector<int32_t>(m.tet.size() + m.tri.size()), {}});
     Hierarchy h = two_residues();
