@@ -16,6 +16,7 @@ using namespace molmesh;
 namespace {
 
 struct Options : cli::Common {
+  Options() { keep_input = false; } // a mesh may be labelled in its place
   std::string hierarchy;
   double decay = 1;
   std::vector<std::string> boundary;

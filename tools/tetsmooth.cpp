@@ -22,7 +22,10 @@ using namespace molmesh;
 namespace {
 
 struct Options : cli::Common {
-  Options() { require_device = cuda::require_device; }
+  Options() {
+    require_device = cuda::require_device;
+    keep_input = false; // a mesh may be improved in its place
+  }
   std::string density, hier;
   int iterations = 15, parts = 8;
   double min_dihedral = 0, max_dihedral = 180; // degrees asked for
@@ -113,6 +116,9 @@ Status run_tool(const Options& o, cli::Run& run) {
                      {"quality_after", json(result.after)}});
   if (grid)
     run.counts["surface"] = json(result.fidelity);
+  if (grid && o.iterations > 0 && 2 * result.fidelity.points_off > result.fidelity.points)
+    run.note("off the isosurface: " + std::to_string(result.fidelity.points_off) + " of " +
+             std::to_string(result.fidelity.points) + " surface points: is this the mesh's density?");
   if (size_t(o.parts) > mesh.tet.size() && o.parts != Options().parts)
     run.note("--parts: one for each of the " + std::to_string(mesh.tet.size()) + " elements, there are no more");
   arrays.put_into(mesh, threads);

@@ -11,7 +11,6 @@ using namespace molmesh;
 namespace {
 
 struct Options : cli::Common {
-  Options() { keep_input = true; } // the output is no mesh
   bool json = false, crossings = false;
   std::string compare;
   double min_dihedral = 0, max_dihedral = 180; // degrees

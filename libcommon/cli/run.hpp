@@ -27,7 +27,7 @@ struct Common {
   /// The files written. None may be one of the files that options of type FILE and further arguments name, nor the
   /// report, nor, where the output is not what the input is, the input.
   virtual std::vector<std::string> outputs() const { return {output}; }
-  bool keep_input = false;
+  bool keep_input = true;
 
   /// Set by tools that have a cuda mode: throws Error(mode_unavailable) where there is no device for it.
   void (*require_device)() = nullptr;
