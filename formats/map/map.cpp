@@ -13,7 +13,8 @@ namespace {
 int64_t checked_points(const GridFrame& f, const std::string& file) {
   const double n = double(f.points.x) * f.points.y * f.points.z;
   if (n > 8e9)
-    fail_input(file + ": a dense map would have " + std::to_string(static_cast<int64_t>(n)) +
+    fail_input(file + ": a dense map would have " + std::to_string(f.points.x) + " x " +
+               std::to_string(f.points.y) + " x " + std::to_string(f.points.z) +
                " points, expected at most 8000000000");
   return static_cast<int64_t>(n);
 }

@@ -1,6 +1,7 @@
 // map_test.cpp — every point of a dense map is the sparse grid's, where the format says it lies.
 #include "density/density.hpp"
 #include "formats/map/map.hpp"
+#include "unit/refusal.hpp"
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <sstream>
@@ -72,4 +73,13 @@ TEST_CASE("an OpenDX map holds every grid point, z fastest") {
   CHECK(wrong == 0);
   text >> line;
   CHECK(line == "attribute");
+}
+
+TEST_CASE("a map of more points than 64 bits count is refused") {
+  BlockGrid g = two_atoms();
+  g.frame.points = {1 << 29, 1 << 29, 1 << 29};
+  std::ostringstream out;
+  CHECK(test::refusal(Status::bad_input, [&] { formats::write_dx(out, g, "x"); }) ==
+        "x: a dense map would have 536870912 x 536870912 x 536870912 points, expected at most 8000000000");
+  CHECK(out.str().empty());
 }
