@@ -83,33 +83,54 @@ HWY_INLINE void accumulate(const T* x, const T* yz, int32_t n, Power power, T sc
   });
 }
 
-/// sum += S^½, the rows being S's; fresh: sum = start + S^½. Exact: they are S/4's. The least keeps 0 from the
-/// reciprocal root.
-template <bool exact, bool fresh>
-HWY_INLINE void accumulate_roots(const float* x, const float* yz, int32_t n, float start, float* sum) {
-  for_sums(x, yz, n, 1e-36f, [&](int32_t i, int32_t v, V t) {
-    float* const to = sum + 64 * i + v;
-    const V r = hn::ApproximateReciprocalSqrt(t), y = exact ? hn::Mul(t, r) : t,
-            factor = exact ? hn::NegMulAdd(y, r, hn::Set(f, 3.0f)) : r;
-    hn::StoreU(hn::MulAdd(y, factor, fresh ? hn::Set(f, start) : hn::LoadU(f, to)), f, to);
-  });
-}
+/// Roots added to a sum at each point: to what is there, or as its first or last term. The last one's sum is
+/// multiplied with the bend (BlockRows) and moved by `start`.
+enum class Turn { first, any, last };
+struct Roots {
+  float* sum;
+  const BlockRows<float>& rows;
+  float start;
 
-/// The same of one atom's row: the factors have roots of their own. scale: 2 where it is exact.
-template <bool fresh>
-HWY_INLINE void accumulate_root_of_one(const float* x, const float* yz, float scale, float start, float* sum) {
-  constexpr hn::CappedTag<float, 8> d8{};
-  HWY_ALIGN float along[8];
-  for (size_t i = 0; i < 8; i += hn::Lanes(d8))
-    hn::Store(hn::Mul(hn::Set(d8, scale), hn::Sqrt(hn::LoadU(d8, x + i))), d8, along + i);
-  for (int32_t v = 0; v < 64; v += lanes) {
-    const V across = hn::Sqrt(hn::LoadU(f, yz + v));
-    for (int32_t i = 0; i < 8; ++i) {
-      float* const to = sum + 64 * i + v;
-      hn::StoreU(hn::MulAdd(hn::Set(f, along[i]), across, fresh ? hn::Set(f, start) : hn::LoadU(f, to)), f, to);
+  /// y·factor at point i of x and the points of yz from v on.
+  template <Turn turn>
+  HWY_INLINE void put(int32_t i, int32_t v, V y, V factor) const {
+    float* const to = sum + 64 * i + v;
+    V all = turn == Turn::first ? hn::Mul(y, factor) : hn::MulAdd(y, factor, hn::LoadU(f, to));
+    if constexpr (turn == Turn::last)
+      all = hn::MulAdd(hn::Mul(hn::Set(f, rows.bend_x[i]), hn::LoadU(f, rows.bend_yz + v)), all, hn::Set(f, start));
+    hn::StoreU(all, f, to);
+  }
+  /// S^½, the rows being S's. Exact: they are S/4's. The least keeps 0 from the reciprocal root.
+  template <bool exact, Turn turn>
+  HWY_INLINE void add(const float* x, const float* yz, int32_t n) const {
+    for_sums(x, yz, n, 1e-36f, [&](int32_t i, int32_t v, V t) {
+      const V r = hn::ApproximateReciprocalSqrt(t), y = exact ? hn::Mul(t, r) : t;
+      put<turn>(i, v, y, exact ? hn::NegMulAdd(y, r, hn::Set(f, 3.0f)) : r);
+    });
+  }
+  /// The same of one atom's row: the factors have roots of their own. scale: 2 where it is exact.
+  template <Turn turn>
+  HWY_INLINE void add_one(const float* x, const float* yz, float scale) const {
+    constexpr hn::CappedTag<float, 8> d8{};
+    HWY_ALIGN float along[8];
+    for (size_t i = 0; i < 8; i += hn::Lanes(d8))
+      hn::Store(hn::Mul(hn::Set(d8, scale), hn::Sqrt(hn::LoadU(d8, x + i))), d8, along + i);
+    for (int32_t v = 0; v < 64; v += lanes) {
+      const V across = hn::Sqrt(hn::LoadU(f, yz + v));
+      for (int32_t i = 0; i < 8; ++i)
+        put<turn>(i, v, hn::Set(f, along[i]), across);
     }
   }
-}
+  template <Turn turn>
+  HWY_INLINE void add_unit(const BlockUnits& u, size_t s) const {
+    const auto row = static_cast<size_t>(u.begin[s]);
+    const int32_t atoms = u.begin[s + 1] - u.begin[s];
+    const float *const x = &rows.x[8 * row], *const yz = &rows.yz[64 * row];
+    if (atoms == 1)
+      return add_one<turn>(x, yz, u.root[s] > 0 ? 2.0f : 1.0f);
+    u.root[s] > 0 ? add<true, turn>(x, yz, atoms) : add<false, turn>(x, yz, atoms);
+  }
+};
 
 template <bool direct, class T>
 HWY_INLINE void add_unit(const UnitsOf<T>& u, const BlockRows<T>& rows, size_t s, T* sum) {
@@ -126,18 +147,6 @@ HWY_INLINE void add_unit(const UnitsOf<T>& u, const BlockRows<T>& rows, size_t s
     accumulate<direct>(x, yz, atoms, Any<T>{p}, scale, sum);
 }
 
-template <bool fresh>
-HWY_INLINE void add_folded_root(const BlockUnits& u, const BlockRows<float>& rows, size_t s, float start,
-                                float* sum) {
-  const auto row = static_cast<size_t>(u.begin[s]);
-  const int32_t atoms = u.begin[s + 1] - u.begin[s];
-  const float *const x = &rows.x[8 * row], *const yz = &rows.yz[64 * row];
-  if (atoms == 1)
-    return accumulate_root_of_one<fresh>(x, yz, u.root[s] > 0 ? 2.0f : 1.0f, start, sum);
-  u.root[s] > 0 ? accumulate_roots<true, fresh>(x, yz, atoms, start, sum)
-                : accumulate_roots<false, fresh>(x, yz, atoms, start, sum);
-}
-
 HWY_INLINE bool is_folded_root(const BlockUnits& u, size_t s) {
   return u.folded && u.exponent[s] == 0.5f;
 }
@@ -145,7 +154,7 @@ HWY_INLINE bool is_folded_root(const BlockUnits& u, size_t s) {
 void add_units_simd(const BlockUnits& u, const BlockRows<float>& rows, int32_t first, int32_t last, float* sum) {
   for (auto s = static_cast<size_t>(first); s < static_cast<size_t>(last); ++s)
     if (is_folded_root(u, s))
-      add_folded_root<false>(u, rows, s, 0, sum);
+      Roots{sum, rows, 0}.add_unit<Turn::any>(u, s);
     else
       u.direct ? add_unit<true>(u, rows, s, sum) : add_unit<false>(u, rows, s, sum);
 }
@@ -164,10 +173,18 @@ HWY_INLINE void fill(T start, T* sum) {
 }
 
 void sum_units_simd(const BlockUnits& u, const BlockRows<float>& rows, float start, float* sum) {
-  const bool root = u.n > 0 && is_folded_root(u, 0);
-  root ? add_folded_root<true>(u, rows, 0, start, sum) : fill(start, sum);
-  add_units_simd(u, rows, root, u.n, sum);
+  if (!u.roots) {
+    fill(start, sum);
+    return add_units_simd(u, rows, 0, u.n, sum);
+  }
+  const auto n = static_cast<size_t>(u.n);
+  const Roots roots{sum, rows, start};
+  roots.add_unit<Turn::first>(u, 0);
+  for (size_t s = 1; s < n - 1; ++s)
+    roots.add_unit<Turn::any>(u, s);
+  roots.add_unit<Turn::last>(u, n - 1);
 }
+
 void sum_exact_units_simd(const ExactUnits& u, const BlockRows<double>& rows, double start, double* sum) {
   fill(start, sum);
   add_exact_units_simd(u, rows, 0, u.n, sum);

@@ -122,7 +122,7 @@ private:
 #endif
 
 /// Rows of all atoms: one after the other when direct, else with room for one more after those of each unit.
-template <bool direct, class T>
+template <bool direct, bool bent, class T>
 HWY_INLINE void make_atom_rows(const UnitsOf<T>& u, T curvature, T* x, T* yz) {
   constexpr Tag<T> d{};
   const Bend<T> bend(curvature);
@@ -137,7 +137,7 @@ HWY_INLINE void make_atom_rows(const UnitsOf<T>& u, T curvature, T* x, T* yz) {
       if (!direct)
         unit += a + l == u.begin[unit + 1];
       const auto row = static_cast<size_t>(a + l) + unit;
-      rows.template write<direct>(l, bend, x + 8 * row, yz + 64 * row);
+      rows.template write<bent>(l, bend, x + 8 * row, yz + 64 * row);
     }
   }
 }
@@ -165,9 +165,9 @@ HWY_INLINE void make_rows_of(const UnitsOf<T>& u, bool direct, const BlockShape<
   constexpr Tag<T> d{};
   T *const x = rows.x.data(), *const yz = rows.yz.data();
   if (direct) {
-    make_atom_rows<true>(u, b.curvature, x, yz);
+    make_atom_rows<true, true>(u, b.curvature, x, yz);
   } else {
-    make_atom_rows<false>(u, T{0}, x, yz);
+    make_atom_rows<false, false>(u, T{0}, x, yz);
     make_unit_rows(u, b, x, yz);
   }
   for (int32_t n = 0; n < u.n; n += lanes_of<T>) {
@@ -178,7 +178,21 @@ HWY_INLINE void make_rows_of(const UnitsOf<T>& u, bool direct, const BlockShape<
   }
 }
 
+/// All blocks of a grid have the same.
+void make_bend(float curvature, BlockRows<float>& rows) {
+  if (rows.bent_by == curvature)
+    return;
+  rows.bent_by = curvature;
+  const V zero = hn::Zero(f);
+  Rows<float>(zero, zero, zero, zero, zero)
+      .write<true>(0, Bend<float>(0.5f * curvature), rows.bend_x, rows.bend_yz);
+}
+
 void make_rows_simd(const BlockUnits& u, const BlockShape<float>& b, BlockRows<float>& rows) {
+  if (u.roots) {
+    make_bend(b.curvature, rows);
+    return make_atom_rows<true, false>(u, b.curvature, rows.x.data(), rows.yz.data());
+  }
   make_rows_of(u, u.direct, b, rows);
 }
 void make_exact_rows_simd(const ExactUnits& u, const BlockShape<double>& b, BlockRows<double>& rows) {

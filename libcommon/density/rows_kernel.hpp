@@ -18,6 +18,9 @@ struct BlockShape {
 template <class T>
 struct BlockRows {
   Numbers<T> x, yz, scale;
+  /// Where all units are roots: what multiplies each of them, which the rows are without; and of what curvature.
+  alignas(64) T bend_x[8], bend_yz[64];
+  T bent_by = 0;
 };
 void make_rows(const BlockUnits& units, const BlockShape<float>& shape, BlockRows<float>& rows);
 void make_rows(const ExactUnits& units, const BlockShape<double>& shape, BlockRows<double>& rows);

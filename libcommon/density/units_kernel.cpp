@@ -99,12 +99,14 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
   Curve<absolute> curve[3];
   float bent_with = 0;
   size_t kept = 0;
+  bool roots = direct && to.folded && n > 1;
   for (int32_t u = 0; u < n; ++u) {
     const auto s = static_cast<size_t>(u), at = static_cast<size_t>(list[u]);
     // field.md §4: what dropping an atom changes G by, or (not absolute) its unit's sum, relative;
     // log2 P ≤ (P - 1)/ln 2.
     const float p = to.exponent[s], term = to.log2_term[s], steep = 1.442696f * (p - 1);
     const bool root = direct && to.folded && p == 0.5f;
+    roots = roots && root;
     to.log2_factor[s] = root ? to.root[s] : term;
     const V constant = hn::Set(f, to.log2_factor[s]);
     const V change = hn::Set(f, !absolute ? 0
@@ -159,6 +161,7 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
     to.begin[s + 1] = static_cast<int32_t>(kept);
   }
   to.n = n;
+  to.roots = roots;
   to.dropped = absolute ? 1.001f * hn::GetLane(hn::SumOfLanes(f, lost)) : 0;
   for (Floats* v : {&to.exponent, &to.log2_term, &to.x, &to.y, &to.z})
     std::fill_n(v->begin() + n, 16, 0.0f);

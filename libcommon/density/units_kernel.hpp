@@ -22,6 +22,7 @@ struct UnitsOf {
 struct BlockUnits : UnitsOf<float> {
   bool direct = false;
   bool folded = false; ///< direct, and T of units with P = 1/2 holds log2_term but for the unit's `root`
+  bool roots = false;  ///< folded, and there are two units or more, all with P = 1/2
   float dropped = 0;   ///< bound on what ΣS^P loses with the atoms that are dropped, when that was asked for
   Floats root;         ///< 2 where a root must be exact: T is S/4 then; 0 where few digits will do
   Floats log2_factor;  ///< of T in S
