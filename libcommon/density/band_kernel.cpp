@@ -52,6 +52,15 @@ void words_from_rows_simd(const NodeBits& rows, NodeWords& words) {
     }
 }
 
+/// Here, since the machine's instruction for it is one of the set's.
+int64_t count_points_simd(const NodeWords& words) {
+  int64_t n = 0;
+  for (const auto& block : words.word)
+    for (const uint64_t word : block)
+      n += std::popcount(word);
+  return n;
+}
+
 void rows_from_words_simd(const NodeWords& words, NodeBits& rows) {
   for (size_t x = 0; x < 32; ++x)
     for (size_t by = 0; by < 4; ++by) {
@@ -200,6 +209,7 @@ namespace molmesh::density {
 
 HWY_EXPORT(rows_from_words_simd);
 HWY_EXPORT(words_from_rows_simd);
+HWY_EXPORT(count_points_simd);
 HWY_EXPORT(band_points_simd);
 HWY_EXPORT(likely_band_points_simd);
 
@@ -208,6 +218,9 @@ void rows_from_words(const NodeWords& words, NodeBits& rows) {
 }
 void words_from_rows(const NodeBits& rows, NodeWords& words) {
   HWY_DYNAMIC_DISPATCH(words_from_rows_simd)(rows, words);
+}
+int64_t count_points(const NodeWords& words) {
+  return HWY_DYNAMIC_DISPATCH(count_points_simd)(words);
 }
 void faced_from_words(const NodeWords& words, FacedBits& to) {
   rows_from_words(words, to);

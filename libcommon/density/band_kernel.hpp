@@ -33,6 +33,7 @@ void rows_from_words(const NodeWords& words, NodeBits& rows);
 /// With faces.
 void faced_from_words(const NodeWords& words, FacedBits& to);
 void words_from_rows(const NodeBits& rows, NodeWords& words);
+int64_t count_points(const NodeWords& words);
 
 /// Cells of a node and of the layer of cells before it: cell (i, j, k) lies between points i and i + 1, and so on;
 /// those with first[axis] ≤ index < end[axis] lie in the grid, -1 is the lowest that touches the node.

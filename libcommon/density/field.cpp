@@ -3,6 +3,8 @@
 #include "error.hpp"
 #include "par/par.hpp"
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -60,8 +62,29 @@ void add_levels(Field& f, const Hierarchy& h) {
   }
 }
 
+/// exp(), which is asked for the same few numbers again and again: atoms have few radii.
+class FewExponentials {
+public:
+  double operator()(double x) {
+    const auto bits = std::bit_cast<uint64_t>(x);
+    auto& [key, value] = kept_[bits * 0x9e3779b97f4a7c15 >> 58];
+    if (key != bits) {
+      key = bits;
+      value = std::exp(x);
+    }
+    return value;
+  }
+
+private:
+  struct Pair {
+    uint64_t key = 0; ///< of 0
+    double value = 1;
+  };
+  std::array<Pair, 64> kept_ = {};
+};
+
 /// Box and ln_peak of cluster c.
-void measure_cluster(Field& f, size_t c) {
+void measure_cluster(Field& f, size_t c, FewExponentials& exp) {
   const auto begin = static_cast<size_t>(f.begin[c]), end = static_cast<size_t>(f.begin[c + 1]);
   Box b{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
   double largest = -infinity, sum = 0;
@@ -71,7 +94,7 @@ void measure_cluster(Field& f, size_t c) {
     largest = std::max(largest, f.peak[a]);
   }
   for (size_t a = begin; a < end; ++a)
-    sum += std::exp(f.peak[a] - largest);
+    sum += exp(f.peak[a] - largest);
   f.box[c] = b;
   f.ln_peak[c] = largest < infinity ? largest + std::log(sum) : largest;
 }
@@ -112,7 +135,12 @@ void add_clusters(Field& f, const Hierarchy& h, int threads) {
   f.source = std::move(order);
   f.box.resize(f.group.size());
   f.ln_peak.resize(f.group.size());
-  par::for_n(f.clusters(), threads, [&](int64_t c) { measure_cluster(f, static_cast<size_t>(c)); });
+  const int64_t n_clusters = f.clusters(), at_once = 1024;
+  par::for_n((n_clusters + at_once - 1) / at_once, threads, 1, [&](int64_t part) {
+    FewExponentials exp;
+    for (int64_t c = part * at_once; c < std::min(n_clusters, (part + 1) * at_once); ++c)
+      measure_cluster(f, static_cast<size_t>(c), exp);
+  });
 }
 
 /// Per level and group the logarithm of the largest its sum can be, anywhere; last that of G.

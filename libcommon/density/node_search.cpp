@@ -207,6 +207,7 @@ void NodeSearch::finish(NodeState& s, const FacedBits* const* below, const Faced
                         Workspace& w) const {
   band_points(below, above, cells_of(s.corner), w.rows);
   words_from_rows(w.rows, w.active);
+  w.counts.active_points += count_points(w.active);
   words_from_rows(*above[13], w.above);
   uint64_t wanting = 0; // blocks that bounds left out, or of which too few values were kept
   for (int b = 0; b < blocks_a_node; ++b) {
@@ -238,8 +239,6 @@ void NodeSearch::finish(NodeState& s, const FacedBits* const* below, const Faced
     std::memcpy(to->above.data(), w.above.word[b], sizeof(Mask));
     std::memcpy(to->stored.data(), stored, sizeof(Mask));
     to->value = again ? pack(b, active, w) : s.sides->value[b];
-    for (const uint64_t word : to->active)
-      w.counts.active_points += std::popcount(word);
     ++to;
   }
 }
