@@ -21,6 +21,7 @@ private:
   void find(SlabState& slab, size_t node, Workspace& w);
   void finish(const SlabState& before, SlabState& slab, const SlabState& after, size_t node, Workspace& w) const;
   void give_away(const SlabState& slab, const FieldInfo& info);
+  void forget(SlabState& slab);
   template <class Work>
   void with_workspace(Work&& work);
 
@@ -58,6 +59,14 @@ void Search::give_away(const SlabState& slab, const FieldInfo& info) {
   if (!runs.empty())
     o_.take(info, runs);
   ++turn_;
+}
+
+/// Leaves a slab's memory to the next ones, as much to each thread.
+void Search::forget(SlabState& slab) {
+  const std::vector<std::unique_ptr<Workspace>>& all = workspaces_.all();
+  for (size_t i = 0; i < slab.node.size(); ++i)
+    all[i % all.size()]->spares.forget(slab.node[i]);
+  slab = {};
 }
 
 SlabState Search::slab_at(int32_t x) const {
@@ -100,22 +109,20 @@ Band Search::run(SearchCounts& counts) {
   const int32_t first = first_block(frame_).x, end = (frame_.lower.x + frame_.points.x + 7) >> 3;
   std::array<SlabState, slabs_at_work> slab;
   for (int32_t x = first; x < end + 3 * node_blocks; x += node_blocks) {
+    forget(slab.back());
     std::rotate(slab.begin(), slab.end() - 1, slab.end());
     slab[0] = slab_at(x);
     add_needed(slab[3], slab[2], slab[1]);
     const SlabAppend append(slab[3], !o_.take, band);
-    const int64_t finds = slab[0].nodes(), finishes = finds + slab[2].nodes(), copies = finishes + append.parts(),
-                  all = copies + slab[4].nodes();
-    par::for_n(all, o_.threads, 1, [&](int64_t i) {
-      if (i >= finishes && i < copies)
+    const int64_t finds = slab[0].nodes(), finishes = finds + slab[2].nodes(), copies = finishes + append.parts();
+    par::for_n(copies, o_.threads, 1, [&](int64_t i) {
+      if (i >= finishes)
         return append.copy(i - finishes);
       with_workspace([&](Workspace& w) {
         if (i < finds)
           find(slab[0], static_cast<size_t>(i), w);
-        else if (i < finishes)
-          finish(slab[3], slab[2], slab[1], static_cast<size_t>(i - finds), w);
         else
-          w.spares.forget(slab[4].node[static_cast<size_t>(i - copies)]);
+          finish(slab[3], slab[2], slab[1], static_cast<size_t>(i - finds), w);
       });
     });
     give_away(slab[2], band.info);

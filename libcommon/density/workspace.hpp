@@ -46,8 +46,8 @@ private:
   std::vector<LargeArray<BandBlock>> band_;
 };
 
-/// Slabs of a search: new, found, to be finished, finished, forgotten.
-constexpr size_t slabs_at_work = 5;
+/// Slabs of a search: new, found, to be finished, finished.
+constexpr size_t slabs_at_work = 4;
 
 struct Workspace {
   Selection selection;
@@ -57,7 +57,7 @@ struct Workspace {
   NodeBits rows = {};
   Sides beyond = {};
   /// Values of the band, by the turn of the search that packed them.
-  std::array<par::Arena<float>, slabs_at_work - 2> values = {};
+  std::array<par::Arena<float>, slabs_at_work - 1> values = {};
   size_t turn = 0;
   par::Arena<float>& packed() { return values[turn % values.size()]; }
   /// A new turn takes the room of the one whose slab has been given away.
