@@ -5,6 +5,13 @@
 #include <algorithm>
 
 namespace molmesh::improve {
+
+// A pass whose elements lie in few parts is the work of as few threads. Those inside halves of them come first
+// then: few are left for the parts themselves.
+constexpr double most_halved = 2;            // cells; larger parts are for the few elements of late rounds
+constexpr size_t worth_halving = 4096;       // elements
+constexpr double fewest_parts_in_effect = 4; // parts of equal shares come to as many
+
 bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass& pass) {
   const auto element = [&]() -> const Element& { return m.element[size_t(t)]; };
   if (pass.yield < 1)
@@ -91,31 +98,60 @@ void add_star(const DynamicMesh& m, int32_t v, std::vector<int32_t>& list) {
 
 } // namespace
 
+bool Schedule::worthwhile(int32_t t, float goal) const {
+  const Element& e = m_.element[size_t(t)];
+  if (e.q >= goal || !e.alive())
+    return false;
+  const auto& v = e.v;
+  return e.tried <= since_ || std::max({m_.touched[size_t(v[0])], m_.touched[size_t(v[1])],
+                                        m_.touched[size_t(v[2])], m_.touched[size_t(v[3])]}) >= e.tried;
+}
+
 Counts Schedule::run(const Pass& pass) {
   last_.cell = pass.cell; // parts of another size alone are no reason to try again
   if (pass != last_)
     since_ = time_; // what failed before may work now
   last_ = pass;
   const int shift = passes_++;
-  constexpr int32_t sweeps = 4;
-  const int32_t start = time_, since = since_;
-  time_ += sweeps;
-  const auto worthwhile = [&](int32_t t) {
-    const Element& e = m_.element[size_t(t)];
-    if (e.q >= pass.goal || !e.alive())
-      return false;
-    const auto& v = e.v;
-    return e.tried <= since || std::max({m_.touched[size_t(v[0])], m_.touched[size_t(v[1])],
-                                         m_.touched[size_t(v[2])], m_.touched[size_t(v[3])]}) >= e.tried;
-  };
+  const double cell = pass.cell * cell_;
+  Counts counts;
+  std::vector<int32_t> items = low_elements(pass.goal);
+  if (pass.cell <= most_halved && in_few_parts(items, shift, cell)) {
+    counts = work_off(items, pass, shift, cell / 2);
+    items = low_elements(pass.goal);
+  }
+  return counts += work_off(items, pass, shift, cell);
+}
+
+std::vector<int32_t> Schedule::low_elements(float goal) {
   find_worst();
-  const std::vector<int32_t> items = choose(
+  return choose(
       static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::stretch,
-      [&](int64_t s) { return m_.worst[size_t(s)] < pass.goal; },
-      [&](int64_t e) { return worthwhile(static_cast<int32_t>(e)); });
+      [&](int64_t s) { return m_.worst[size_t(s)] < goal; },
+      [&](int64_t e) { return worthwhile(static_cast<int32_t>(e), goal); });
+}
+
+bool Schedule::in_few_parts(const std::vector<int32_t>& items, int shift, double cell) {
+  if (items.size() < worth_halving)
+    return false;
+  set_lattice(shift, cell);
+  std::vector<double> share(static_cast<size_t>(parts_.count()));
+  for (const int32_t t : items)
+    share[size_t(parts_.at(m_.point[size_t(m_.element[size_t(t)].v[0])]))] += 1 / double(items.size());
+  double squares = 0;
+  for (const double s : share)
+    squares += s * s;
+  return squares * fewest_parts_in_effect > 1;
+}
+
+// In the lattice's parts, from the worst down, and what comes of them.
+Counts Schedule::work_off(const std::vector<int32_t>& items, const Pass& pass, int shift, double cell) {
+  constexpr int32_t sweeps = 4;
+  const int32_t start = time_;
+  time_ += sweeps;
   if (items.empty())
     return {};
-  set_parts(shift, pass.cell * cell_);
+  set_parts(shift, cell);
   return for_parts(items, parts_of(items), pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
     editor.goal = pass.goal;
     editor.worst_first = pass.worst_first;
@@ -125,11 +161,11 @@ Counts Schedule::run(const Pass& pass) {
       sort_worst_first(m_, list);
       editor.changed.clear();
       for (const int32_t e : list)
-        if (worthwhile(e) && !improve_element(editor, m_, e, pass))
+        if (worthwhile(e, pass.goal) && !improve_element(editor, m_, e, pass))
           m_.element[size_t(e)].tried = editor.time;
       list.clear();
       for (const int32_t e : editor.changed)
-        if (worthwhile(e))
+        if (worthwhile(e, pass.goal))
           list.push_back(e);
     }
   });

@@ -36,6 +36,11 @@ public:
 
 private:
   using Work = std::function<void(Editor&, std::vector<int32_t>&)>;
+  /// It is below the goal, and has changed since it was last tried.
+  bool worthwhile(int32_t element, float goal) const;
+  std::vector<int32_t> low_elements(float goal); ///< worthwhile
+  bool in_few_parts(const std::vector<int32_t>& items, int shift, double cell);
+  Counts work_off(const std::vector<int32_t>& items, const Pass& pass, int shift, double cell);
   /// Each part keeps slots_per_item and `slots` more for new elements.
   Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
                    const Work& work, double slots_per_item = 2, size_t slots = 64);
