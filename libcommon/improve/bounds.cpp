@@ -185,6 +185,7 @@ struct Apart {
 // other parts change meanwhile, each in its own cell, so none of those is met; triangles of no part stay as they
 // are.
 bool Editor::rim_crosses(bool stamped_go) {
+  elsewhere_ |= !rim_.empty();
   rim_sheet_.clear();
   for (const auto& t : rim_) {
     for (const int32_t v : t)

@@ -139,9 +139,11 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
   }
   for (const int32_t i : used_) {
     const FaceEntry& x = table_[size_t(i)];
-    if (x.outer && x.element >= 0)
-      for (const int32_t w : x.v)
+    for (const int32_t w : x.v) {
+      if (x.outer && x.element >= 0)
         m_.incident[size_t(w)] = x.element; // where nothing new comes
+      m_.state[size_t(w)] = clock_;
+    }
     if (x.outer && x.element < 0 && x.first < 0)
       outside = x.label;
     if (sheets_ && x.outer && x.element < 0 && m_.crowded(x.v))
@@ -162,10 +164,9 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
     e.region = now[k].region;
     e.q = now[k].q;
     e.label = now[k].outside;
-    for (const int32_t v : now[k].v) {
+    for (const int32_t v : now[k].v)
       m_.incident[size_t(v)] = id;
-      m_.touched[size_t(v)] = time;
-    }
+    touch(id);
   }
   for (size_t k = now.size(); k < old.size(); ++k) {
     m_.element[size_t(old[k])] = {};
@@ -194,7 +195,7 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
     const int32_t id = x.first < 0 ? -1 : made_[size_t(x.first / 4)];
     const size_t face = size_t(x.first & 3);
     if (x.outer && x.element >= 0)
-      note_side(x.element);
+      note_side(x.element, x.face);
     if (x.outer && x.first < 0) {
       if (x.element >= 0)
         bare(x.element, x.face);

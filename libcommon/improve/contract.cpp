@@ -128,6 +128,12 @@ bool Editor::contract(int32_t e, int i, int j) {
 
 // As contract(), but b moves too: both stars are judged at the best place for it.
 bool Editor::merge(int32_t e, int i, int j) {
+  const auto& v = m_.element[size_t(e)].v;
+  Failures::Attempt attempt{.operation = Failures::Operation::merge, .a = v[size_t(i)], .b = v[size_t(j)]};
+  return !has_failed(attempt) && (join(e, i, j) || note_failure(attempt));
+}
+
+bool Editor::join(int32_t e, int i, int j) {
   int32_t a = m_.element[size_t(e)].v[size_t(i)], b = m_.element[size_t(e)].v[size_t(j)];
   if (!may_contract(m_.vertex[size_t(a)], m_.vertex[size_t(b)]))
     std::swap(a, b);
@@ -224,10 +230,8 @@ bool Editor::merge(int32_t e, int i, int j) {
   }
   move_rim();
   for (size_t t = 0; t < kept.size(); ++t) {
-    Element& el = m_.element[size_t(kept[t])];
-    for (const int32_t v : el.v)
-      m_.touched[size_t(v)] = time;
-    el.q = q[t];
+    m_.element[size_t(kept[t])].q = q[t];
+    touch(kept[t]);
     note_change(kept[t]);
     changed.push_back(kept[t]);
   }

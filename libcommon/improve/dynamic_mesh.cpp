@@ -191,6 +191,7 @@ void DynamicMesh::resize(size_t elements, size_t vertices) {
   vertex.resize(vertices);
   incident.resize(vertices, -1);
   touched.resize(vertices, 0);
+  state.resize(vertices, 0);
 }
 
 DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
@@ -209,6 +210,8 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   m.incident.assign(points, -1);
   with_room(m.touched, points);
   m.touched.assign(points, 0);
+  with_room(m.state, points);
+  m.state.assign(points, 0);
   m.element.reserve(elements + elements / 4);
   m.element.resize(elements);
   m.restless.assign(size_t(DynamicMesh::stretches(mesh.tet.size())), 0);

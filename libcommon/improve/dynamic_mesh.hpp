@@ -75,6 +75,8 @@ struct DynamicMesh {
   std::vector<Vertex> vertex;
   std::vector<int32_t> incident; ///< [vertices] an element at the vertex; -1: free slot
   std::vector<int32_t> touched;  ///< [vertices] when an element at the vertex last changed
+  std::vector<uint32_t>
+      state; ///< [vertices] another number whenever what is there is written, the same when put back
   LargeArray<Element> element;
   std::vector<Label> labels; ///< [0] is no label
   Walls walls;

@@ -28,6 +28,36 @@ bool Editor::owned(int32_t e) const {
   return parts_.owns(room_.part, m_.element[size_t(e)].v);
 }
 
+void Editor::note_side(int32_t e, size_t face) {
+  if (const int32_t v = m_.element[size_t(e)].v[face]; parts_.owner[size_t(v)] == room_.part)
+    m_.state[size_t(v)] = clock_;
+  if (log.kept())
+    log.add(owned(e) ? e : ChangeLog::beyond);
+}
+
+// No other operation writes at this reading of the clock.
+void Editor::touch(int32_t e) {
+  for (const int32_t v : m_.element[size_t(e)].v) {
+    m_.touched[size_t(v)] = time;
+    m_.state[size_t(v)] = clock_;
+  }
+}
+
+bool Editor::has_failed(Failures::Attempt& attempt) {
+  attempt.at_a = m_.state[size_t(attempt.a)];
+  attempt.at_b = attempt.b < 0 ? 0 : m_.state[size_t(attempt.b)];
+  attempt.goal = goal;
+  attempt.aims = static_cast<uint8_t>(worst_first | straighten << 1 | bold << 2 | loose << 3);
+  elsewhere_ = false;
+  return failures_.knows(attempt);
+}
+
+bool Editor::note_failure(const Failures::Attempt& attempt) {
+  if (!elsewhere_)
+    failures_.add(attempt);
+  return false;
+}
+
 // False when an element of the star is not ours. Only our elements are stamped, so no other editor sees the stamps.
 // Nearly without branches: which faces lead on is not to be guessed.
 bool Editor::star(int32_t v, std::vector<int32_t>& out) {

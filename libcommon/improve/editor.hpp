@@ -9,6 +9,7 @@
 #pragma once
 #include "improve/change_log.hpp"
 #include "improve/dynamic_mesh.hpp"
+#include "improve/failures.hpp"
 #include "improve/guard.hpp"
 #include "improve/part_copy.hpp"
 #include "improve/parts.hpp"
@@ -145,11 +146,14 @@ private:
     m_.note_change(e);
     log.add(e);
   }
-  /// A side of an element is written.
-  void note_side(int32_t e) {
-    if (log.kept())
-      log.add(owned(e) ? e : ChangeLog::beyond);
-  }
+  void note_side(int32_t e, size_t face); ///< it is written
+  void touch(int32_t e);                  ///< what is at its vertices changes
+  /// Whether it has failed when all that it looks at was the same. Fills in the rest.
+  bool has_failed(Failures::Attempt& attempt);
+  bool note_failure(const Failures::Attempt& attempt); ///< false
+  bool move_to_best(int32_t v);                        ///< smooth()
+  bool join(int32_t e, int i, int j);                  ///< merge()
+  bool halve(int32_t e, int i, int j);                 ///< split()
   bool restore_written(const Snapshot& s);
   void list_rim(const std::vector<Candidate>& now);
   void list_rim(const std::vector<int32_t>& elements, int32_t v, int32_t without);
@@ -259,6 +263,8 @@ private:
   uint64_t saved_ = 0, restored_ = 0; ///< numbers of snapshots: of the last one, and of what was last brought back
   ChangeLog::Moment restored_then_;   ///< when it was
   std::vector<int32_t> written_;
+  Failures failures_;
+  bool elsewhere_ = false; ///< what an operation failed for is not all at its vertices
 };
 
 } // namespace molmesh::improve

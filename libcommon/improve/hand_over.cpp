@@ -104,7 +104,7 @@ bool Editor::hand_over(int32_t v) {
     e.region = side.to;
     for (size_t f = 0; f < 4; ++f) {
       Element& beyond = m_.element[size_t(e.n[f])];
-      note_side(e.n[f]);
+      note_side(e.n[f], beyond.face_towards(t));
       if (e.v[f] == v)
         m_.note_label(t), m_.note_label(e.n[f]);
       for (size_t g = 0; g < 4; ++g)
@@ -122,8 +122,7 @@ bool Editor::hand_over(int32_t v) {
     for (const int32_t t : *list)
       if (list == &star_ || u >= 0) {
         log.add(t);
-        for (const int32_t w : m_.element[size_t(t)].v)
-          m_.touched[size_t(w)] = time;
+        touch(t);
       }
   ++counts.hand_overs;
   return true;

@@ -162,8 +162,7 @@ bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, f
     Element& e = m_.element[size_t(elements[i])];
     e.q = now_[i].q;
     note_change(elements[i]);
-    for (const int32_t w : e.v)
-      m_.touched[size_t(w)] = time;
+    touch(elements[i]);
   }
   changed.insert(changed.end(), elements.begin(), elements.end());
   ++counts.moves;
@@ -171,6 +170,11 @@ bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, f
 }
 
 bool Editor::smooth(int32_t v) {
+  Failures::Attempt attempt{.a = v};
+  return !has_failed(attempt) && (move_to_best(v) || note_failure(attempt));
+}
+
+bool Editor::move_to_best(int32_t v) {
   const Vertex& k = m_.vertex[size_t(v)];
   if (k.kind == Kind::fixed || !star(v, star_))
     return false;

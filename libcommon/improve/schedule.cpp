@@ -213,6 +213,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
   if (last_stamp_ > UINT32_MAX / 2) {
     stamp_.clear();
     last_stamp_ = 0;
+    std::fill(m_.state.begin(), m_.state.end(), 0);
   }
   stamp_.resize(m_.element.size(), 0);
   std::vector<Job*> largest_first; // else threads wait for one that came last

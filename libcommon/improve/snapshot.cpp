@@ -36,8 +36,8 @@ Snapshot Editor::save(const std::vector<int32_t>& inner) {
   }
   s.corner.reserve(vertices.met().size());
   for (const int32_t v : vertices.met())
-    s.corner.push_back(
-        {v, m_.point[size_t(v)], m_.vertex[size_t(v)], m_.incident[size_t(v)], m_.touched[size_t(v)]});
+    s.corner.push_back({v, m_.point[size_t(v)], m_.vertex[size_t(v)], m_.incident[size_t(v)], m_.touched[size_t(v)],
+                        m_.state[size_t(v)]});
   return s;
 }
 
@@ -66,6 +66,7 @@ bool Editor::restore_written(const Snapshot& s) {
       m_.vertex[size_t(corner.id)] = corner.vertex;
       m_.incident[size_t(corner.id)] = corner.incident;
       m_.touched[size_t(corner.id)] = corner.touched;
+      m_.state[size_t(corner.id)] = corner.state;
     }
   }
   return true;
@@ -90,6 +91,7 @@ void Editor::restore(const Snapshot& s) {
       m_.vertex[size_t(c.id)] = c.vertex;
       m_.incident[size_t(c.id)] = c.incident;
       m_.touched[size_t(c.id)] = c.touched;
+      m_.state[size_t(c.id)] = c.state;
     }
   }
   if (!some || (!written_.empty() && written_.front() == ChangeLog::beyond))

@@ -33,6 +33,7 @@ struct Snapshot {
     Vec3d point;
     Vertex vertex;
     int32_t incident, touched;
+    uint32_t state;
   };
   struct Side {
     int32_t element, n;

@@ -5,9 +5,20 @@
 namespace molmesh::improve {
 
 bool Editor::split(int32_t e, int i, int j) {
+  const auto& v = m_.element[size_t(e)].v;
+  Failures::Attempt attempt{
+      .operation = Failures::Operation::split, .a = v[size_t(i)], .b = v[size_t(j)], .element = e};
+  return !has_failed(attempt) && (halve(e, i, j) || note_failure(attempt));
+}
+
+bool Editor::halve(int32_t e, int i, int j) {
   const int32_t a = m_.element[size_t(e)].v[size_t(i)], b = m_.element[size_t(e)].v[size_t(j)];
-  if (room_.vertex.empty() || !ring(e, a, b, ring_) || !has_room(ring_.element.size(), 2 * ring_.element.size()))
+  if (!ring(e, a, b, ring_))
     return false;
+  if (room_.vertex.empty() || !has_room(ring_.element.size(), 2 * ring_.element.size())) {
+    elsewhere_ = true;
+    return false;
+  }
   if (target_ && norm(m_.point[size_t(a)] - m_.point[size_t(b)]) < 0.3 * target_->spacing())
     return false;
   Vertex kind;

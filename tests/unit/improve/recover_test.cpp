@@ -216,6 +216,7 @@ TEST_CASE("what is restored is as it was saved") {
       REQUIRE((c.m.point[size_t(v)] == before.point[size_t(v)] &&
                c.m.incident[size_t(v)] == before.incident[size_t(v)] &&
                c.m.touched[size_t(v)] == before.touched[size_t(v)] &&
+               c.m.state[size_t(v)] == before.state[size_t(v)] &&
                c.m.vertex[size_t(v)].kind == before.vertex[size_t(v)].kind));
     for (int32_t e = 0; e < size + 1000; ++e) {
       const improve::Element& x = c.m.element[size_t(e)];
