@@ -2,6 +2,7 @@
 // instruction set of this machine.
 #pragma once
 #include "density/units_kernel.hpp"
+#include <limits>
 
 namespace molmesh::density {
 
@@ -20,7 +21,7 @@ struct BlockRows {
   Numbers<T> x, yz, scale;
   /// Where all units are roots: what multiplies each of them, which the rows are without; and of what curvature.
   alignas(64) T bend_x[8], bend_yz[64];
-  T bent_by = 0;
+  T bent_by = std::numeric_limits<T>::quiet_NaN(); // of none yet
 };
 void make_rows(const BlockUnits& units, const BlockShape<float>& shape, BlockRows<float>& rows);
 void make_rows(const ExactUnits& units, const BlockShape<double>& shape, BlockRows<double>& rows);

@@ -33,6 +33,14 @@ double Editor::misfit_face(const Element& e, size_t face, int32_t from, Vec3d at
 // How far from the target loose vertices may be, in units of off().
 constexpr double most_loose = 0.9;
 
+// Whether x is as near to the target as the guard wants it.
+bool Editor::stays(Vec3d x) const {
+  double distance;
+  Vec3d normal;
+  return guard_.leave == Guard::anywhere ||
+         (target_->probe(x, distance, normal) && std::fabs(distance) <= guard_.leave * target_->spacing());
+}
+
 // Moves a trial x of a vertex at `from` onto what it is bound to.
 bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const {
   switch (k.kind) {
@@ -41,7 +49,7 @@ bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) cons
   case Kind::surface:
     // The distance to first order means nothing where the gradient vanishes, and that is where points must leave.
     if (target_ && guard_.lift > 0)
-      return norm(x - from) <= guard_.lift * target_->spacing() && inside_walls(from, x);
+      return norm(x - from) <= guard_.lift * target_->spacing() && stays(x) && inside_walls(from, x);
     if (target_ && loose)
       return norm(x - from) <= reach && off_at(x).value_or(1) <= most_loose && inside_walls(from, x);
     return target_ && target_->project(x, reach) && inside_walls(from, x);

@@ -178,6 +178,7 @@ private:
     return std::abs(distance + target_->offset()) / (0.02 * target_->spacing());
   }
   std::optional<double> off_at(Vec3d x) const; ///< off() of a place; none where the target is not known
+  bool stays(Vec3d x) const;
   bool constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const;
   /// Those of n trials that constrain() allows, in front and in order; how many.
   int constrain_all(const Vertex& k, Vec3d from, Vec3d* x, int n, double reach) const;

@@ -8,10 +8,12 @@ namespace molmesh::improve {
 
 /// How far a surface triangle may be from the target.
 struct Guard {
-  double angle = 32;      ///< degrees between its normal and the target's at its centroid
-  double distance = 0.12; ///< of its centroid, in spacings
-  double reach = 0.5;     ///< of a projection, in edge lengths: further, and pinches drop two points on one place
-  double lift = 0;        ///< how far one operation may take a surface point off the target, in spacings
+  static constexpr double anywhere = 1e300;
+  double angle = 32;       ///< degrees between its normal and the target's at its centroid
+  double distance = 0.12;  ///< of its centroid, in spacings
+  double reach = 0.5;      ///< of a projection, in edge lengths: further, and pinches drop two points on one place
+  double lift = 0;         ///< how far one operation may take a surface point off the target, in spacings
+  double leave = anywhere; ///< and how far all of them; of targets whose distances are exact
   bool operator==(const Guard&) const = default;
   HD double tilt() const { return 1 - std::cos(angle * 3.14159265358979323846 / 180); } ///< as misfit() wants it
 };

@@ -91,6 +91,45 @@ TEST_CASE("a mesh far from the origin is improved as one at the origin is") {
   CHECK(b.after.below_25 <= a.after.below_25 + 1);
 }
 
+TEST_CASE("without a density a plate thinner than its triangles stays where it is") {
+  TetMesh mesh; // cubes of six tetrahedra, pressed flat
+  const int n = 6;
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j)
+      for (int k = 0; k <= n; ++k)
+        mesh.point.push_back({double(i), double(j), 0.1 * k});
+  const auto at = [&](Vec3i p) { return ((p.x * (n + 1)) + p.y) * (n + 1) + p.z; };
+  for (int c = 0; c < n * n * n; ++c) {
+    std::array<int, 3> axis{0, 1, 2};
+    do {
+      Vec3i p{c / (n * n), c / n % n, c % n};
+      Tet t{at(p)};
+      for (size_t step = 0; step < 3; ++step) {
+        ++p[axis[step]];
+        t[step + 1] = at(p);
+      }
+      if (volume6(mesh.point[size_t(t[0])], mesh.point[size_t(t[1])], mesh.point[size_t(t[2])],
+                  mesh.point[size_t(t[3])]) < 0)
+        std::swap(t[2], t[3]);
+      mesh.tet.push_back(t);
+    } while (std::next_permutation(axis.begin(), axis.end()));
+  }
+  mesh.region.assign(mesh.tet.size(), Region::molecule);
+  rebuild_triangles(mesh);
+  const Validity before = check_validity(mesh, 1);
+  REQUIRE(before.valid());
+  CHECK(improve::improve(mesh, nullptr, {}).after.min > 20);
+  const Validity after = check_validity(mesh, 1);
+  CHECK(after.valid());
+  CHECK(after.volume == Approx(before.volume).epsilon(0.01));
+  const double edge = (2 + std::sqrt(2.)) / 3; // of its large sides; no longer than the surface's mean
+  for (const Vec3d& p : mesh.point)
+    for (int a = 0; a < 3; ++a) {
+      const double end = a < 2 ? n : 0.1 * n;
+      REQUIRE((p[a] >= -0.02 * edge && p[a] <= end + 0.02 * edge));
+    }
+}
+
 TEST_CASE("where sheets of a surface touch at a point, the point is fixed") {
   TetMesh mesh; // two elements with one point in common
   mesh.point = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
