@@ -89,10 +89,16 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
     look(band.info, {&left, 1});
   if (band.active_points == 0) {
     char text[160];
-    std::snprintf(
-        text, sizeof text,
-        "no grid cell reaches the band from %g to %g: the isovalue is too high or the spacing of %g Å too large",
-        o.band_lower, o.band_upper, h);
+    const double enough = derived ? 0 : sufficient_margin(f, o.band_lower);
+    if (margin < enough)
+      std::snprintf(text, sizeof text,
+                    "the surface is beyond the grid: a margin of %g Å is too small, %.2f Å suffices", margin,
+                    enough);
+    else
+      std::snprintf(
+          text, sizeof text,
+          "no grid cell reaches the band from %g to %g: the isovalue is too high or the spacing of %g Å too large",
+          o.band_lower, o.band_upper, h);
     fail(Status::failed, text);
   }
   if (o.take)
