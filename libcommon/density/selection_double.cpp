@@ -33,22 +33,33 @@ bool Selection::place_exactly(Vec3d middle) {
   double widest = 0, highest = 0; // logarithms of factors, and of what multiplies a power
   for (size_t u = 0; u < n; ++u) {
     const double p = to.exponent[u] = f_.level[0].exponent[static_cast<size_t>(group_of(static_cast<int32_t>(u)))];
+    const auto begin = static_cast<size_t>(to.begin[u]), end = static_cast<size_t>(to.begin[u + 1]);
     const Placed center = placed(from.center_slot[u]);
     to.log2_term[u] = center.log2_term;
     to.x[u] = center.at.x;
     to.y[u] = center.at.y;
     to.z[u] = center.at.z;
-    widest = std::max(widest, p * (most(step * center.at) + bend));
-    highest = std::max(highest, std::abs(p * center.log2_term));
-    for (auto a = static_cast<size_t>(to.begin[u]); a < static_cast<size_t>(to.begin[u + 1]); ++a) {
+    double wide = p * (most(step * center.at) + bend), constant = 0;
+    for (size_t a = begin; a < end; ++a) {
       const Placed atom = placed(from.atom_slot[a]);
       const Vec3d slope = step * (atom.at - center.at);
       to.atom_x[a] = slope.x;
       to.atom_y[a] = slope.y;
       to.atom_z[a] = slope.z;
-      to.atom_constant[a] = atom.log2_term - center.log2_term;
-      widest = std::max(widest, std::max(1.0, p) * most(slope));
+      constant = std::max(constant, to.atom_constant[a] = atom.log2_term - center.log2_term);
+      wide = std::max(wide, std::max(1.0, p) * most(slope));
     }
+    // Where powers are only added, one below 2^-200 (far away, with --atoms all) may be any such number; 2^31
+    // atoms.
+    if (f_.plain_above && p * (center.log2_term + constant + 31) + 2 * wide < -200) {
+      to.log2_term[u] = -900 / p;
+      to.x[u] = to.y[u] = to.z[u] = 0;
+      for (Numbers<double>* v : {&to.atom_x, &to.atom_y, &to.atom_z, &to.atom_constant})
+        std::fill(v->begin() + begin, v->begin() + end, 0);
+      wide = p * bend;
+    }
+    widest = std::max(widest, wide);
+    highest = std::max(highest, std::abs(p * to.log2_term[u]));
   }
   return widest < 500 && highest < 1000; // what multiplies a power, and the power, may both be as large
 }

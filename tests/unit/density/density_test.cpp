@@ -121,6 +121,10 @@ TEST_CASE("a kd-tree finds what the boxes find; all atoms give the same field wi
     const BlockGrid all = compute(h, o);
     CHECK(test::worst_error(h, all, 200) <= 0.1);
     test::check_complete(h, all);
+    Hierarchy apart = h; // terms far below what doubles hold
+    for (size_t i = apart.atom.size() / 2; i < apart.atom.size(); ++i)
+      apart.atom[i].center = apart.atom[i].center + Vec3d{90, 40, -30};
+    CHECK(test::worst_error(apart, compute(apart, o), 200) <= 0.1);
   }
 }
 
