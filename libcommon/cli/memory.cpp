@@ -1,7 +1,6 @@
 // memory.cpp — /proc/meminfo and the memory controllers of control groups, versions 1 and 2.
 #include "cli/memory.hpp"
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -14,8 +13,8 @@ namespace {
 constexpr int64_t unknown = std::numeric_limits<int64_t>::max();
 
 /// MemAvailable and SwapFree, in bytes.
-int64_t of_system(const std::string& proc) {
-  std::ifstream in(proc + "/meminfo");
+int64_t of_system(const std::filesystem::path& proc) {
+  std::ifstream in(proc / "meminfo");
   int64_t sum = 0;
   bool found = false;
   for (std::string line; std::getline(in, line);) {
@@ -37,31 +36,13 @@ int64_t limit_in(const std::filesystem::path& file) {
   return in >> bytes ? bytes : unknown;
 }
 
-/// The least of a group and all above it.
-int64_t of_groups(const std::filesystem::path& mount, const std::string& group, const char* file) {
-  int64_t least = limit_in(mount / file);
-  std::filesystem::path at = mount;
-  for (const auto& name : std::filesystem::path(group).relative_path())
-    least = std::min(least, limit_in((at /= name) / file));
-  return least;
-}
-
 } // namespace
 
-int64_t memory_at_hand(const std::string& proc, const std::string& groups) {
-  int64_t least = of_system(proc);
-  std::ifstream in(proc + "/self/cgroup");
-  for (std::string line; std::getline(in, line);) { // number:controllers:group
-    const size_t first = line.find(':'), second = line.find(':', first + 1);
-    if (second == std::string::npos)
-      continue;
-    const std::string controllers = ',' + line.substr(first + 1, second - first - 1) + ',',
-                      group = line.substr(second + 1);
-    if (controllers == ",,")
-      least = std::min(least, of_groups(groups, group, "memory.max"));
-    else if (controllers.find(",memory,") != std::string::npos)
-      least = std::min(least, of_groups(groups + "/memory", group, "memory.limit_in_bytes"));
-  }
+int64_t memory_at_hand(const SystemFiles& system) {
+  int64_t least = of_system(system.proc);
+  for_each_group(system, "memory", [&](const std::filesystem::path& folder, int version) {
+    least = std::min(least, limit_in(folder / (version == 2 ? "memory.max" : "memory.limit_in_bytes")));
+  });
   return least == unknown ? -1 : least;
 }
 

@@ -1,13 +1,13 @@
 // memory.hpp — how much memory there is, and a process that asks for no more.
 #pragma once
+#include "cli/control_groups.hpp"
 #include <cstdint>
-#include <string>
 
 namespace molmesh::cli {
 
 /// Bytes that the system has at hand, swap included, or the least that a control group around this process grants.
-/// -1: not known. proc, groups: where the system says so.
-int64_t memory_at_hand(const std::string& proc = "/proc", const std::string& groups = "/sys/fs/cgroup");
+/// -1: not known.
+int64_t memory_at_hand(const SystemFiles& system = {});
 
 /// From here on asking for more is std::bad_alloc, a line and a status, where the system would grant it and kill
 /// the process as it is used. The stacks of that many threads, of which little is used, come on top. Nothing

@@ -1,7 +1,7 @@
 // run.cpp — common options, exit statuses, the run report.
 #include "cli/run.hpp"
+#include "cli/cpus.hpp"
 #include "cli/help.hpp"
-#include "par/par.hpp"
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -26,7 +26,7 @@ int Common::resolved_threads() const {
   }
   if (mode == "seq")
     return 1;
-  return threads > 0 ? threads : par::default_threads();
+  return threads > 0 ? threads : default_threads();
 }
 
 void Run::phase(const std::string& name) {
@@ -168,7 +168,7 @@ void describe_common(CLI::App& app, Common& o) {
   app.add_option("--mode", o.mode, "seq: one thread, omp: many cores, cuda: one GPU")
       ->type_name("MODE")
       ->check(CLI::IsMember({"seq", "omp", "cuda"}));
-  app.add_option("-t,--threads", o.threads, "threads for --mode omp; 0: all")->check(CLI::Range(0, 1024));
+  app.add_option("-t,--threads", o.threads, "threads for --mode omp; 0: all that are granted")->check(CLI::Range(0, 1024));
   app.add_option("--report", o.report, "write the run report (JSON) to this file")
       ->type_name("FILE")
       ->configurable(false);

@@ -1,5 +1,7 @@
-// memory_test.cpp — how much memory there is, as the system's files say it, and a process that asks for more.
+// machine_test.cpp — how much memory and how many processors there are, as the system's files say it, and a process
+// that asks for more memory.
 #include "child.hpp"
+#include "cli/cpus.hpp"
 #include "cli/memory.hpp"
 #include <catch2/catch.hpp>
 #include <new>
@@ -17,7 +19,8 @@ struct System {
     std::filesystem::create_directories(path.parent_path());
     std::ofstream(path) << text;
   }
-  int64_t at_hand() const { return cli::memory_at_hand(folder / "proc", folder / "groups"); }
+  int64_t at_hand() const { return cli::memory_at_hand({folder / "proc", folder / "groups"}); }
+  int cpus() const { return cli::cpus_granted({folder / "proc", folder / "groups"}); }
 };
 
 } // namespace
@@ -43,6 +46,30 @@ TEST_CASE("the least of what the system has and what control groups grant") {
     CHECK(s.at_hand() == 3000000);
     s.says("groups/memory/memory.limit_in_bytes", "1000000\n");
     CHECK(s.at_hand() == 1000000);
+  }
+}
+
+TEST_CASE("the processors that control groups grant") {
+  const System s;
+  CHECK(s.cpus() == -1);
+  SECTION("version 2: a group, or one above it") {
+    s.says("proc/self/cgroup", "0::/slurm/job_7\n");
+    s.says("groups/slurm/job_7/cpu.max", "max 100000\n");
+    CHECK(s.cpus() == -1);
+    s.says("groups/slurm/cpu.max", "400000 100000\n");
+    CHECK(s.cpus() == 4);
+    s.says("groups/slurm/job_7/cpu.max", "150000 100000\n");
+    CHECK(s.cpus() == 2);
+  }
+  SECTION("version 1") {
+    s.says("proc/self/cgroup", "5:cpu,cpuacct:/box\n4:memory:/\n0::/\n");
+    s.says("groups/cpu/cpu.cfs_quota_us", "-1\n");
+    s.says("groups/cpu/cpu.cfs_period_us", "100000\n");
+    CHECK(s.cpus() == -1);
+    s.says("groups/cpu/box/cpu.cfs_quota_us", "25000\n");
+    CHECK(s.cpus() == -1); // no period
+    s.says("groups/cpu/box/cpu.cfs_period_us", "50000\n");
+    CHECK(s.cpus() == 1);
   }
 }
 
