@@ -168,7 +168,8 @@ void describe_common(CLI::App& app, Common& o) {
   app.add_option("--mode", o.mode, "seq: one thread, omp: many cores, cuda: one GPU")
       ->type_name("MODE")
       ->check(CLI::IsMember({"seq", "omp", "cuda"}));
-  app.add_option("-t,--threads", o.threads, "threads for --mode omp; 0: all that are granted")->check(CLI::Range(0, 1024));
+  app.add_option("-t,--threads", o.threads, "threads for --mode omp; 0: all that are granted")
+      ->check(CLI::Range(0, 1024));
   app.add_option("--report", o.report, "write the run report (JSON) to this file")
       ->type_name("FILE")
       ->configurable(false);
