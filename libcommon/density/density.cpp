@@ -31,6 +31,19 @@ void check_band(const Options& o) {
   fail(Status::usage, text);
 }
 
+/// enough: a margin that suffices.
+[[noreturn]] void fail_without_band(const Options& o, double h, double margin, double enough) {
+  char text[250];
+  int n = std::snprintf(text, sizeof text, "no grid cell reaches the band from %g to %g: the isovalue is too high",
+                        o.band_lower, o.band_upper);
+  if (h > 0)
+    n += std::snprintf(text + n, sizeof text - size_t(n), ", or the spacing of %g Å too large", h);
+  if (margin < enough)
+    std::snprintf(text + n, sizeof text - size_t(n), ", or the margin of %g Å too small: %.2f Å suffices", margin,
+                  enough);
+  fail(Status::failed, text);
+}
+
 /// Every active value is a number in the file.
 void check_values(BandBlocks blocks) {
   for (const BandBlock& b : blocks) {
@@ -61,17 +74,22 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
   const Field f = make_field(hierarchy, o.decay, budget_for(s).far, o.threads);
   const Box box = f.bounds();
   const bool derived = o.margin < 0;
-  double margin = o.margin, h = o.spacing;
+  const auto enough = [&] { // as messages show it
+    return derived ? 0 : std::ceil(100 * sufficient_margin(f, o.band_lower)) / 100;
+  };
+  double margin = o.margin;
   if (derived) {
     // One cell more on each side: then no cell of the band touches the wall either.
-    margin = sufficient_margin(f, o.band_lower);
-    if (o.grid_points > 0)
-      h = longest_edge(box, margin) / static_cast<double>(o.grid_points - 3);
-    margin += h;
+    const double sufficient = sufficient_margin(f, o.band_lower);
+    const double h =
+        o.grid_points > 0 ? longest_edge(box, sufficient) / static_cast<double>(o.grid_points - 3) : o.spacing;
+    margin = sufficient + h;
   }
   counts.margin = margin;
-  const GridFrame frame =
-      o.grid_points > 0 ? frame_with_points(box, margin, o.grid_points) : frame_with_spacing(box, margin, h);
+  if (o.grid_points > 0 && !(longest_edge(box, margin) > 0)) // all of it one point
+    fail_without_band(o, 0, margin, enough());
+  const GridFrame frame = o.grid_points > 0 ? frame_with_points(box, margin, o.grid_points)
+                                            : frame_with_spacing(box, margin, o.spacing);
   bool cut = false;
   const BandSink look = [&](const FieldInfo& info, std::span<const BandBlocks> runs) {
     for (const BandBlocks& blocks : runs) {
@@ -87,20 +105,8 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
   Band band = find(f, frame, s, counts.search);
   if (const BandBlocks left = band.block; !left.empty()) // nobody takes them, or this finder cannot give away
     look(band.info, {&left, 1});
-  if (band.active_points == 0) {
-    char text[160];
-    const double enough = derived ? 0 : sufficient_margin(f, o.band_lower);
-    if (margin < enough)
-      std::snprintf(text, sizeof text,
-                    "the surface is beyond the grid: a margin of %g Å is too small, %.2f Å suffices", margin,
-                    enough);
-    else
-      std::snprintf(
-          text, sizeof text,
-          "no grid cell reaches the band from %g to %g: the isovalue is too high or the spacing of %g Å too large",
-          o.band_lower, o.band_upper, h);
-    fail(Status::failed, text);
-  }
+  if (band.active_points == 0)
+    fail_without_band(o, frame.spacing, margin, enough());
   if (o.take)
     band.block = {}, band.storage = {};
   band.info.source = hierarchy.source;
@@ -110,7 +116,7 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
     char text[128];
     std::snprintf(text, sizeof text,
                   "the grid's wall cuts the surface: a margin of %g Å is too small, %.2f Å suffices", margin,
-                  sufficient_margin(f, o.band_lower));
+                  enough());
     fail(Status::failed, text);
   }
   return band;

@@ -55,12 +55,11 @@ NodeSearch::NodeSearch(const Field& f, const GridFrame& frame, const SearchOptio
 }
 
 /// Values of a block from the selection made for it, not rounded.
-void NodeSearch::evaluate(Vec3i corner, Workspace& w, float* value) const {
+void NodeSearch::evaluate(Workspace& w, float* value) const {
   w.evaluator.evaluate(f_, w.selection, frame_.spacing, value);
   ++w.counts.blocks_evaluated;
   w.counts.group_visits += w.selection.units;
   w.counts.atom_visits += w.selection.atoms;
-  w.points += points_in_grid(frame_, 8 * corner);
 }
 
 void NodeSearch::work_through_block(int b, int octant, Vec3i corner, NodeState& s, Workspace& w) const {
@@ -72,7 +71,8 @@ void NodeSearch::work_through_block(int b, int octant, Vec3i corner, NodeState& 
   if (w.selection.side != Side::mixed)
     return;
   float* const value = w.value[b];
-  evaluate(corner, w, value);
+  evaluate(w, value);
+  w.points += points_in_grid(frame_, 8 * corner);
   uint64_t *const below = w.below.word[b], *const above = w.above.word[b];
   classify_points(value, dropped_bits_, {lower_, upper_}, {far_below_, far_above_}, {below, above},
                   {w.far_below.word[b], w.far_above.word[b]});
@@ -124,8 +124,9 @@ void NodeSearch::settle(NodeState& s, Workspace& w) const {
     store(s, w);
 }
 
-/// Values of blocks that bounds left out: they have corners of band cells, and lie where the bounds say.
-void NodeSearch::evaluate_left_out(uint64_t blocks, Vec3i node, Workspace& w) const {
+/// Values of blocks that bounds left out: they have corners of band cells, and lie where the bounds say. Those in
+/// `before` have been evaluated once.
+void NodeSearch::evaluate_left_out(uint64_t blocks, uint64_t before, Vec3i node, Workspace& w) const {
   for (int octant = 0; octant < 8; ++octant) {
     const Vec3i part = 2 * Vec3i{octant >> 2, octant >> 1 & 1, octant & 1};
     const auto number = [&](int i) {
@@ -141,7 +142,9 @@ void NodeSearch::evaluate_left_out(uint64_t blocks, Vec3i node, Workspace& w) co
       entered = true;
       ++w.counts.blocks_visited;
       w.selection.select_alone(i);
-      evaluate(node + block_at(b), w, w.value[b]);
+      evaluate(w, w.value[b]);
+      if (!(before >> b & 1))
+        w.points += points_in_grid(frame_, 8 * (node + block_at(b)));
       round_values(w.value[b], dropped_bits_);
     }
   }
@@ -163,7 +166,7 @@ void NodeSearch::store(NodeState& s, Workspace& w) const {
   uint64_t left_out = 0;
   for (int b = 0; b < blocks_a_node; ++b)
     left_out |= any_within(to.stored.word[b], b) ? uint64_t{1} << b & ~s.known : 0;
-  evaluate_left_out(left_out, s.corner, w);
+  evaluate_left_out(left_out, s.known, s.corner, w);
   s.known |= left_out;
   for (uint64_t left = s.known; left; left &= left - 1) {
     const int b = std::countr_zero(left);
@@ -225,7 +228,7 @@ void NodeSearch::finish(NodeState& s, const FacedBits* const* below, const Faced
   s.closed &= ~s.kept;
   if (wanting) {
     w.selection.enter(middle_of(s.corner, node_blocks), nodes_.clusters_at(s.corner));
-    evaluate_left_out(wanting, s.corner, w);
+    evaluate_left_out(wanting, s.known, s.corner, w);
   }
   s.band = w.spares.band();
   s.band.resize(static_cast<size_t>(std::popcount(s.kept)));

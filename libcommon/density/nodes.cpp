@@ -1,4 +1,4 @@
-// nodes.cpp — the descent through boxes, and the walk that asks a kd-tree.
+// nodes.cpp — the descent through boxes, by lists of clusters or asking a kd-tree.
 #include "density/nodes.hpp"
 #include "density/cluster_tree.hpp"
 #include "par/par.hpp"
@@ -135,6 +135,16 @@ double sure_bytes(const Field& f, const GridFrame& frame, const NodeList& nodes,
   return bytes * std::pow(blocks / node_blocks, 3);
 }
 
+/// The least power of two of nodes that spans the grid.
+int32_t blocks_across(const GridFrame& frame) {
+  int32_t blocks = node_blocks;
+  const Vec3i first = first_block(frame);
+  for (int a = 0; a < 3; ++a)
+    while (8 * (int64_t{first[a]} + blocks) < int64_t{frame.lower[a]} + frame.points[a])
+      blocks *= 2;
+  return blocks;
+}
+
 void require_memory(double bytes) {
   if (bytes > 1e15)
     throw std::bad_alloc();
@@ -144,15 +154,11 @@ void require_memory(double bytes) {
 } // namespace
 
 NodeList nodes_by_halving(const Field& f, const GridFrame& frame, bool every, int threads) {
-  int32_t blocks = node_blocks;
-  const Vec3i first = first_block(frame);
-  for (int a = 0; a < 3; ++a)
-    while (8 * (int64_t{first[a]} + blocks) < int64_t{frame.lower[a]} + frame.points[a])
-      blocks *= 2;
+  int32_t blocks = blocks_across(frame);
   NodeList nodes;
   nodes.cluster.resize(static_cast<size_t>(f.clusters()));
   std::iota(nodes.cluster.begin(), nodes.cluster.end(), 0);
-  nodes.node.push_back({first, 0, f.clusters()});
+  nodes.node.push_back({first_block(frame), 0, f.clusters()});
   while (blocks > node_blocks) {
     blocks /= 2;
     nodes = halves(f, frame, nodes, blocks, every, threads);
@@ -165,27 +171,35 @@ NodeList nodes_by_halving(const Field& f, const GridFrame& frame, bool every, in
 
 NodeList nodes_by_tree(const Field& f, const GridFrame& frame, bool every, int threads) {
   const ClusterTree tree(f);
+  struct Asked {
+    Vec3i corner;
+    std::vector<int32_t> near;
+  };
+  std::vector<Asked> asked;
+  constexpr int32_t together = 4 * node_blocks; // of a cube that has any, the tree is asked for every node
+  const auto descend = [&](auto&& self, Vec3i corner, int32_t blocks) -> void {
+    if (!in_grid(frame, corner) ||
+        (!every && blocks >= together && tree.near(points_box(frame, corner, blocks)).empty()))
+      return;
+    if (blocks == node_blocks)
+      return asked.push_back({corner, {}});
+    for (int32_t c = 0; c < 8; ++c)
+      self(self, corner + blocks / 2 * Vec3i{c >> 2, c >> 1 & 1, c & 1}, blocks / 2);
+  };
+  descend(descend, first_block(frame), blocks_across(frame));
+  std::sort(asked.begin(), asked.end(), [](const Asked& a, const Asked& b) { return a.corner < b.corner; });
+  par::for_n(static_cast<int64_t>(asked.size()), threads, 16, [&](int64_t i) {
+    Asked& a = asked[static_cast<size_t>(i)];
+    a.near = tree.near(points_box(frame, a.corner, node_blocks));
+  });
   NodeList nodes;
-  Vec3i n;
-  const Vec3i first = first_block(frame);
-  for (int a = 0; a < 3; ++a)
-    n[a] = (((frame.lower[a] + frame.points[a] + 7) >> 3) - first[a] + node_blocks - 1) / node_blocks;
-  std::vector<std::vector<int32_t>> lists(static_cast<size_t>(n.z));
-  for (int32_t x = 0; x < n.x; ++x)
-    for (int32_t y = 0; y < n.y; ++y) {
-      const auto corner = [&](int64_t z) { return first + node_blocks * Vec3i{x, y, static_cast<int32_t>(z)}; };
-      par::for_n(n.z, threads, 1, [&](int64_t z) {
-        lists[static_cast<size_t>(z)] = tree.near(points_box(frame, corner(z), node_blocks));
-      });
-      for (int64_t z = 0; z < n.z; ++z) {
-        const std::vector<int32_t>& list = lists[static_cast<size_t>(z)];
-        if (list.empty() && !every)
-          continue;
-        const auto begin = static_cast<int64_t>(nodes.cluster.size());
-        nodes.cluster.insert(nodes.cluster.end(), list.begin(), list.end());
-        nodes.node.push_back({corner(z), begin, static_cast<int64_t>(nodes.cluster.size())});
-      }
-    }
+  for (Asked& a : asked) {
+    const auto begin = static_cast<int64_t>(nodes.cluster.size());
+    nodes.cluster.insert(nodes.cluster.end(), a.near.begin(), a.near.end());
+    if (every || !a.near.empty())
+      nodes.node.push_back({a.corner, begin, static_cast<int64_t>(nodes.cluster.size())});
+    a.near = {};
+  }
   return nodes;
 }
 

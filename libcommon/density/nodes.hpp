@@ -33,7 +33,7 @@ bool in_grid(const GridFrame& frame, Vec3i block);
 /// Halves cubes of blocks, from one that holds the grid, and keeps for each the clusters nearer than their cutoff.
 /// every: also the nodes of the grid without clusters.
 NodeList nodes_by_halving(const Field& f, const GridFrame& frame, bool every, int threads);
-/// The same list: every node of the grid asks a kd-tree.
+/// The same list by a kd-tree, which every node near a cluster asks.
 NodeList nodes_by_tree(const Field& f, const GridFrame& frame, bool every, int threads);
 
 } // namespace molmesh::density
