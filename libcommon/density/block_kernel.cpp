@@ -191,21 +191,22 @@ void sum_exact_units_simd(const ExactUnits& u, const BlockRows<double>& rows, do
 }
 
 template <class T>
-HWY_INLINE void raise(T p, T* from, T* to) {
+HWY_INLINE void raise(T p, T shift, T* from, T* to) {
   constexpr Tag<T> d{};
   const auto least = hn::Set(d, std::numeric_limits<T>::min());
   for (int32_t i = 0; i < 512; i += lanes_of<T>) {
-    const auto v = hn::LoadU(d, from + i), power = exp2(d, hn::Mul(hn::Set(d, p), log2(d, hn::Max(v, least))));
+    const auto v = hn::LoadU(d, from + i),
+               power = exp2(d, hn::MulAdd(hn::Set(d, p), log2(d, hn::Max(v, least)), hn::Set(d, shift)));
     hn::StoreU(hn::Add(hn::LoadU(d, to + i), hn::IfThenElseZero(hn::Gt(v, least), power)), d, to + i);
     hn::StoreU(hn::Zero(d), d, from + i);
   }
 }
 
-void raise_group_simd(float p, float* from, float* to) {
-  raise(p, from, to);
+void raise_group_simd(float p, float shift, float* from, float* to) {
+  raise(p, shift, from, to);
 }
-void raise_exact_group_simd(double p, double* from, double* to) {
-  raise(p, from, to);
+void raise_exact_group_simd(double p, double shift, double* from, double* to) {
+  raise(p, shift, from, to);
 }
 
 float rough_root_error_simd() {
@@ -245,11 +246,11 @@ void sum_units(const BlockUnits& units, const BlockRows<float>& rows, float star
 void sum_units(const ExactUnits& units, const BlockRows<double>& rows, double start, double* sum) {
   HWY_DYNAMIC_DISPATCH(sum_exact_units_simd)(units, rows, start, sum);
 }
-void raise_group(float p, float* from, float* to) {
-  HWY_DYNAMIC_DISPATCH(raise_group_simd)(p, from, to);
+void raise_group(float p, float shift, float* from, float* to) {
+  HWY_DYNAMIC_DISPATCH(raise_group_simd)(p, shift, from, to);
 }
-void raise_group(double p, double* from, double* to) {
-  HWY_DYNAMIC_DISPATCH(raise_exact_group_simd)(p, from, to);
+void raise_group(double p, double shift, double* from, double* to) {
+  HWY_DYNAMIC_DISPATCH(raise_exact_group_simd)(p, shift, from, to);
 }
 float rough_root_error() {
   return HWY_DYNAMIC_DISPATCH(rough_root_error_simd)();

@@ -14,9 +14,9 @@ void add_units(const ExactUnits& units, const BlockRows<double>& rows, int32_t f
 void sum_units(const BlockUnits& units, const BlockRows<float>& rows, float start, float* sum);
 void sum_units(const ExactUnits& units, const BlockRows<double>& rows, double start, double* sum);
 
-/// to[512] += from^p, from = 0. Zero stays zero.
-void raise_group(float p, float* from, float* to);
-void raise_group(double p, double* from, double* to);
+/// to[512] += 2^shift · from^p, from = 0. Zero stays zero.
+void raise_group(float p, float shift, float* from, float* to);
+void raise_group(double p, double shift, double* from, double* to);
 
 /// Relative error of a root with BlockUnits::root = 0.
 float rough_root_error();

@@ -52,8 +52,11 @@ void Evaluator::sum(const Field& f, const Selection& s, const Units& u, const Bl
   OpenGroups groups(f);
   scratch.level.assign(groups.levels() * points, 0);
   const auto sum_of = [&](size_t l) { return l < groups.levels() ? &scratch.level[l * points] : out; };
+  size_t closed = 0;
   const auto close = [&](size_t l, int64_t g) {
-    raise_group(static_cast<T>(f.level[l].exponent[static_cast<size_t>(g)]), sum_of(l), sum_of(l + 1));
+    const double shift = s.arithmetic == Arithmetic::in_scaled ? s.group_shift[closed++] : 0;
+    raise_group(static_cast<T>(f.level[l].exponent[static_cast<size_t>(g)]), static_cast<T>(shift), sum_of(l),
+                sum_of(l + 1));
   };
   for (int32_t i = 0; i < u.n; ++i) {
     groups.enter(s.group_of(i), close);
@@ -117,6 +120,7 @@ void Evaluator::evaluate(const Field& f, const Selection& s, double h, float* ou
   case Arithmetic::in_single:
     return in_single(f, s, h, out);
   case Arithmetic::in_double:
+  case Arithmetic::in_scaled:
     return in_double(f, s, h, out);
   case Arithmetic::in_logarithms:
     return by_logarithms(f, s, h, out);

@@ -24,8 +24,10 @@ Arithmetic arithmetic_for(const Field& f, double tolerance) {
     const double p = f.level[0].exponent[static_cast<size_t>(f.group[c])];
     least = std::min(least, p * (f.ln_peak[c] - f.decay * f.cutoff2[c]));
   }
-  if (least < -700 + margin || f.ln_highest > 700 - margin)
+  if (f.ln_highest > 700 - margin)
     return Arithmetic::in_logarithms;
+  if (least < -700 + margin)
+    return Arithmetic::in_scaled;
   return least < -87 + margin || !coarse ? Arithmetic::in_double : Arithmetic::in_single;
 }
 
@@ -36,6 +38,8 @@ Selection::Selection(const Field& f, const Budget& budget, double lower, double 
   double gentlest = infinity;
   for (const double p : f.level[0].exponent)
     gentlest = std::min(gentlest, p);
+  for (const FieldLevel& l : f.level)
+    steepest_.push_back(std::max(1.0, *std::max_element(l.exponent.begin(), l.exponent.end())));
   for (const double peak : f.ln_peak)
     largest_peak_ = std::max(largest_peak_, peak);
   for (const double c2 : f.cutoff2)
@@ -197,7 +201,14 @@ void Selection::take_octant(int octant, bool classify) {
     side = Side::inside;
     return;
   }
-  if (arithmetic != Arithmetic::in_single && !place_exactly(middle))
+  if (arithmetic == Arithmetic::in_single)
+    return;
+  bool holds = place_exactly(middle);
+  if (!holds && arithmetic == Arithmetic::in_double && !f_.plain_above) {
+    arithmetic = Arithmetic::in_scaled;
+    holds = place_exactly(middle);
+  }
+  if (!holds)
     arithmetic = Arithmetic::in_logarithms;
 }
 

@@ -23,8 +23,9 @@ struct Budget {
 enum class Side : uint8_t { outside, inside, mixed };
 
 /// How the sums of a block are carried. Single precision holds while the tolerance is well above its rounding and
-/// no term that matters underflows; logarithms hold always.
-enum class Arithmetic { in_single, in_double, in_logarithms };
+/// no term that matters underflows; double precision relative to the largest term of every group where these are
+/// beyond it; logarithms hold always.
+enum class Arithmetic { in_single, in_double, in_scaled, in_logarithms };
 
 /// The cheapest arithmetic that keeps the bound for this field and tolerance in every block that it does not
 /// overflow.
@@ -54,7 +55,10 @@ public:
   /// of it when its exponent is 1.
   BlockUnits block_units;
   ExactUnits exact_units; ///< the same when the arithmetic is not in_single
-  LocalBox box;           ///< of the block
+  /// in_scaled, where exact_units are relative: log2 of what the power of each group is multiplied with as it joins
+  /// the sum of the one around it, in the order in which OpenGroups closes them.
+  std::vector<double> group_shift;
+  LocalBox box; ///< of the block
   int64_t group_of(int32_t u) const { return near_.group[static_cast<size_t>(kept_[static_cast<size_t>(u)])]; }
 
 private:
@@ -74,6 +78,7 @@ private:
   double drop(double budget);
   bool take_atoms();
   bool place_exactly(Vec3d middle);
+  bool scale_groups(double range);
   bool surely_inside(Vec3d middle, Vec3d half);
   Vec3d octant_middle(int octant) const {
     return part_middle_ + 4 * h_ * Vec3d{octant & 4 ? 1.0 : -1.0, octant & 2 ? 1.0 : -1.0, octant & 1 ? 1.0 : -1.0};
@@ -84,13 +89,14 @@ private:
   const double lower_, upper_, within_;
   const double slack_; ///< what single precision can do to an upper bound of G, relative
   const float rough_root_error_ = rough_root_error();
-  const Arithmetic least_;  ///< what was asked for
-  double reach_ = 0;        ///< Å, the largest cutoff
-  double largest_peak_ = 0; ///< ln
-  double blur_ = 0;         ///< what single precision can do to ln of a bound; 0 where slack_ covers that
-  double blurred_ = 1;      ///< e^blur_
-  double bent_ = 1;         ///< what curvature alone may divide G by from a block's middle to its corner
-  bool scaled_;             ///< upper bounds need more range than single precision has
+  const Arithmetic least_;       ///< what was asked for
+  double reach_ = 0;             ///< Å, the largest cutoff
+  double largest_peak_ = 0;      ///< ln
+  std::vector<double> steepest_; ///< largest exponent of each level, 1 or more
+  double blur_ = 0;              ///< what single precision can do to ln of a bound; 0 where slack_ covers that
+  double blurred_ = 1;           ///< e^blur_
+  double bent_ = 1;              ///< what curvature alone may divide G by from a block's middle to its corner
+  bool scaled_;                  ///< upper bounds need more range than single precision has
   Vec3d node_middle_, part_middle_;
   double h_ = 0;
   double dropped_in_part_ = 0, dropped_ = 0; ///< bounds on what goes with groups dropped in the part, in the block

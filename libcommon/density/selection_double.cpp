@@ -2,7 +2,9 @@
 #include "density/selection.hpp"
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 namespace molmesh::density {
 
@@ -61,7 +63,49 @@ bool Selection::place_exactly(Vec3d middle) {
     widest = std::max(widest, wide);
     highest = std::max(highest, std::abs(p * to.log2_term[u]));
   }
-  return widest < 500 && highest < 1000; // what multiplies a power, and the power, may both be as large
+  // What multiplies a power, and the power, may both be as large.
+  return arithmetic == Arithmetic::in_scaled ? scale_groups(2 * widest) : widest < 500 && highest < 1000;
+}
+
+/// Makes exact_units' powers relative to the largest of their group at the block's middle, whose logarithm
+/// group_shift has, and so on up the levels; G itself is not relative. range: log2 of how far a power may be from
+/// what it is at the middle. False, and nothing has changed, when double precision does not hold the sums.
+bool Selection::scale_groups(double range) {
+  constexpr double terms = 32; // log2 of how many there may be
+  range += terms;
+  bool holds = range < 1000;
+  for (size_t l = 1; l < steepest_.size(); ++l) {
+    range = steepest_[l] * range + terms;
+    holds = holds && range < 1000;
+  }
+  if (!holds)
+    return false;
+  OpenGroups groups(f_);
+  struct Sum {
+    double largest = -std::numeric_limits<double>::infinity();
+    std::vector<size_t> closed; ///< groups that have joined it
+  };
+  std::vector<Sum> open(groups.levels() + 1);
+  ExactUnits& u = exact_units;
+  group_shift.clear();
+  size_t unit = 0, first = 0; // at work; of the open group
+  const auto close = [&](size_t l, int64_t g) {
+    const auto [largest, closed] = std::exchange(open[l], {});
+    for (const size_t k : closed)
+      group_shift[k] -= largest;
+    for (; l == 1 && first < unit; ++first)
+      u.log2_term[first] -= largest / u.exponent[first];
+    const double raised = f_.level[l].exponent[static_cast<size_t>(g)] * largest;
+    open[l + 1].largest = std::max(open[l + 1].largest, raised);
+    open[l + 1].closed.push_back(group_shift.size());
+    group_shift.push_back(raised);
+  };
+  for (; unit < static_cast<size_t>(u.n); ++unit) {
+    groups.enter(group_of(static_cast<int32_t>(unit)), close);
+    open[1].largest = std::max(open[1].largest, u.exponent[unit] * u.log2_term[unit]);
+  }
+  groups.finish(close);
+  return true;
 }
 
 } // namespace molmesh::density

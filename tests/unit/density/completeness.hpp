@@ -1,10 +1,16 @@
 // completeness.hpp — a sparse density grid against the field summed by brute force: I1 to I3 of the design.
 #pragma once
+#include "density/density.hpp"
 #include "unit/density/oracle.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
 
 namespace molmesh::test {
+
+inline BlockGrid compute(const Hierarchy& h, const density::Options& o) {
+  density::Counts counts;
+  return density::to_block_grid(density::compute(h, o, counts), 1);
+}
 
 /// Worst |G_file - G| over ε·max(1, G) on a sample of the active points.
 inline double worst_error(const Hierarchy& h, const BlockGrid& g, int samples) {

@@ -10,15 +10,7 @@
 
 using namespace molmesh;
 using test::check_equal;
-
-namespace {
-
-BlockGrid compute(const Hierarchy& h, const density::Options& o) {
-  density::Counts counts;
-  return density::to_block_grid(density::compute(h, o, counts), 1);
-}
-
-} // namespace
+using test::compute;
 
 TEST_CASE("values are within the tolerance for exponents from 0.02 to 4 and any depth") {
   const std::vector<std::vector<double>> settings = {
@@ -203,48 +195,6 @@ TEST_CASE("a field that never reaches the band is refused") {
   o.band_lower = 0.9e6;
   o.band_upper = 1.1e6;
   CHECK(test::refusal(Status::failed, [&] { compute(h, o); }).find("isovalue") != std::string::npos);
-}
-
-TEST_CASE("terms, powers and sums beyond single precision keep every cell of the band") {
-  const auto complete = [](const Hierarchy& h, const density::Options& o) {
-    const BlockGrid g = compute(h, o);
-    CHECK(std::all_of(g.value.begin(), g.value.end(), [](float v) { return std::isfinite(v); }));
-    test::check_complete(h, g);
-  };
-  density::Options o;
-  o.spacing = 1;
-  for (const double radius : {9.6, 10.0, 11.5, 14.0, 20.0})
-    for (const double exponent : {1.0, 0.3}) {
-      INFO("radius " << radius << ", exponent " << exponent);
-      Hierarchy h;
-      h.atom.push_back({{0.1, 0.2, 0.3}, radius});
-      h.level = {{"residue", {{"r", exponent, 0, 1}}}};
-      complete(h, o);
-    }
-  for (const std::vector<double>& exponents : {std::vector<double>{0.3, 1}, {20, 1}, {0.5, 8}}) {
-    INFO("innermost exponent " << exponents[0]);
-    const Hierarchy h = test::random_chains(2, 8, 6, exponents, 41);
-    density::Options steep = o;
-    steep.decay = exponents[0] == 0.3 ? 50 : 1;
-    steep.tolerance = 1e-4;
-    complete(h, steep);
-  }
-  o.tolerance = 1e-6;
-  o.atoms = density::AtomSearch::all;
-  Hierarchy two;
-  two.atom.push_back({{0, 0, 0}, 11.0});
-  two.atom.push_back({{14, 3, 2}, 2.0});
-  complete(two, o);
-}
-
-TEST_CASE("a value that a float does not hold is refused where the file would need it") {
-  Hierarchy h;
-  h.atom.push_back({{0, 0, 0}, 40.0});
-  density::Options o;
-  o.spacing = 2;
-  CHECK(test::refusal(Status::usage, [&] { compute(h, o); }).find("--spacing") != std::string::npos);
-  o.decay = 1e6;
-  CHECK(test::refusal(Status::usage, [&] { compute(h, o); }).find("--decay") != std::string::npos);
 }
 
 TEST_CASE("a band narrower than the tolerance is refused") {
