@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <ostream>
 
@@ -100,7 +101,9 @@ void write_ccp4(std::ostream& out, const BlockGrid& grid, const std::string& fil
   std::memcpy(header + 212, "\x44\x44\0\0", 4); // little-endian
   put(55, static_cast<float>(m.deviation));
   put(56, int32_t{1});
-  const std::string label = grid.info.creator + ", isovalue " + std::to_string(grid.info.isovalue);
+  char isovalue[40];
+  std::snprintf(isovalue, sizeof isovalue, "%.9g", grid.info.isovalue);
+  const std::string label = grid.info.creator + ", isovalue " + isovalue;
   std::memset(header + 224, ' ', 80);
   std::memcpy(header + 224, label.data(), std::min<size_t>(80, label.size()));
   out.write(header, sizeof header);

@@ -46,7 +46,9 @@ def with_vdb_print(path, e):
         print("no vdb_print")
         sys.exit(77)
     text = subprocess.run(["vdb_print", "-l", "-m", path], check=True, capture_output=True, text=True).stdout
-    for line in ("density", "Tree_float_5_4_3", f"isovalue: {e['metadata']['isovalue']:g}", f"source: {e['metadata']['source']}"):
+    text = " ".join(text.split())
+    for line in ("density", "Tree_float_5_4_3", f"isovalue: {e['metadata']['isovalue']:g}",
+                 f"source: {e['metadata']['source']}", f"Number of active voxels: {e['active']:,}"):
         if line not in text:
             sys.exit(f"vdb_print: no '{line}' in\n{text}")
 
