@@ -90,7 +90,7 @@ Status run_tool(const Options& o, cli::Run& run) {
 
   run.phase("read");
   cli::InputFile input(o.input);
-  cli::OutputFile output(o.output);
+  cli::OutputFile output(o.output, cli::OutputFile::Content::binary);
   const BlockGrid grid = formats::read_vdb(input.stream(), input.name(), options.threads);
   contour::Summary summary;
   TetMesh mesh;

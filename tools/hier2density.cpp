@@ -96,7 +96,7 @@ void report(cli::Run& r, const density::Band& band, const formats::Leaves& leave
 Status run(const Options& o, cli::Run& r) {
   density::Options d = density_options(o);
   cli::InputFile in(o.input);
-  cli::OutputFile out(o.output);
+  cli::OutputFile out(o.output, cli::OutputFile::Content::binary);
   r.phase("read");
   const Hierarchy h = formats::read_hier(in.stream(), in.name());
   formats::Leaves leaves(o.resolved_threads());

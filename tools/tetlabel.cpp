@@ -66,7 +66,7 @@ Status run_tool(const Options& o, cli::Run& run) {
     fail(Status::usage, "both inputs are standard input, expected at most one");
   run.phase("read");
   cli::InputFile structure(o.hierarchy), input(o.input);
-  cli::OutputFile output(o.output);
+  cli::OutputFile output(o.output, cli::OutputFile::Content::binary);
   const Hierarchy h = formats::read_hier(structure.stream(), structure.name());
   const std::vector<label::NamedBoundary> boundary = select(o, h);
   TetMesh mesh = formats::read_vtu(input.stream(), input.name(), nullptr, formats::CellArrays::keep);

@@ -70,7 +70,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   if (!o.hier.empty())
     structure.emplace(o.hier);
   cli::InputFile input(o.input);
-  cli::OutputFile output(o.output);
+  cli::OutputFile output(o.output, cli::OutputFile::Content::binary);
   std::optional<BlockGrid> grid;
   if (density)
     grid = formats::read_vdb(density->stream(), density->name(), threads);

@@ -90,7 +90,7 @@ int NotingBuffer::sync() {
   return done;
 }
 
-OutputFile::OutputFile(const std::string& path)
+OutputFile::OutputFile(const std::string& path, Content content)
     : path_(path), target_(path), written_(path), standard_(standard_stream(path)),
       noting_(standard_ == STDOUT_FILENO   ? std::cout.rdbuf()
               : standard_ == STDERR_FILENO ? std::cerr.rdbuf()
@@ -101,6 +101,8 @@ OutputFile::OutputFile(const std::string& path)
       errno = EBADF;
       refuse("cannot write");
     }
+    if (content == Content::binary && isatty(standard_))
+      fail(Status::usage, "--output: found a terminal, expected a file or a pipe for what is not text");
     return;
   }
   std::error_code none;

@@ -48,10 +48,11 @@ private:
 /// "-" is standard output, and so is the regular file it was redirected to. A regular file is written as
 /// PATH.tmp.PID beside it and renamed by commit(); without commit(), or when a signal ends the process, nothing is
 /// left behind and an older file of that name stays as it was. A symbolic link is followed; a device or named pipe
-/// is written directly. Throws Error(not_written).
+/// is written directly. Throws Error(not_written), and Error(usage) for binary content on a terminal.
 class OutputFile {
 public:
-  explicit OutputFile(const std::string& path);
+  enum class Content { text, binary }; ///< binary: not to a terminal
+  explicit OutputFile(const std::string& path, Content content = Content::text);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
   std::ostream& stream();
