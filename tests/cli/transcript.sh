@@ -5,7 +5,8 @@
 #
 # A transcript: `$ command` is given to bash in an empty folder that the whole file shares, with BIN first in PATH and
 # $SOURCE set; `> line` is expected on standard output, `! line` on standard error, `? N` is the exit status (0 when
-# absent); `…` in an expected line stands for any text; `#` is a comment. --record writes what happened into FILE.
+# absent); `…` in an expected line stands for any text; `#` is a comment. `% command` is what the transcript needs: where
+# that fails it says so and is skipped (77). --record writes what happened into FILE.
 set -u
 record=no
 unset MAKEFLAGS MFLAGS MAKELEVEL MAKEFILES # make check is how this is often run
@@ -66,8 +67,11 @@ while IFS= read -r line || [ -n "$line" ]; do
     '> '* | '>') line=${line#>}; out+=${line#' '}$'\n' ;;
     '! '* | '!') line=${line#!}; err+=${line#' '}$'\n' ;;
     '? '*) status=${line#'? '} ;;
+    '% '*)
+      finish; recorded+=$line$'\n'
+      bash -c "${line#'% '}" >/dev/null 2>&1 </dev/null || { echo "$file: skipped, not here: ${line#'% '}"; exit 77; } ;;
     '' | '#'*) finish; recorded+=$line$'\n' ;;
-    *) echo "$file:$line_number: found '$line', expected a line that begins with \$, >, !, ? or #"; exit 1 ;;
+    *) echo "$file:$line_number: found '$line', expected a line that begins with \$, >, !, ?, % or #"; exit 1 ;;
   esac
 done <"$file"
 finish
