@@ -40,7 +40,7 @@ case $last in density | mesh | improve) ;; *) echo "gpu.sh: -l: expected density
 failed() { status=1; echo "gpu.sh: FAILED: $*"; }
 
 sources() { # of the driver. What needs Highway, nanoflann or METIS is not used by it, or stands in alone/.
-  (cd "$root" && ls cuda/*/*.cu cuda/*/*.cpp libcommon/{par,molecule,density,contour,contour/detail,improve,mesh}/*.cpp \
+  (cd "$root" && ls cuda/*/*.cu cuda/*/*.cpp libcommon/cli/{memory,control_groups}.cpp libcommon/{par,molecule,density,contour,contour/detail,improve,mesh}/*.cpp \
     formats/hier/{hier_reader,text}.cpp tests/gpu/*.cpp tests/gpu/alone/*.cpp tests/gpu/*.cu 2>/dev/null |
     grep -vE '_kernel.cpp|cluster_tree.cpp|partition.cpp|carry.cpp')
 }

@@ -38,7 +38,8 @@ Status run(const Options& o, cli::Run& r) {
   const int threads = o.resolved_threads();
   const std::string format = format_of(o);
   cli::InputFile in(o.input);
-  cli::OutputFile out(o.output);
+  using Content = cli::OutputFile::Content;
+  cli::OutputFile out(o.output, format == "dx" ? Content::text : Content::binary);
   r.phase("read");
   const BlockGrid grid = formats::read_vdb(in.stream(), in.name(), threads);
   r.counts["grid_points"] = {grid.frame.points.x, grid.frame.points.y, grid.frame.points.z};

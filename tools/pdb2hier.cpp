@@ -113,7 +113,6 @@ void resolve(Options& o) {
 }
 
 Status run(Options& o, cli::Run& run) {
-  o.resolved_threads();
   resolve(o);
   run.phase("read");
   cli::InputFile in(o.input);

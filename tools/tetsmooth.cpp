@@ -80,7 +80,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   formats::VtuNotes notes;
   TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes, formats::CellArrays::keep);
   if (grid)
-    require_same_source(mesh, !notes.isovalue_missing, grid->info, o.density);
+    require_same_source(mesh, !notes.isovalue_missing, grid->info, density->name());
   const CarriedArrays arrays(mesh);
   run.counts.update({{"elements_before", mesh.tet.size()}, {"points_before", mesh.point.size()}});
   improve::Options options{.iterations = o.iterations, .threads = threads, .measure_later = true};
@@ -112,6 +112,7 @@ Status run_tool(const Options& o, cli::Run& run) {
                      {"contractions", c.contractions},
                      {"splits", c.splits},
                      {"hand_overs", c.hand_overs},
+                     {"nestings", c.nestings},
                      {"quality_before", json(result.before)},
                      {"quality_after", json(result.after)}});
   if (grid)

@@ -37,10 +37,14 @@ public:
     lattice_ = &lattice;
     // The host's logarithms, beside the kernels up to the elements.
     isosurface_ = std::async(std::launch::async, [&grid = lattice.grid(), threads = threads_] {
-      return std::make_unique<const improve::Isosurface>(grid, threads); // the grid outlives stage and lattice
+      return std::make_unique<const improve::Isosurface>(grid, threads); // until let_go()
     });
     b_.plan(40 * static_cast<int64_t>(lattice.grid().value.size())); // with as many surface cells as usual
     selection_.find_surface(lattice);
+  }
+  void let_go() noexcept override {
+    if (isosurface_.valid())
+      isosurface_.wait();
   }
   void select_leaves(const contour::RefineOptions& options) override {
     selection_.select_leaves(*lattice_, options);

@@ -97,9 +97,8 @@ struct ListClusters {
 
 /// In single precision, when everything above the innermost level is a plain sum: value[512·b + 64·i + 8·j + k] of
 /// block b = order[n]. A term is a product of three factors that are at most 1, so nothing overflows; terms that
-/// underflow are those that may be dropped (arithmetic_for).
+/// underflow are those that may be dropped (single_holds).
 struct EvaluateBlock {
-  static constexpr int team_size = 32;
   FieldView f;
   BlockFrame frame;
   const Key* key;

@@ -1,6 +1,8 @@
 // device.cu — the driver, the device and the host's memory, asked once.
+#include "cli/memory.hpp"
 #include "cuda/par/device.hpp"
 #include "error.hpp"
+#include <algorithm>
 #include <cuda_runtime.h>
 #include <fstream>
 
@@ -32,11 +34,13 @@ std::string device_name() {
 }
 
 int64_t free_host_memory() {
+  const int64_t granted =
+      cli::memory_at_hand(); // to this process' control groups; swap, which it counts, is no use
   std::ifstream in("/proc/meminfo");
   std::string name, unit;
   for (int64_t kib = 0; in >> name >> kib && std::getline(in, unit);)
     if (name == "MemAvailable:")
-      return kib * 1024;
+      return granted < 0 ? kib * 1024 : std::min(kib * 1024, granted);
   return 0;
 }
 

@@ -49,6 +49,7 @@ public:
       return piece;
     }
     Piece piece{nullptr, bytes + bytes / 8 + 4096}; // the next may be a little larger
+    free_.reserve(++pieces_);                       // giving back allocates nothing
     check(cudaMallocHost(&piece.data, piece.bytes), "page-locked memory");
     return piece;
   }
@@ -58,6 +59,7 @@ public:
 
 private:
   std::vector<Piece> free_;
+  size_t pieces_ = 0;
 };
 class Locked {
 public:

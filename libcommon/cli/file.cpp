@@ -90,6 +90,22 @@ int NotingBuffer::sync() {
   return done;
 }
 
+namespace {
+
+bool is_terminal(const std::string& path) {
+  const int file = open(path.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK);
+  const bool found = file >= 0 && isatty(file);
+  if (file >= 0)
+    close(file);
+  return found;
+}
+
+[[noreturn]] void refuse_terminal() {
+  fail(Status::usage, "--output: found a terminal, expected a file or a pipe for what is not text");
+}
+
+} // namespace
+
 OutputFile::OutputFile(const std::string& path, Content content)
     : path_(path), target_(path), written_(path), standard_(standard_stream(path)),
       noting_(standard_ == STDOUT_FILENO   ? std::cout.rdbuf()
@@ -102,13 +118,15 @@ OutputFile::OutputFile(const std::string& path, Content content)
       refuse("cannot write");
     }
     if (content == Content::binary && isatty(standard_))
-      fail(Status::usage, "--output: found a terminal, expected a file or a pipe for what is not text");
+      refuse_terminal();
     return;
   }
   std::error_code none;
   const fs::file_status status = fs::status(path, none);
   if (fs::is_symlink(fs::symlink_status(path, none)) && fs::is_regular_file(status))
     target_ = fs::canonical(path).string();
+  if (content == Content::binary && fs::is_character_file(status) && is_terminal(path))
+    refuse_terminal();
   errno = 0;
   if (!fs::exists(status) || fs::is_regular_file(status)) {
     written_ = target_ + ".tmp." + std::to_string(getpid());

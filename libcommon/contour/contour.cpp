@@ -12,6 +12,10 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   const FinerGrid finer = finer_grid(grid, options);
   summary.halvings = finer.halvings;
   const Lattice lattice(finer.grid ? *finer.grid : grid, options.box, with_outside, options.threads);
+  const struct LetGo {
+    Stages& stages;
+    ~LetGo() { stages.let_go(); }
+  } before_the_grid_is_gone{stages};
   stages.find_surface(lattice);
   on_phase("octree");
   RefineOptions refine_options;

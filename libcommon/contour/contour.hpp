@@ -9,8 +9,10 @@
 
 namespace molmesh::contour {
 
-/// on_phase is called with the name of each phase as it starts. Throws Error(failed) when the grid has no surface
-/// or the surface meets a wall that was not asked to cut it.
+/// on_phase is called with the name of each phase as it starts. Throws Error(failed) when the grid has no surface,
+/// the surface meets a wall that was not asked to cut it, the region asked for is empty, or leaves or elements are
+/// more than can be numbered; Error(usage) for a box that cannot be had; Error(bad_input) for a grid whose band
+/// leaves out corners of crossed cells.
 TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
                 const std::function<void(const std::string&)>& on_phase, Stages& stages);
 /// On options.threads of the host.

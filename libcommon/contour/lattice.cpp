@@ -23,7 +23,8 @@ int level_for(double extent) {
 }
 
 struct IndexBox {
-  Vec3i lower{most_cells, most_cells, most_cells}, upper{-most_cells, -most_cells, -most_cells};
+  static constexpr int32_t none = 1 << 30; // beyond any index of a grid
+  Vec3i lower{none, none, none}, upper{-none, -none, -none};
   bool empty() const { return lower.x > upper.x; }
 };
 IndexBox both(IndexBox a, const IndexBox& b) {

@@ -145,10 +145,7 @@ public:
   float isovalue = 1;
 
   float value(Vec3i p) const { return view_.value(p); }
-  bool inside(Vec3i p) const { return view_.inside(p); }
   Vec3d position(Vec3i p) const { return view_.position(p); }
-  /// Between lattice points, each axis by itself; p within 0 … cells.
-  Vec3d between(Vec3d p) const { return view_.between(p); }
   /// Points into the lattice and its grid.
   const LatticeView& view() const { return view_; }
   const BlockGrid& grid() const { return grid_; }

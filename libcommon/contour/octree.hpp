@@ -151,8 +151,6 @@ public:
   int32_t extent(int32_t leaf) const { return view_.extent(leaf); }
   /// Points into the tree.
   const OctreeView& view() const { return view_; }
-  const LargeArray<OctreeView::Block>& blocks() const { return block_; }
-  const LargeArray<int32_t>& large_leaves() const { return large_; }
 
   const LargeArray<uint64_t> key;  ///< ascending; Morton code of the lower corner
   const LargeArray<uint8_t> level; ///< 0: fine cell

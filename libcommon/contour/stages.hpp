@@ -17,7 +17,7 @@ namespace molmesh::contour {
 class Stages {
 public:
   virtual ~Stages() = default;
-  /// The lattice stays the caller's until the end.
+  /// The lattice and its grid stay the caller's until let_go().
   virtual void find_surface(const Lattice& lattice) = 0;
   virtual void select_leaves(const RefineOptions& options) = 0;
   /// Complex and elements; on_phase as in contour().
@@ -27,6 +27,8 @@ public:
   virtual TetMesh assemble(Options::Meshed meshed) = 0;
   /// Everything but volumes and parts.
   virtual void count(Summary& summary) const = 0;
+  /// From here on nothing reads the lattice or its grid; also after a stage has thrown.
+  virtual void let_go() noexcept {}
 };
 
 class HostStages final : public Stages {

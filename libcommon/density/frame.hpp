@@ -12,7 +12,8 @@ double sufficient_margin(const Field& f, double value);
 double longest_edge(const Box& box, double margin);
 
 /// The grid with spacing h (Å) over `box` widened by `margin` (Å): index (0,0,0) at its lower corner, the last
-/// points at its upper corner or just beyond. Throws Error(usage) for grids past 2^29 points on an axis.
+/// points at its upper corner or just beyond. Throws Error(usage) for grids past 2^29 points on an axis
+/// and atoms more than 10^10 spacings from the origin.
 GridFrame frame_with_spacing(const Box& box, double margin, double h);
 /// The same with exactly n ≥ 2 points along the longest axis.
 GridFrame frame_with_points(const Box& box, double margin, int64_t n);

@@ -108,9 +108,10 @@ private:
   Floats octant_upper_; ///< of near_, per octant: bound on log2 S over it
   int32_t stride_ = 0;  ///< from octant to octant
   float total_effect_ = 0;
-  const float* log2_upper_; ///< of near_ over the box at work
-  Floats upper_of_part_, effect_,
-      ones_; ///< of near_: the same over the part; effect on G of dropping it
+  const float* log2_upper_ = nullptr; ///< of near_ over the box at work
+  Floats upper_of_part_;              ///< of near_: the same over the part
+  Floats effect_;                     ///< of near_: on G, of dropping it
+  Floats ones_;                       ///< as many ones
   UnitMiddles middles_;
   std::vector<std::vector<double>> sum_; ///< per level, per run of units of one group: upper bound of ln S
 };

@@ -1,26 +1,20 @@
 // angles.cpp — the angles of elements of low quality, among which are the extremes.
 #include "improve/angles.hpp"
+#include "geom/tet_measures.hpp"
 #include "mesh/worst.hpp"
 #include "par/par.hpp"
 #include <algorithm>
-#include <cmath>
 
 namespace molmesh::improve {
 namespace {
 
 Angles of_element(const DynamicMesh& m, const Element& e) {
-  std::array<Vec3d, 4> n;
-  for (size_t f = 0; f < 4; ++f) {
-    const auto p = [&](int k) { return m.point[size_t(e.v[size_t(outward_face[f][size_t(k)])])]; };
-    n[f] = cross(p(1) - p(0), p(2) - p(0));
-  }
+  const auto p = [&](size_t i) { return m.point[size_t(e.v[i])]; };
   Angles a;
-  for (size_t i = 0; i < 4; ++i)
-    for (size_t j = i + 1; j < 4; ++j) {
-      const double angle = std::atan2(norm(cross(n[i], n[j])), -dot(n[i], n[j])) * 180 / 3.14159265358979323846;
-      a.min = std::min(a.min, angle);
-      a.max = std::max(a.max, angle);
-    }
+  for (const double angle : dihedrals(p(0), p(1), p(2), p(3)).degree) {
+    a.min = std::min(a.min, angle);
+    a.max = std::max(a.max, angle);
+  }
   a.below_25 = a.min < 25;
   a.above_140 = a.max > 140;
   return a;

@@ -123,7 +123,7 @@ public:
   /// How sheets differs now.
   const Sheets& changed_sheets() const { return changed_sheets_; }
   Counts counts;
-  float goal = 1; ///< quality that elements are missed by in the deficit
+  float goal = 1; ///< elements of less quality count in the deficit
   bool worst_first = true;
   bool straighten = false; ///< operations are to make the surface fit
   bool bold = false;       ///< operations may bend the surface

@@ -14,7 +14,7 @@ bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass
 /// One operation on each bent face of an element and on each vertex off the target, the editor straightening.
 void straighten_element(Editor& editor, const DynamicMesh& m, int32_t t);
 
-/// Of elements, each once.
+/// Ascending by quality, then number; each once.
 void sort_worst_first(const DynamicMesh& m, std::vector<int32_t>& list);
 
 } // namespace molmesh::improve

@@ -67,7 +67,7 @@ public:
   T scan(const char*, T* count, int64_t n) {
     return count[n] = exclusive_scan(count, n);
   }
-  /// Ascending keys; equal keys by their values.
+  /// Ascending keys; nobody counts on the order of equal ones (Backend).
   template <class K, class V>
   void sort_pairs(const char*, K* keys, V* values, int64_t n) {
     std::vector<std::pair<K, V>> pair(static_cast<size_t>(n));
@@ -139,7 +139,6 @@ public:
         n, keys, threads_, key, [&](int64_t slots) { place.emplace(sized(slots)); },
         [&](int64_t slot, int64_t i) { (*place)(slot, i); });
   }
-  int threads() const { return threads_; }
 
 private:
   int threads_for(int64_t n, int64_t grain) const { return n < least_pieces * grain ? 1 : threads_; }

@@ -3,6 +3,7 @@
 #pragma once
 #include "density/large_array.hpp"
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -15,7 +16,8 @@ namespace molmesh::par {
 int default_threads();
 
 /// f(i) for i in [0, n); calls are independent. `grain`: items a thread takes at a time (dynamic schedule).
-/// The first exception thrown by f (lowest chunk not guaranteed) is rethrown after the loop.
+/// The first exception thrown by f (lowest chunk not guaranteed) is rethrown after the loop; of the other items
+/// some are done then.
 template <class F>
 void for_n(int64_t n, int threads, int64_t grain, F&& f) {
   if (n <= 0)
@@ -27,9 +29,12 @@ void for_n(int64_t n, int threads, int64_t grain, F&& f) {
   }
   std::exception_ptr error;
   std::mutex guard;
+  std::atomic<bool> failed = false;
   const int64_t chunks = (n + grain - 1) / grain;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
   for (int64_t c = 0; c < chunks; ++c) {
+    if (failed.load(std::memory_order_relaxed))
+      continue;
     try {
       const int64_t end = std::min(n, (c + 1) * grain);
       for (int64_t i = c * grain; i < end; ++i)
@@ -38,6 +43,7 @@ void for_n(int64_t n, int threads, int64_t grain, F&& f) {
       const std::lock_guard<std::mutex> lock(guard);
       if (!error)
         error = std::current_exception();
+      failed = true;
     }
   }
   if (error)

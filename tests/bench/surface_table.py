@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The default surface beside the solvent-excluded one: volumes and Euler numbers (design.md §4), from our own output.
 
-    surface_table.py BIN FILE... [--spacing H] [--setting 'P_R P_C DECAY [ISOVALUE]']...
+    surface_table.py BIN FILE... [--spacing H] [--setting 'P_R P_C DECAY [ISOVALUE]' | --setting default]...
 
 BIN: folder of the tools. The solvent-excluded volume is that of what is farther than the probe's radius, 1.4 Å, from every place
 where its centre can be; summed on grids of 0.35 and 0.25 Å and extrapolated to none, since its error is proportional to the
@@ -77,7 +77,7 @@ def main():
     parser.add_argument("--spacing", type=float, default=0.5)
     parser.add_argument("--setting", action="append")
     o = parser.parse_args()
-    settings = [tuple(s.split()) for s in o.setting or ["0.3 1 1"]]
+    settings = [tuple(s.split()) for s in o.setting or ["default"]]
     ratio = {s: ([], []) for s in settings}
     print("| structure | atoms | hydrogens | solvent-excluded, Å³ | with room for hydrogens |" + "".join(f" {' '.join(s)}: volume, Euler, components |" for s in settings))
     print("|" + "---|" * (5 + len(settings)))
@@ -87,7 +87,8 @@ def main():
             hier = f"{scratch}/s.hier"
             line, excluded = "", None
             for s in settings:
-                tool(o.bin, "pdb2hier", "-r", f"* P_R={s[0]} P_C={s[1]}", file, "-o", hier)
+                default = s == ("default",)
+                tool(o.bin, "pdb2hier", *([] if default else ["-r", f"* P_R={s[0]} P_C={s[1]}"]), file, "-o", hier)
                 if excluded is None:
                     words = [w.split() for w in open(hier) if w.lstrip().startswith("atom ")]
                     atoms = np.array([[float(x) for x in w[3:7]] for w in words])
@@ -97,7 +98,7 @@ def main():
                         atoms[:, 3] = [radius_with_hydrogens(w[1], w[2], float(w[6])) for w in words]
                         excluded[1] = solvent_excluded_volume(atoms)
                     line = f"| {name} | {len(atoms):,} | {hydrogens:,} | {excluded[0]:,.0f} | {excluded[1]:,.0f} |"
-                volume, euler, components = surface(o.bin, hier, o.spacing, s[2], s[3] if len(s) > 3 else "1", scratch)
+                volume, euler, components = surface(o.bin, hier, o.spacing, "1" if default else s[2], s[3] if len(s) > 3 else "1", scratch)
                 deviation = [100 * (volume / e - 1) for e in excluded]
                 for kind in (0, 1):
                     ratio[s][kind].append(deviation[kind])

@@ -70,6 +70,29 @@ TEST_CASE("boxes: exact walls, a cut through the molecule, few elements far away
   }
 }
 
+TEST_CASE("a mesh does not depend on where the grid's indices begin") {
+  const BlockGrid grid = cube_grid(6, 0.5, atom);
+  BlockGrid moved = grid;
+  for (const int32_t shift : {-(1 << 21), 1 << 21, 1 << 28}) {
+    const Vec3i by{shift, -shift, shift};
+    moved.frame.lower = grid.frame.lower + by;
+    moved.frame.origin = grid.frame.origin - grid.frame.spacing * Vec3d{double(by.x), double(by.y), double(by.z)};
+    for (size_t b = 0; b < grid.corner.size(); ++b)
+      moved.corner[b] = grid.corner[b] + by;
+    for (size_t b = 0; b < grid.inside.size(); ++b)
+      moved.inside[b] = grid.inside[b] + by;
+    for (const auto kind :
+         {contour::BoxRequest::automatic, contour::BoxRequest::factor, contour::BoxRequest::corners}) {
+      Options options;
+      options.box.kind = kind;
+      options.box.scale = 2;
+      options.box.lower = {-7, -7, -1};
+      options.box.upper = {8, 7, 7};
+      CHECK(mesh_of(moved, options).tet == mesh_of(grid, options).tet);
+    }
+  }
+}
+
 TEST_CASE("a surface that meets the wall is refused unless the box was asked to cut it") {
   const BlockGrid grid = cube_grid(2.5, 0.5, atom); // all inside but for nothing: no surface
   Options options;

@@ -5,8 +5,10 @@
 #include "unit/density/completeness.hpp"
 #include "unit/refusal.hpp"
 #include <algorithm>
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <hwy/targets.h>
+#include <new>
 
 using namespace molmesh;
 using test::check_equal;
@@ -231,4 +233,24 @@ TEST_CASE("fields without an end are refused, not searched for it") {
   CHECK(refused(1e100, 0.3, 1));
   CHECK(refused(1e200, 0.3, 1)); // its square is no number
   CHECK(refused(1.7, 1e-300, 1));
+}
+
+TEST_CASE("a thread that fails ends the search, and what others read stays until they have stopped") {
+  const Hierarchy h = test::random_chains(4, 10, 10, {0.3, 1}, 8);
+  density::Options o;
+  o.spacing = 0.3;
+  o.threads = 4;
+  std::atomic<int> calls = 0;
+  int fails_at = 0;
+  o.progress = [&](int64_t, int64_t) {
+    if (++calls == fails_at)
+      throw std::bad_alloc();
+  };
+  compute(h, o);
+  const int all = calls;
+  REQUIRE(all > 30);
+  for (fails_at = 1; fails_at <= all; fails_at += 7) {
+    calls = 0;
+    CHECK_THROWS_AS(compute(h, o), std::bad_alloc);
+  }
 }

@@ -4,8 +4,10 @@
 #include "improve/isosurface.hpp"
 #include "improve/schedule.hpp"
 #include "lattice_mesh.hpp"
+#include "mesh/worst.hpp"
 #include "surface_shape.hpp"
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <random>
 
 using namespace molmesh;
@@ -173,6 +175,21 @@ TEST_CASE("the same mesh at any number of threads") {
   options.threads = 3;
   improve::improve(more, &grid, options);
   CHECK(same(one, more));
+}
+
+TEST_CASE("angles are measured as the elements beyond a limit are counted") {
+  TetMesh mesh = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
+  const auto check = [&](double least, double most) {
+    CHECK(count_beyond(mesh, {least, most}, 2) == 0);
+    CHECK(count_beyond(mesh, {std::nextafter(least, 180), 180}, 2) > 0);
+    CHECK(count_beyond(mesh, {0, std::nextafter(most, 0)}, 2) > 0);
+  };
+  improve::Options none;
+  none.iterations = 0;
+  improve::Result r = improve::improve(mesh, nullptr, none);
+  check(r.before.min, r.before.max);
+  r = improve::improve(mesh, nullptr, {});
+  check(r.after.min, r.after.max);
 }
 
 TEST_CASE("a mesh that is good enough, and no rounds at all, leave everything as it is") {

@@ -113,4 +113,6 @@ TEST_CASE("a launcher's short loops run on the calling thread") {
   std::atomic<int> elsewhere = 0;
   launcher.for_n("short", WhoRuns::grain * par::Launcher::least_pieces - 1, WhoRuns{&elsewhere});
   CHECK(elsewhere == 0);
+  launcher.for_n("long", 16 * WhoRuns::grain * par::Launcher::least_pieces, WhoRuns{&elsewhere});
+  CHECK(elsewhere > 0);
 }
