@@ -95,6 +95,16 @@ struct ListClusters {
   }
 };
 
+/// A sum of any number of terms that is as good as a few terms' (Kahan's).
+struct LongSum {
+  float sum = 0, excess = 0; ///< of sum over what it stands for
+  HD void add(float term) {
+    const float t = term - excess, next = sum + t;
+    excess = (next - sum) - t;
+    sum = next;
+  }
+};
+
 /// In single precision, when everything above the innermost level is a plain sum: value[512·b + 64·i + 8·j + k] of
 /// block b = order[n]. A term is a product of three factors that are at most 1, so nothing overflows; terms that
 /// underflow are those that may be dropped (single_holds).
@@ -119,14 +129,14 @@ struct EvaluateBlock {
     const double h = frame.grid.spacing;
     constexpr double log2e = 1.4426950408889634;
     const float decay = float(log2e * f.decay);
-    float total[columns][8] = {}, sum[columns][8] = {};
+    LongSum total[columns][8], sum[columns][8];
     const auto close = [&](int64_t group) {
       const float p = float(f.exponent[0][group]);
       for (int c = 0; c < columns; ++c)
         for (int i = 0; i < 8; ++i) {
-          const float t = sum[c][i];
-          total[c][i] += p == 1 ? t : p == 0.5f ? std::sqrt(t) : t > 0 ? std::exp2(p * std::log2(t)) : 0.0f;
-          sum[c][i] = 0;
+          const float t = sum[c][i].sum;
+          total[c][i].add(p == 1 ? t : p == 0.5f ? std::sqrt(t) : t > 0 ? std::exp2(p * std::log2(t)) : 0.0f);
+          sum[c][i] = {};
         }
     };
     int64_t open = -1;
@@ -145,21 +155,24 @@ struct EvaluateBlock {
         s.factor[a][k % 24] = std::exp2((axis == 0 ? float(log2e * f.peak[first + a]) : 0.0f) - decay * d * d);
       }
       team.sync();
-      for (int a = 0; a < atoms; ++a) {
-        const float* const x = s.factor[a];
-        for (int col = 0; col < columns; ++col) {
-          const int jk = col * Team::size + team.rank();
+      for (int col = 0; col < columns; ++col) {
+        const int jk = col * Team::size + team.rank();
+        float part[8] = {};
+        for (int a = 0; a < atoms; ++a) {
+          const float* const x = s.factor[a];
           const float yz = x[8 + jk / 8] * x[16 + jk % 8];
           for (int i = 0; i < 8; ++i)
-            sum[col][i] += x[i] * yz;
+            part[i] += x[i] * yz;
         }
+        for (int i = 0; i < 8; ++i)
+          sum[col][i].add(part[i]);
       }
     }
     if (open >= 0)
       close(open);
     for (int col = 0; col < columns; ++col)
       for (int i = 0; i < 8; ++i)
-        value[512 * b + 64 * i + col * Team::size + team.rank()] = total[col][i];
+        value[512 * b + 64 * i + col * Team::size + team.rank()] = total[col][i].sum;
   }
 };
 

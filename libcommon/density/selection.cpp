@@ -33,8 +33,7 @@ Arithmetic arithmetic_for(const Field& f, double tolerance) {
 
 Selection::Selection(const Field& f, const Budget& budget, double lower, double upper, Arithmetic a)
     : arithmetic(a), f_(f), budget_(budget), lower_(lower), upper_(upper),
-      within_(std::min(0.1, budget.within / (1.1 * f.steepest))), slack_(single * std::max(1.0, f.steepest)),
-      least_(a) {
+      within_(std::min(0.1, budget.within / (1.1 * f.steepest))), steep_(std::max(1.0, f.steepest)), least_(a) {
   double gentlest = infinity;
   for (const double p : f.level[0].exponent)
     gentlest = std::min(gentlest, p);
@@ -60,8 +59,7 @@ LocalBox Selection::local(Vec3d middle, Vec3d half) const {
 /// node's middle by 2^-24 of its size, which is multiplied with 2κr.
 double Selection::blur(double h) const {
   constexpr double rounding = 1.0 / (1 << 19);
-  const double q = std::max(1.0, f_.steepest),
-               b = q * rounding * (largest_peak_ + 7 * std::sqrt(f_.decay * largest_peak_) * h);
+  const double q = steep_, b = q * rounding * (largest_peak_ + 7 * std::sqrt(f_.decay * largest_peak_) * h);
   return b < 0.5 * single * q ? 0 : b;
 }
 
@@ -166,9 +164,30 @@ bool Selection::take_atoms() {
   }
   if (!holds && absolute && arithmetic == Arithmetic::in_single)
     take(false); // few blocks, of coarse grids: better too many atoms
+  if (holds && arithmetic == Arithmetic::in_single && !rounds_little()) {
+    holds = false;
+    if (u.direct) { // double precision wants each unit's reference
+      u.direct = u.folded = false;
+      take(absolute);
+    }
+  }
   added += 0.5 * blurred_ * static_cast<double>(u.dropped);
   atoms = u.begin[static_cast<size_t>(n)];
   return holds;
+}
+
+/// Whether adding the block's terms one after the other in single precision keeps within the share for rounding:
+/// every addition may lose half a last digit of the sum so far, and powers make up to steep_ times as much of it.
+bool Selection::rounds_little() const {
+  const std::vector<int32_t>& begin = block_units.begin;
+  const auto n = static_cast<size_t>(units);
+  const auto fits = [&](int64_t terms) { return steep_ * ulp * static_cast<double>(terms) <= budget_.rounding; };
+  if (fits(units + begin[n]))
+    return true;
+  int32_t most = 0; // of one unit
+  for (size_t i = 0; i < n; ++i)
+    most = std::max(most, begin[i + 1] - begin[i]);
+  return fits(units + most);
 }
 
 void Selection::select(int octant, bool classify) {

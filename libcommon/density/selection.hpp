@@ -12,10 +12,10 @@ namespace molmesh::density {
 /// Shares of the tolerance ε (field.md §2): far clusters, groups dropped in a part of a node and in a block, atoms
 /// dropped within groups, square roots of few digits, digits of values not kept; the rest is for rounding.
 struct Budget {
-  double far, part, block, within, roots, digits;
+  double far, part, block, within, roots, digits, rounding;
   explicit Budget(double tolerance)
       : far(0.05 * tolerance), part(0.05 * tolerance), block(0.3 * tolerance), within(0.2 * tolerance),
-        roots(0.1 * tolerance), digits(0.2 * tolerance) {}
+        roots(0.1 * tolerance), digits(0.2 * tolerance), rounding(0.1 * tolerance) {}
   /// What a bound on G has to allow for.
   double total() const { return far + part + block + within + roots + digits; }
 };
@@ -62,7 +62,8 @@ public:
   int64_t group_of(int32_t u) const { return near_.group[static_cast<size_t>(kept_[static_cast<size_t>(u)])]; }
 
 private:
-  static constexpr double single = 1e-3; ///< more than single precision can do to a bound, relative
+  static constexpr double single = 1e-3;         ///< more than single precision can do to a bound, relative
+  static constexpr double ulp = 1.0 / (1 << 24); ///< what adding a term can do to a sum in it
   /// Units of near_ that are not dropped.
   std::span<const int32_t> kept() const { return std::span(kept_).first(static_cast<size_t>(units)); }
   LocalBox local(Vec3d middle, Vec3d half) const;
@@ -74,9 +75,12 @@ private:
   void take_octant(int octant, bool classify);
   double upper_bound();
   double blur(double h) const;
-  bool surely_outside() { return (1 + slack_) * blurred_ * upper_bound() + 2 * budget_.total() < lower_; }
+  bool surely_outside() { return (1 + slack()) * blurred_ * upper_bound() + 2 * budget_.total() < lower_; }
   double drop(double budget);
   bool take_atoms();
+  bool rounds_little() const;
+  /// What single precision can do to an upper bound of G, relative: more where many terms are added.
+  double slack() const { return steep_ * (single + ulp * near_.n); }
   bool place_exactly(Vec3d middle);
   bool scale_groups(double range);
   bool surely_inside(Vec3d middle, Vec3d half);
@@ -87,13 +91,13 @@ private:
   const Field& f_;
   const Budget budget_;
   const double lower_, upper_, within_;
-  const double slack_; ///< what single precision can do to an upper bound of G, relative
+  const double steep_; ///< largest product of exponents up to the root, 1 or more
   const float rough_root_error_ = rough_root_error();
   const Arithmetic least_;       ///< what was asked for
   double reach_ = 0;             ///< Å, the largest cutoff
   double largest_peak_ = 0;      ///< ln
   std::vector<double> steepest_; ///< largest exponent of each level, 1 or more
-  double blur_ = 0;              ///< what single precision can do to ln of a bound; 0 where slack_ covers that
+  double blur_ = 0;              ///< what single precision can do to ln of a bound; 0 where slack() covers that
   double blurred_ = 1;           ///< e^blur_
   double bent_ = 1;              ///< what curvature alone may divide G by from a block's middle to its corner
   bool scaled_;                  ///< upper bounds need more range than single precision has

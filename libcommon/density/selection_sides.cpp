@@ -133,7 +133,8 @@ bool Selection::surely_inside(Vec3d middle, Vec3d half) {
   const double least =
       root.middle - (std::abs(g.x) * half.x + std::abs(g.y) * half.y + std::abs(g.z) * half.z) - bend - blur_;
   const double total = budget_.total();
-  return std::exp(least) * (1 - 4 * total - 1e-3) > upper_ + 4 * total;
+  const double rounding = single + steep_ * ulp * static_cast<double>(units + atoms);
+  return std::exp(least) * (1 - 4 * total - rounding) > upper_ + 4 * total;
 }
 
 } // namespace molmesh::density

@@ -88,6 +88,11 @@ TEST_CASE("device density: values are within the tolerance for exponents from 0.
     }
 }
 
+TEST_CASE("device density: sums of very many terms are within the tolerance") {
+  for (const Hierarchy& h : test::crowds(30000))
+    CHECK(test::worst_error(h, on_backend(h, test::around_a_crowd(4.1e-5)).grid, 40) <= 1);
+}
+
 TEST_CASE("device density: no band cell is missed, no point is on the wrong side, and the host finds the same") {
   for (const std::vector<double>& exponents :
        {std::vector<double>{0.3, 1}, {0.5, 1}, {0.1, 0.5}, {1, 2}, {}, {0.4, 0.7, 1}}) {

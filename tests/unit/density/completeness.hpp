@@ -12,6 +12,17 @@ inline BlockGrid compute(const Hierarchy& h, const density::Options& o) {
   return density::to_block_grid(density::compute(h, o, counts), 1);
 }
 
+/// Where all atoms of a crowd count.
+inline density::Options around_a_crowd(double tolerance, double spacing = 1.5) {
+  density::Options o;
+  o.spacing = spacing;
+  o.tolerance = tolerance;
+  o.isovalue = 1000;
+  o.band_lower = 900;
+  o.band_upper = 1100;
+  return o;
+}
+
 /// Worst |G_file - G| over ε·max(1, G) on a sample of the active points.
 inline double worst_error(const Hierarchy& h, const BlockGrid& g, int samples) {
   std::mt19937 random(5);

@@ -235,6 +235,13 @@ TEST_CASE("fields without an end are refused, not searched for it") {
   CHECK(refused(1.7, 1e-300, 1));
 }
 
+TEST_CASE("sums of very many terms are within the tolerance") {
+  for (const Hierarchy& h : test::crowds(30000))
+    for (const double tolerance : {1e-3, 1e-4, 4.1e-5})
+      for (const double spacing : {0.5, 1.5}) // with a reference for each unit's terms, and without
+        CHECK(test::worst_error(h, compute(h, test::around_a_crowd(tolerance, spacing)), 40) <= 1);
+}
+
 TEST_CASE("a thread that fails ends the search, and what others read stays until they have stopped") {
   const Hierarchy h = test::random_chains(4, 10, 10, {0.3, 1}, 8);
   density::Options o;

@@ -66,4 +66,19 @@ inline Hierarchy random_chains(int chains, int residues, int atoms, std::vector<
   return h;
 }
 
+/// n atoms in one place: as one sum, as one power of it, and as the powers of pairs.
+inline std::vector<Hierarchy> crowds(int64_t n) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> u(0, 0.1);
+  Hierarchy one;
+  for (int64_t i = 0; i < n; ++i)
+    one.atom.push_back({{0.2 + u(random), 0.1 + u(random), u(random)}, 1.7});
+  Hierarchy power = one, pairs = one;
+  power.level = {{"residue", {{"r", 0.9, 0, n}}}};
+  pairs.level.push_back({"residue", {}});
+  for (int64_t i = 0; i < n; i += 2)
+    pairs.level[0].group.push_back({"r", 0.9, i, i + 2});
+  return {one, power, pairs};
+}
+
 } // namespace molmesh::test
