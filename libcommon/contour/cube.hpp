@@ -51,6 +51,14 @@ struct CellTopology {
   HD bool split() const { return loops > 1; }
 };
 
+/// A corner's value minus the isovalue, never 0: a corner at the isovalue is outside, and so counts as below it by
+/// less than any other float is.
+HD inline double over_isovalue(float value, float isovalue) {
+  constexpr double least = 1e-9; // of the isovalue, > 0; floats differ from it by 3e-8 and more
+  const double over = double(value) - double(isovalue);
+  return over != 0 ? over : -least * double(isovalue);
+}
+
 /// Which diagonal a face with these values (in face order, minus the isovalue) needs. The same for both its cells.
 HD inline Diagonal face_diagonal(double a, double b, double c, double d) {
   const bool in = a > 0;

@@ -57,7 +57,7 @@ struct ComplexView {
     const SurfaceCell& cell = cells[first_cell[leaf]];
     double v[8];
     for (int c = 0; c < 8; ++c)
-      v[c] = double(cell.value[c]) - double(lattice.isovalue);
+      v[c] = over_isovalue(cell.value[c], lattice.isovalue);
     return cell_topology(v);
   }
   HD int32_t piece_dual(int32_t leaf, const SplitCell& s, const Patch& p) const {

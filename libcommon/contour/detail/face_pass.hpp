@@ -84,7 +84,7 @@ private:
     if (both_crossed && c_.tree.level[leaf] == 0) {
       double v[4];
       for (int i = 0; i < 4; ++i)
-        v[i] = double(c_.value[vertex(corner[i])]) - double(c_.lattice.isovalue);
+        v[i] = over_isovalue(c_.value[vertex(corner[i])], c_.lattice.isovalue);
       diagonal = face_diagonal(v[0], v[1], v[2], v[3]);
     }
     if (diagonal == Diagonal::none) {

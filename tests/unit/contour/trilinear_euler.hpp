@@ -19,7 +19,8 @@ inline int64_t trilinear_euler(const BlockGrid& grid) {
       for (p.z = grid.frame.lower.z; p.z < end.z; ++p.z) {
         double v[8];
         for (int c = 0; c < 8; ++c)
-          v[c] = value_at(grid, index, p + Vec3i{c & 1, c >> 1 & 1, c >> 2}) - grid.info.isovalue;
+          v[c] = contour::over_isovalue(value_at(grid, index, p + Vec3i{c & 1, c >> 1 & 1, c >> 2}),
+                                        static_cast<float>(grid.info.isovalue));
         std::array<int, 8> parent;
         std::iota(parent.begin(), parent.end(), 0);
         const auto find = [&](int i) {
