@@ -115,7 +115,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   cli::InputFile input(o.input);
   Outputs outputs;
   for (const std::string& name : o.outputs())
-    outputs.emplace_back(name);
+    outputs.emplace_back(name, format == "stl" ? cli::OutputFile::Content::binary : cli::OutputFile::Content::text);
   const TetMesh mesh = formats::read_vtu(input.stream(), input.name(), nullptr, formats::CellArrays::keep);
   run.counts["points"] = mesh.point.size();
   run.counts["tetrahedra"] = mesh.tet.size();

@@ -48,9 +48,8 @@ std::vector<label::NamedBoundary> select(const Options& o, const Hierarchy& h) {
     if (name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") !=
         std::string::npos)
       fail(Status::usage, "--boundary: found the name '" + name + "', expected letters, digits, _ and -");
-    if (formats::is_own_boundary_name(name))
-      fail(Status::usage,
-           "--boundary: found the name '" + name + "', which the meshes' own boundary has, expected another");
+    if (formats::is_own_name(name))
+      fail(Status::usage, "--boundary: found the name '" + name + "', which is the meshes' own, expected another");
     const std::vector<uint8_t> atom = formats::select_atoms(h, text.substr(equals + 1), "--boundary " + name);
     const auto same = std::find_if(boundary.begin(), boundary.end(), [&](const auto& b) { return b.name == name; });
     if (same == boundary.end())

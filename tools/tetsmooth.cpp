@@ -34,8 +34,7 @@ struct Options : cli::Common {
 void describe(CLI::App& app, Options& o) {
   app.add_option("--density", o.density, "density grid (.vdb): surface points are kept on its isosurface")
       ->type_name("FILE");
-  app.add_option("--hier", o.hier,
-                 "molecular hierarchy (.hier): names what is nearest to elements that miss the quality")
+  app.add_option("--hier", o.hier, "hierarchy (.hier): names what is nearest to elements that miss the quality")
       ->type_name("FILE");
   app.add_option("--iterations", o.iterations, "rounds at most; 0 leaves the mesh as it is")
       ->check(CLI::Range(0, 1000));
@@ -115,9 +114,11 @@ Status run_tool(const Options& o, cli::Run& run) {
                      {"nestings", c.nestings},
                      {"quality_before", json(result.before)},
                      {"quality_after", json(result.after)}});
-  if (grid)
+  if (grid && o.iterations > 0)
     run.counts["surface"] = json(result.fidelity);
-  if (grid && o.iterations > 0 && 2 * result.fidelity.points_off > result.fidelity.points)
+  if (result.in_vain)
+    run.note("as it came: the worst element was worse after " + std::to_string(result.rounds) + " rounds");
+  else if (grid && o.iterations > 0 && 2 * result.fidelity.points_off > result.fidelity.points)
     run.note("off the isosurface: " + std::to_string(result.fidelity.points_off) + " of " +
              std::to_string(result.fidelity.points) + " surface points: is this the mesh's density?");
   if (size_t(o.parts) > mesh.tet.size() && o.parts != Options().parts)
@@ -125,8 +126,8 @@ Status run_tool(const Options& o, cli::Run& run) {
   arrays.put_into(mesh, threads);
   if (!arrays.empty())
     run.note("carried from the nearest element before: " + arrays.names());
-  run.phase("write");
   mesh.creator = cli::creator("tetsmooth");
+  run.phase("write");
   formats::write_vtu(output.stream(), mesh);
   output.commit();
   if (run.verbose)

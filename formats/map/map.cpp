@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <ostream>
 
 namespace molmesh::formats {
@@ -51,10 +52,13 @@ Moments moments(const BlockGrid& grid, int64_t points) {
   // Points beyond the grid in blocks at its wall are left out; blocks that are not there hold 0.
   const Vec3i lo = grid.frame.lower, hi = lo + grid.frame.points;
   double sum = 0, squares = 0;
-  Moments m;
+  int64_t added = 0;
+  Moments m{std::numeric_limits<float>::max(), 0};
   const auto add = [&](double v) {
+    ++added;
     sum += v;
     squares += v * v;
+    m.least = std::min(m.least, static_cast<float>(v));
     m.most = std::max(m.most, static_cast<float>(v));
   };
   const auto block = [&](Vec3i corner, auto value) {
@@ -67,6 +71,8 @@ Moments moments(const BlockGrid& grid, int64_t points) {
     block(grid.corner[b], [&](size_t s) { return grid.value[512 * b + s]; });
   for (const Vec3i& c : grid.inside)
     block(c, [&](size_t) { return static_cast<float>(grid.info.inside_value); });
+  if (added < points)
+    m.least = std::min(m.least, 0.0f);
   m.mean = sum / static_cast<double>(points);
   m.deviation = std::sqrt(std::max(0.0, squares / static_cast<double>(points) - m.mean * m.mean));
   return m;

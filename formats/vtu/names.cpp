@@ -50,7 +50,10 @@ void add_patch_names(TetMesh& m, const std::map<int32_t, std::string>& name) {
   set_text(m, "patch_names", text);
 }
 
-bool is_own_boundary_name(const std::string& name) {
+bool is_own_name(const std::string& name) {
+  for (const int32_t region : {molecule, outside, cavity}) // groups of one name are one in some readers
+    if (name == region_name(region))
+      return true;
   return std::find(std::begin(own_boundary), std::end(own_boundary), name) != std::end(own_boundary);
 }
 

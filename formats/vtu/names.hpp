@@ -11,8 +11,8 @@ void add_level_names(TetMesh& m, const Hierarchy& h);
 /// Adds patch_names: lines "ID NAME".
 void add_patch_names(TetMesh& m, const std::map<int32_t, std::string>& name);
 
-/// Is it a name that every mesh's boundary has: surface, box_x0 … box_z1?
-bool is_own_boundary_name(const std::string& name);
+/// Is it a name that meshes have themselves: of a region, or surface, box_x0 … box_z1?
+bool is_own_name(const std::string& name);
 /// Names of regions: molecule, outside, cavity, else region_N.
 std::string region_name(int32_t region);
 /// Names of the boundary labels that occur in `label`: surface, box_x0 … box_z1, then what patch_names has, else

@@ -128,7 +128,7 @@ std::string one_line(const std::string& text) {
   return line;
 }
 
-/// No output is a file that is read, and the report is neither.
+/// No output is a file that is read, from standard input too, and the report is neither.
 void require_distinct_files(const CLI::App& app, const Common& o) {
   std::vector<std::string> inputs;
   for (const CLI::Option* option : app.get_options()) {
@@ -139,13 +139,14 @@ void require_distinct_files(const CLI::App& app, const Common& o) {
   }
   if (o.keep_input)
     inputs.push_back(o.input);
+  std::replace(inputs.begin(), inputs.end(), std::string("-"), std::string("/dev/stdin"));
   for (const std::string& output : o.outputs())
     for (const std::string& input : inputs)
       if (same_file(output, input))
         fail(Status::usage, "-o: found " + output + ", which is an input, expected another file");
   if (o.report.empty())
     return;
-  inputs.push_back(o.input);
+  inputs.push_back(o.input == "-" ? "/dev/stdin" : o.input);
   for (const std::string& input : inputs)
     if (same_file(o.report, input))
       fail(Status::usage, "--report: found " + o.report + ", expected another file than the input");

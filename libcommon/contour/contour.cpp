@@ -33,7 +33,9 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   on_phase("assembly");
   TetMesh mesh = stages.assemble(options.meshed);
   if (mesh.tet.empty())
-    fail(Status::failed, "the region asked for has no part in the box: nothing to mesh");
+    fail(Status::failed, "the region asked for has no part in the box" +
+                             std::string(options.drop_below > 0 ? ", or --drop-below has taken all of it" : "") +
+                             ": nothing to mesh");
   mesh.isovalue = grid.info.isovalue;
   mesh.source = grid.info.source;
 

@@ -109,7 +109,7 @@ Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls, i
   double least = 1e300;
   for (int a = 0; a < 3; ++a) {
     const double extent = (upper[a] - lower[a]) / h;
-    if (!(extent >= 4))
+    if (!(extent >= 4 * (1 - 1e-9)))
       fail(Status::usage,
            "--box: found an extent of " + std::to_string(extent * h) + " Å, expected at least four grid spacings");
     if (!(extent < most_cells / 2))

@@ -41,6 +41,8 @@ const Stage stages[] = {
     {0.97, 1, 32, true, lifted},
 };
 constexpr size_t refresh_offset = 4;
+// What settling and straightening spoil takes this many rounds to heal: with fewer they may spoil nothing.
+constexpr int rounds_to_heal = 8;
 // Where two cells a part leave fewer than this, first passes take one: a single part would be one thread's work.
 constexpr int64_t fewest_parts = 8;
 
@@ -93,6 +95,10 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
 
   begin("improve");
   const float at_first = schedule.worst();
+  // Angles count, where needles would let them fall further.
+  const float no_worse = std::min(
+      goal, static_cast<float>(std::min(angle_quality(result.before.min), angle_quality(result.before.max))));
+  const bool heals = options.iterations >= rounds_to_heal;
   const bool small = schedule.parts_at_surface(2) < fewest_parts;
   for (int round = 0; round < options.iterations && schedule.worst() < goal; ++round) {
     const Stage& stage = stages[std::min<size_t>(size_t(round), std::size(stages) - 1)];
@@ -117,18 +123,19 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
       result.counts += c;
       done += c.total();
     }
-    if (density && size_t(round) >= straighten_first && size_t(round) <= straighten_last) {
+    if (density && heals && size_t(round) >= straighten_first && size_t(round) <= straighten_last) {
       pass.goal = static_cast<float>(straighten_share * straighten_share * goal);
       pass.guard = straight;
       result.counts += schedule.straighten(pass);
     }
     ++result.rounds;
     if (density && round == 0) // not before: what is squeezed between surface and grid is gone now
-      settle(1);
+      settle(heals ? 1 : no_worse);
     if (density) {
       if (size_t(round) + 1 == refresh_offset)
         isosurface->set_offset(isosurface->offset() + chord_offset(m, *isosurface, options.threads));
-      result.counts += schedule.settle(size_t(round) < refresh_offset ? rising : goal, kept);
+      const float floor = size_t(round) < refresh_offset ? rising : goal;
+      result.counts += schedule.settle(heals ? floor : std::max(floor, no_worse), kept);
     }
     if (done == 0 && size_t(round) + 1 >= std::size(stages))
       break;
@@ -147,6 +154,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     result.counts += c;
   }
   if (result.counts.total() == 0 || schedule.worst() < at_first) { // the file that came in, in its own order
+    result.in_vain = result.counts.total() > 0;
     result.counts = {};
     if (density)
       result.fidelity = measure_fidelity(build(mesh, 180, options.threads), *isosurface, options.threads);

@@ -24,6 +24,7 @@ struct Options {
 struct Result {
   Counts counts;
   int rounds = 0;
+  bool in_vain = false; ///< the worst element would have become worse: the mesh is as it came
   Angles before, after;
   Fidelity fidelity; ///< after (with a density)
   /// [4 tets] The tetrahedron beyond each face, -1: none; empty where the mesh stayed as it came.

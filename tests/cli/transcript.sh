@@ -12,7 +12,7 @@ record=no
 unset MAKEFLAGS MFLAGS MAKELEVEL MAKEFILES # make check is how this is often run
 if [ "$1" = --record ]; then record=yes; shift; fi
 bin=$(realpath "$1") SOURCE=$(realpath "$2") file=$(realpath "$3")
-export TOOLS="pdb2hier hier2density density2tet tetsmooth tetstat tetlabel tetconvert density2map"
+export TOOLS="pdb2hier hier2density density2tet tetsmooth tetstat density2map"
 export SOURCE PATH="$bin:$PATH" LC_ALL=C.UTF-8
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -177,6 +177,22 @@ TEST_CASE("the same mesh at any number of threads") {
   CHECK(same(one, more));
 }
 
+TEST_CASE("a few rounds improve, and nothing becomes worse for want of more") {
+  const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  const TetMesh first = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
+  for (const int rounds : {1, 2, 4, 7}) {
+    CAPTURE(rounds);
+    TetMesh mesh = first;
+    improve::Options few;
+    few.iterations = rounds;
+    const improve::Result r = improve::improve(mesh, &grid, few);
+    CHECK_FALSE(r.in_vain);
+    CHECK(r.after.min > r.before.min);
+    CHECK(r.after.max < r.before.max);
+    CHECK(r.after.below_25 < r.before.below_25);
+  }
+}
+
 TEST_CASE("angles are measured as the elements beyond a limit are counted") {
   TetMesh mesh = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
   const auto check = [&](double least, double most) {
