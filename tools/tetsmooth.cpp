@@ -120,7 +120,7 @@ Status run_tool(const Options& o, cli::Run& run) {
     run.note("as it came: the worst element was worse after " + std::to_string(result.rounds) + " rounds");
   else if (grid && o.iterations > 0 && 2 * result.fidelity.points_off > result.fidelity.points)
     run.note("off the isosurface: " + std::to_string(result.fidelity.points_off) + " of " +
-             std::to_string(result.fidelity.points) + " surface points: is this the mesh's density?");
+             std::to_string(result.fidelity.points) + " surface points: too thin, or another density?");
   if (size_t(o.parts) > mesh.tet.size() && o.parts != Options().parts)
     run.note("--parts: one for each of the " + std::to_string(mesh.tet.size()) + " elements, there are no more");
   arrays.put_into(mesh, threads);

@@ -5,11 +5,25 @@
 #include "improve/schedule.hpp"
 #include "par/par.hpp"
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 namespace molmesh::improve {
 
 constexpr size_t room_for_shells = 3072; // elements, Editor::nest
+
+// A body thinner than the grid is off with most of its points: trials at each would take minutes, and bring some
+// back.
+bool Schedule::is_hopeless(size_t points_off) const {
+  constexpr size_t few = 64, share = 4;
+  if (points_off <= few)
+    return false;
+  const auto count = par::reduce(
+      static_cast<int64_t>(m_.point.size()), threads_, int64_t{0},
+      [&](int64_t v) { return int64_t{m_.incident[size_t(v)] >= 0 && m_.vertex[size_t(v)].kind == Kind::surface}; },
+      std::plus<>{});
+  return share * points_off > static_cast<size_t>(count);
+}
 
 Counts Schedule::recover(const Pass& pass) {
   const int32_t time = ++time_;
@@ -18,7 +32,7 @@ Counts Schedule::recover(const Pass& pass) {
   const std::vector<int32_t> points = choose(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
     return m_.incident[size_t(v)] >= 0 && look.off(static_cast<int32_t>(v)) > 1;
   });
-  if (points.empty())
+  if (points.empty() || is_hopeless(points.size()))
     return {};
   set_parts_around(points, passes_++, pass.cell * cell_);
   const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
