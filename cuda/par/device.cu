@@ -34,8 +34,8 @@ std::string device_name() {
 }
 
 int64_t free_host_memory() {
-  const int64_t granted =
-      cli::memory_at_hand(); // to this process' control groups; swap, which it counts, is no use
+  // To this process' control groups; swap, which it counts, is no use.
+  const int64_t granted = cli::memory_at_hand();
   std::ifstream in("/proc/meminfo");
   std::string name, unit;
   for (int64_t kib = 0; in >> name >> kib && std::getline(in, unit);)
