@@ -4,7 +4,6 @@
 #include "error.hpp"
 #include <algorithm>
 #include <cuda_runtime.h>
-#include <fstream>
 
 namespace molmesh::cuda {
 
@@ -34,14 +33,7 @@ std::string device_name() {
 }
 
 int64_t free_host_memory() {
-  // To this process' control groups; swap, which it counts, is no use.
-  const int64_t granted = cli::memory_at_hand();
-  std::ifstream in("/proc/meminfo");
-  std::string name, unit;
-  for (int64_t kib = 0; in >> name >> kib && std::getline(in, unit);)
-    if (name == "MemAvailable:")
-      return granted < 0 ? kib * 1024 : std::min(kib * 1024, granted);
-  return 0;
+  return std::max<int64_t>(0, cli::memory_at_hand({}, cli::Swap::is_no_use));
 }
 
 } // namespace molmesh::cuda

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int64_t unknown = std::numeric_limits<int64_t>::max();
 
-/// MemAvailable and SwapFree, in bytes.
-int64_t of_system(const std::filesystem::path& proc) {
+/// MemAvailable and, where it counts, SwapFree, in bytes.
+int64_t of_system(const std::filesystem::path& proc, Swap swap) {
   std::ifstream in(proc / "meminfo");
   int64_t sum = 0;
   bool found = false;
@@ -21,7 +21,7 @@ int64_t of_system(const std::filesystem::path& proc) {
     std::istringstream words(line);
     std::string name;
     int64_t kilobytes = 0;
-    if (words >> name >> kilobytes && (name == "MemAvailable:" || name == "SwapFree:")) {
+    if (words >> name >> kilobytes && (name == "MemAvailable:" || (swap == Swap::counts && name == "SwapFree:"))) {
       found = found || name == "MemAvailable:";
       sum += 1024 * kilobytes;
     }
@@ -38,8 +38,8 @@ int64_t limit_in(const std::filesystem::path& file) {
 
 } // namespace
 
-int64_t memory_at_hand(const SystemFiles& system) {
-  int64_t least = of_system(system.proc);
+int64_t memory_at_hand(const SystemFiles& system, Swap swap) {
+  int64_t least = of_system(system.proc, swap);
   for_each_group(system, "memory", [&](const std::filesystem::path& folder, int version) {
     least = std::min(least, limit_in(folder / (version == 2 ? "memory.max" : "memory.limit_in_bytes")));
   });

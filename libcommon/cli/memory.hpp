@@ -5,9 +5,10 @@
 
 namespace molmesh::cli {
 
-/// Bytes that the system has at hand, swap included, or the least that a control group around this process grants.
-/// -1: not known.
-int64_t memory_at_hand(const SystemFiles& system = {});
+enum class Swap { counts, is_no_use }; ///< no use: to memory that stays where it is
+
+/// Bytes that the system has at hand, or the least that a control group around this process grants. -1: not known.
+int64_t memory_at_hand(const SystemFiles& system = {}, Swap swap = Swap::counts);
 
 /// From here on asking for more is std::bad_alloc, a line and a status, where the system would grant it and kill
 /// the process as it is used. The stacks of that many threads, of which little is used, come on top. Nothing

@@ -5,7 +5,6 @@
 #include "improve/schedule.hpp"
 #include "par/par.hpp"
 #include <algorithm>
-#include <functional>
 #include <utility>
 
 namespace molmesh::improve {
@@ -16,13 +15,7 @@ constexpr size_t room_for_shells = 3072; // elements, Editor::nest
 // back.
 bool Schedule::is_hopeless(size_t points_off) const {
   constexpr size_t few = 64, share = 4;
-  if (points_off <= few)
-    return false;
-  const auto count = par::reduce(
-      static_cast<int64_t>(m_.point.size()), threads_, int64_t{0},
-      [&](int64_t v) { return int64_t{m_.incident[size_t(v)] >= 0 && m_.vertex[size_t(v)].kind == Kind::surface}; },
-      std::plus<>{});
-  return share * points_off > static_cast<size_t>(count);
+  return points_off > few && share * points_off > surface_points().size();
 }
 
 Counts Schedule::recover(const Pass& pass) {

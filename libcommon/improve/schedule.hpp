@@ -35,6 +35,7 @@ public:
   int64_t below(float goal) const;
 
 private:
+  std::vector<int32_t> surface_points() const;
   bool is_hopeless(size_t points_off) const; ///< recover()
   using Work = std::function<void(Editor&, std::vector<int32_t>&)>;
   /// It is below the goal, and has changed since it was last tried.

@@ -15,24 +15,24 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 
-# mesh NAME REGION SPACING TETSMOOTH [DENSITY2TET]: NAME.hier to NAME.vtu
+# mesh NAME REGION SPACING [DENSITY2TET]: NAME.hier to NAME.vtu
 mesh() {
   hier2density -q --spacing "$3" "$1.hier" -o "$1.vdb"
-  density2tet -q --region "$2" ${5:-} "$1.vdb" -o "$1.tet.vtu"
-  tetsmooth -q $4 --density "$1.vdb" "$1.tet.vtu" -o "$1.vtu"
+  density2tet -q --region "$2" ${4:-} "$1.vdb" -o "$1.tet.vtu"
+  tetsmooth -q --density "$1.vdb" "$1.tet.vtu" -o "$1.vtu"
 }
 
 case $what in
 ion) # Born's energy within 1 %
   pdb2hier -q --levels none "$SOURCE/tests/data/ion.pqr" -o ion.hier
-  mesh ion both 0.25 "" "--box 10"
+  mesh ion both 0.25 "--box 10"
   tetconvert -q ion.vtu -o ion.mesh
   solve born ion.mesh 1 3
   ;;
 harmonic) # a harmonic polynomial to 1e-10; with one tetrahedron missing it must not be found
   pdb2hier -q "$SOURCE/tests/data/1tii.pdb" -o 1tii.hier
   for region in interior exterior both; do
-    mesh 1tii $region 5 ""
+    mesh 1tii $region 5
     tetconvert -q 1tii.vtu -o 1tii.mesh
     inner=0
     [ $region != both ] || inner=1
@@ -53,7 +53,7 @@ diffusion) # a rate that converges with the mesh
   site=()
   for residue in 72 74 124 286 341; do site+=(--boundary "active_site=//*/$residue"); done # the gorge's mouth
   for spacing in 4 2.83 2; do
-    mesh ache exterior $spacing "" "--box 3 --cavities fill"
+    mesh ache exterior $spacing "--box 3 --cavities fill"
     tetconvert -q ache.vtu -o ache.mesh
     echo -n "$spacing Å, the whole surface: "
     solve diffusion ache.mesh 1 | tee -a whole

@@ -19,7 +19,9 @@ struct System {
     std::filesystem::create_directories(path.parent_path());
     std::ofstream(path) << text;
   }
-  int64_t at_hand() const { return cli::memory_at_hand({folder / "proc", folder / "groups"}); }
+  int64_t at_hand(cli::Swap swap = cli::Swap::counts) const {
+    return cli::memory_at_hand({folder / "proc", folder / "groups"}, swap);
+  }
   int cpus() const { return cli::cpus_granted({folder / "proc", folder / "groups"}); }
 };
 
@@ -30,6 +32,7 @@ TEST_CASE("the least of what the system has and what control groups grant") {
   CHECK(s.at_hand() == -1);
   s.says("proc/meminfo", "MemTotal:  9000 kB\nMemAvailable:  8000 kB\nSwapTotal: 7 kB\nSwapFree:  3 kB\n");
   CHECK(s.at_hand() == 8003 * 1024);
+  CHECK(s.at_hand(cli::Swap::is_no_use) == 8000 * 1024);
   SECTION("version 2: a group, or one above it") {
     s.says("proc/self/cgroup", "0::/slurm/job_7/step_0\n");
     s.says("groups/slurm/job_7/step_0/memory.max", "max\n");
