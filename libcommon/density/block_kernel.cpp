@@ -1,5 +1,6 @@
 // block_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "density/block_kernel.hpp"
+#include "density/dispatch.hpp"
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -235,28 +236,28 @@ HWY_EXPORT(rough_root_error_simd);
 HWY_EXPORT(instruction_set_name);
 
 void add_units(const BlockUnits& units, const BlockRows<float>& rows, int32_t first, int32_t last, float* sum) {
-  HWY_DYNAMIC_DISPATCH(add_units_simd)(units, rows, first, last, sum);
+  MOLMESH_DISPATCH(add_units_simd)(units, rows, first, last, sum);
 }
 void add_units(const ExactUnits& units, const BlockRows<double>& rows, int32_t first, int32_t last, double* sum) {
-  HWY_DYNAMIC_DISPATCH(add_exact_units_simd)(units, rows, first, last, sum);
+  MOLMESH_DISPATCH(add_exact_units_simd)(units, rows, first, last, sum);
 }
 void sum_units(const BlockUnits& units, const BlockRows<float>& rows, float start, float* sum) {
-  HWY_DYNAMIC_DISPATCH(sum_units_simd)(units, rows, start, sum);
+  MOLMESH_DISPATCH(sum_units_simd)(units, rows, start, sum);
 }
 void sum_units(const ExactUnits& units, const BlockRows<double>& rows, double start, double* sum) {
-  HWY_DYNAMIC_DISPATCH(sum_exact_units_simd)(units, rows, start, sum);
+  MOLMESH_DISPATCH(sum_exact_units_simd)(units, rows, start, sum);
 }
 void raise_group(float p, float shift, float* from, float* to) {
-  HWY_DYNAMIC_DISPATCH(raise_group_simd)(p, shift, from, to);
+  MOLMESH_DISPATCH(raise_group_simd)(p, shift, from, to);
 }
 void raise_group(double p, double shift, double* from, double* to) {
-  HWY_DYNAMIC_DISPATCH(raise_exact_group_simd)(p, shift, from, to);
+  MOLMESH_DISPATCH(raise_exact_group_simd)(p, shift, from, to);
 }
 float rough_root_error() {
-  return HWY_DYNAMIC_DISPATCH(rough_root_error_simd)();
+  return MOLMESH_DISPATCH(rough_root_error_simd)();
 }
 const char* instruction_set() {
-  return HWY_DYNAMIC_DISPATCH(instruction_set_name)();
+  return MOLMESH_DISPATCH(instruction_set_name)();
 }
 
 } // namespace molmesh::density

@@ -1,5 +1,6 @@
 // bounds_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "density/bounds_kernel.hpp"
+#include "density/dispatch.hpp"
 #include <algorithm>
 #include <numbers>
 
@@ -224,24 +225,24 @@ HWY_EXPORT(keep_large_simd);
 
 void place_atoms(const ClusteredAtoms& from, const int32_t* list, size_t n, const double* middle,
                  LocalClusters& to) {
-  HWY_DYNAMIC_DISPATCH(place_atoms_simd)(from, list, n, middle, to);
+  MOLMESH_DISPATCH(place_atoms_simd)(from, list, n, middle, to);
 }
 int32_t near_clusters(const LocalClusters& c, int32_t n, const LocalBox& box, int32_t* out) {
-  return HWY_DYNAMIC_DISPATCH(near_clusters_simd)(c, n, box, out);
+  return MOLMESH_DISPATCH(near_clusters_simd)(c, n, box, out);
 }
 void bound_units(const LocalClusters& node, const NearUnits& units, const LocalBox& box, float decay, bool scaled,
                  float* log2_upper) {
-  HWY_DYNAMIC_DISPATCH(bound_units_simd)(node, units, box, decay, scaled, log2_upper);
+  MOLMESH_DISPATCH(bound_units_simd)(node, units, box, decay, scaled, log2_upper);
 }
 void bound_octants(const LocalClusters& node, const NearUnits& units, const LocalBox* octant, float decay,
                    bool scaled, float* log2_upper, int32_t stride) {
-  HWY_DYNAMIC_DISPATCH(bound_octants_simd)(node, units, octant, decay, scaled, log2_upper, stride);
+  MOLMESH_DISPATCH(bound_octants_simd)(node, units, octant, decay, scaled, log2_upper, stride);
 }
 float power_terms(const float* log2_sum, const float* exponent, int32_t n, float* term) {
-  return HWY_DYNAMIC_DISPATCH(power_terms_simd)(log2_sum, exponent, n, term);
+  return MOLMESH_DISPATCH(power_terms_simd)(log2_sum, exponent, n, term);
 }
 int32_t keep_large(const float* effect, int32_t n, float budget, int32_t* out, float* left) {
-  return HWY_DYNAMIC_DISPATCH(keep_large_simd)(effect, n, budget, out, left);
+  return MOLMESH_DISPATCH(keep_large_simd)(effect, n, budget, out, left);
 }
 
 } // namespace molmesh::density

@@ -1,5 +1,6 @@
 // middles_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "density/middles_kernel.hpp"
+#include "density/dispatch.hpp"
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
@@ -69,11 +70,11 @@ HWY_EXPORT(unit_middles_simd);
 HWY_EXPORT(sum_of_powers_simd);
 
 void unit_middles(const BlockUnits& units, const LocalBox& block, float decay, UnitMiddles& to) {
-  HWY_DYNAMIC_DISPATCH(unit_middles_simd)(units, block, decay, to);
+  MOLMESH_DISPATCH(unit_middles_simd)(units, block, decay, to);
 }
 void sum_of_powers(int32_t n, const float* exponent, const float* log2_sum, const float* x, const float* y,
                    const float* z, const LocalBox& block, float decay, float* value, float* gradient) {
-  HWY_DYNAMIC_DISPATCH(sum_of_powers_simd)(n, exponent, log2_sum, x, y, z, block, decay, value, gradient);
+  MOLMESH_DISPATCH(sum_of_powers_simd)(n, exponent, log2_sum, x, y, z, block, decay, value, gradient);
 }
 
 } // namespace molmesh::density

@@ -30,20 +30,6 @@ int64_t points_in_grid(const GridFrame& frame, Vec3i corner) {
   return n;
 }
 
-bool any(const uint64_t* mask) {
-  return std::any_of(mask, mask + 8, [](uint64_t v) { return v != 0; });
-}
-
-/// The same without points on the node's faces, of which its neighbors may know better.
-bool any_within(const uint64_t* mask, int b) {
-  const Vec3i at = block_at(b);
-  uint64_t inner = ~uint64_t{0};
-  inner &= at.y == 0 ? ~uint64_t{0} << 8 : at.y == node_blocks - 1 ? ~uint64_t{0} >> 8 : inner;
-  inner &= at.z == 0 ? ~uint64_t{0} / 255 * 254 : at.z == node_blocks - 1 ? ~uint64_t{0} / 255 * 127 : inner;
-  return std::any_of(mask + (at.x == 0), mask + 8 - (at.x == node_blocks - 1),
-                     [=](uint64_t v) { return (v & inner) != 0; });
-}
-
 } // namespace
 
 NodeSearch::NodeSearch(const Field& f, const GridFrame& frame, const SearchOptions& o, const NodeList& nodes)
@@ -163,9 +149,8 @@ void NodeSearch::store(NodeState& s, Workspace& w) const {
   rows_from_words(w.far_above, w.beyond.above);
   likely_band_points(to, w.beyond, cells_of(s.corner), w.rows);
   words_from_rows(w.rows, to.stored);
-  uint64_t left_out = 0;
-  for (int b = 0; b < blocks_a_node; ++b)
-    left_out |= any_within(to.stored.word[b], b) ? uint64_t{1} << b & ~s.known : 0;
+  // Points on the node's faces aside, of which its neighbors may know better.
+  const uint64_t left_out = blocks_of_inner(to.stored) & ~s.known;
   evaluate_left_out(left_out, s.known, s.corner, w);
   s.known |= left_out;
   for (uint64_t left = s.known; left; left &= left - 1) {
@@ -212,20 +197,13 @@ void NodeSearch::finish(NodeState& s, const FacedBits* const* below, const Faced
   words_from_rows(w.rows, w.active);
   w.counts.active_points += count_points(w.active);
   words_from_rows(*above[13], w.above);
-  uint64_t wanting = 0; // blocks that bounds left out, or of which too few values were kept
-  for (int b = 0; b < blocks_a_node; ++b) {
-    const uint64_t* const active = w.active.word[b];
-    const uint64_t bit = uint64_t{1} << b;
-    const bool known = s.known & bit;
-    if (any(active))
-      s.kept |= bit;
-    else
-      s.closed |= known && w.above.word[b][0] & 1 ? bit : 0;
-    if (s.kept & bit && !(known && std::equal(active, active + 8, s.sides->stored.word[b],
-                                              [](uint64_t a, uint64_t v) { return !(a & ~v); })))
-      wanting |= bit;
-  }
+  s.kept = blocks_of(w.active);
+  for (uint64_t left = s.known & ~s.kept; left; left &= left - 1)
+    if (const int b = std::countr_zero(left); w.above.word[b][0] & 1)
+      s.closed |= uint64_t{1} << b;
   s.closed &= ~s.kept;
+  // Blocks that bounds left out, or of which too few values were kept.
+  const uint64_t wanting = s.kept & ~(s.known ? s.known & ~blocks_of_rest(w.active, s.sides->stored) : 0);
   if (wanting) {
     w.selection.enter(middle_of(s.corner, node_blocks), nodes_.clusters_at(s.corner));
     evaluate_left_out(wanting, s.known, s.corner, w);

@@ -1,5 +1,6 @@
 // rows_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "density/rows_kernel.hpp"
+#include "density/dispatch.hpp"
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
@@ -211,10 +212,10 @@ HWY_EXPORT(make_rows_simd);
 HWY_EXPORT(make_exact_rows_simd);
 
 void make_rows(const BlockUnits& units, const BlockShape<float>& shape, BlockRows<float>& rows) {
-  HWY_DYNAMIC_DISPATCH(make_rows_simd)(units, shape, rows);
+  MOLMESH_DISPATCH(make_rows_simd)(units, shape, rows);
 }
 void make_rows(const ExactUnits& units, const BlockShape<double>& shape, BlockRows<double>& rows) {
-  HWY_DYNAMIC_DISPATCH(make_exact_rows_simd)(units, shape, rows);
+  MOLMESH_DISPATCH(make_exact_rows_simd)(units, shape, rows);
 }
 
 } // namespace molmesh::density

@@ -34,48 +34,46 @@ void Selection::enter(Vec3d middle, std::span<const int32_t> clusters) {
 /// near_: the units of the clusters of the node that are near a part of it.
 void Selection::gather(const LocalBox& part) {
   found_.resize(local_.cluster.size() + 16);
-  const int32_t n = near_clusters(local_, static_cast<int32_t>(local_.cluster.size()), part, found_.data());
-  const auto clusters = static_cast<size_t>(n);
+  const auto clusters = static_cast<size_t>(
+      near_clusters(local_, static_cast<int32_t>(local_.cluster.size()), part, found_.data()));
   NearUnits& u = near_;
-  u.begin.clear();
-  u.group.clear();
-  u.cluster.assign(found_.begin(), found_.begin() + n);
+  u.begin.resize(clusters + 1);
+  u.group.resize(clusters);
   u.exponent.resize(clusters + 16);
+  u.cluster.resize(clusters);
+  size_t n = 0;
   for (size_t i = 0; i < clusters; ++i) {
     const auto c = static_cast<size_t>(found_[i]);
+    u.cluster[i] = found_[i];
     // With P = 1 a cluster can go without the others of its group.
-    if (u.group.empty() || local_.exponent[c] == 1 || u.group.back() != local_.group[c]) {
-      u.exponent[u.group.size()] = local_.exponent[c];
-      u.begin.push_back(static_cast<int32_t>(i));
-      u.group.push_back(local_.group[c]);
+    if (n == 0 || local_.exponent[c] == 1 || u.group[n - 1] != local_.group[c]) {
+      u.exponent[n] = local_.exponent[c];
+      u.group[n] = local_.group[c];
+      u.begin[n++] = static_cast<int32_t>(i);
     }
   }
-  u.n = static_cast<int32_t>(u.group.size());
-  u.begin.push_back(n);
+  u.n = static_cast<int32_t>(n);
+  u.begin[n] = static_cast<int32_t>(clusters);
   std::fill_n(u.exponent.begin() + u.n, 16, 1.0f);
 }
 
 /// Forgets the units of near_ that are not kept.
 void Selection::keep_only() {
   NearUnits& u = near_;
-  size_t units_to = 0, to = 0;
+  size_t units_to = 0;
+  int32_t to = 0;
   for (const int32_t k : kept()) {
     const auto n = static_cast<size_t>(k);
-    const auto begin = static_cast<size_t>(u.begin[n]), end = static_cast<size_t>(u.begin[n + 1]);
-    std::copy(u.cluster.begin() + static_cast<std::ptrdiff_t>(begin),
-              u.cluster.begin() + static_cast<std::ptrdiff_t>(end),
-              u.cluster.begin() + static_cast<std::ptrdiff_t>(to));
-    u.begin[units_to] = static_cast<int32_t>(to);
+    const int32_t begin = u.begin[n], end = u.begin[n + 1];
+    u.begin[units_to] = to;
+    for (int32_t c = begin; c < end; ++c)
+      u.cluster[static_cast<size_t>(to++)] = u.cluster[static_cast<size_t>(c)];
     u.group[units_to] = u.group[n];
     u.exponent[units_to++] = u.exponent[n];
-    to += end - begin;
   }
   u.n = static_cast<int32_t>(units_to);
-  u.begin[units_to] = static_cast<int32_t>(to);
-  u.begin.resize(units_to + 1);
-  u.group.resize(units_to);
-  u.cluster.resize(to);
-  u.exponent.resize(units_to + 16);
+  u.begin[units_to] = to;
+  u.cluster.resize(static_cast<size_t>(to));
   std::fill_n(u.exponent.begin() + u.n, 16, 1.0f);
 }
 

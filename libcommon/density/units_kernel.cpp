@@ -1,5 +1,6 @@
 // units_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "density/units_kernel.hpp"
+#include "density/dispatch.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -222,7 +223,7 @@ HWY_EXPORT(take_units_simd);
 
 bool take_units(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
                 const LocalBox& block, float decay, const float* log2_upper, float within, BlockUnits& to) {
-  return HWY_DYNAMIC_DISPATCH(take_units_simd)(node, from, list, n, block, decay, log2_upper, within, to);
+  return MOLMESH_DISPATCH(take_units_simd)(node, from, list, n, block, decay, log2_upper, within, to);
 }
 
 } // namespace molmesh::density

@@ -1,5 +1,6 @@
 // values_kernel.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "density/values_kernel.hpp"
+#include "density/dispatch.hpp"
 #include <bit>
 #include <cstring>
 
@@ -126,16 +127,16 @@ HWY_EXPORT(pack_active_simd);
 HWY_EXPORT(pack_part_simd);
 
 void round_values(float* v, int bits) {
-  HWY_DYNAMIC_DISPATCH(round_values_simd)(v, bits);
+  MOLMESH_DISPATCH(round_values_simd)(v, bits);
 }
 void classify_points(float* v, int bits, Limits near, Limits far, SideWords near_words, SideWords far_words) {
-  HWY_DYNAMIC_DISPATCH(classify_points_simd)(v, bits, near, far, near_words, far_words);
+  MOLMESH_DISPATCH(classify_points_simd)(v, bits, near, far, near_words, far_words);
 }
 int32_t pack_active(const float* v, const uint64_t* active, float* out) {
-  return HWY_DYNAMIC_DISPATCH(pack_active_simd)(v, active, out);
+  return MOLMESH_DISPATCH(pack_active_simd)(v, active, out);
 }
 int32_t pack_part(const float* packed, const uint64_t* stored, const uint64_t* active, float* out) {
-  return HWY_DYNAMIC_DISPATCH(pack_part_simd)(packed, stored, active, out);
+  return MOLMESH_DISPATCH(pack_part_simd)(packed, stored, active, out);
 }
 
 } // namespace molmesh::density
