@@ -96,9 +96,8 @@ void Search::finish(const SlabState& before, SlabState& slab, const SlabState& a
     node_.finish(s, below, above, w);
 }
 
-/// Slab by slab of nodes along x, so that only a few hold the sides of all their points. While one is found, the
-/// one before the last is finished and the one before that is put into the band: threads wait for each other once a
-/// slab.
+/// Slab by slab of nodes along x, so that only a few hold the sides of all their points: one is found while the one
+/// two before goes into the band, then the one before is finished.
 Band Search::run(SearchCounts& counts) {
   Band band = empty_band(f_, frame_, o_);
   nodes_ = o_.atoms == AtomSearch::kdtree ? nodes_by_tree(f_, frame_, o_.full, o_.threads)
@@ -108,24 +107,22 @@ Band Search::run(SearchCounts& counts) {
     band.block.reserve(std::min(blocks_a_node * nodes_.node.size(), many)); // pages come when they are used
   const int32_t first = first_block(frame_).x, end = (frame_.lower.x + frame_.points.x + 7) >> 3;
   std::array<SlabState, slabs_at_work> slab;
-  for (int32_t x = first; x < end + 3 * node_blocks; x += node_blocks) {
+  for (int32_t x = first; x < end + 2 * node_blocks; x += node_blocks) {
     forget(slab.back());
     std::rotate(slab.begin(), slab.end() - 1, slab.end());
     slab[0] = slab_at(x);
-    add_needed(slab[3], slab[2], slab[1]);
-    const SlabAppend append(slab[3], !o_.take, band);
-    const int64_t finds = slab[0].nodes(), finishes = finds + slab[2].nodes(), copies = finishes + append.parts();
-    par::for_n(copies, o_.threads, 1, [&](int64_t i) {
-      if (i >= finishes)
-        return append.copy(i - finishes);
-      with_workspace([&](Workspace& w) {
-        if (i < finds)
-          find(slab[0], static_cast<size_t>(i), w);
-        else
-          finish(slab[3], slab[2], slab[1], static_cast<size_t>(i - finds), w);
-      });
+    const SlabAppend append(slab[2], !o_.take, band);
+    const int64_t finds = slab[0].nodes();
+    par::for_n(finds + append.parts(), o_.threads, 1, [&](int64_t i) {
+      if (i >= finds)
+        return append.copy(i - finds);
+      with_workspace([&](Workspace& w) { find(slab[0], static_cast<size_t>(i), w); });
     });
-    give_away(slab[2], band.info);
+    add_needed(slab[2], slab[1], slab[0]);
+    par::for_n(slab[1].nodes(), o_.threads, 1, [&](int64_t i) {
+      with_workspace([&](Workspace& w) { finish(slab[2], slab[1], slab[0], static_cast<size_t>(i), w); });
+    });
+    give_away(slab[1], band.info);
   }
   int64_t points = 0;
   counts = {};

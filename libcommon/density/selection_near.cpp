@@ -34,8 +34,8 @@ void Selection::enter(Vec3d middle, std::span<const int32_t> clusters) {
 /// near_: the units of the clusters of the node that are near a part of it.
 void Selection::gather(const LocalBox& part) {
   found_.resize(local_.cluster.size() + 16);
-  const auto clusters = static_cast<size_t>(
-      near_clusters(local_, static_cast<int32_t>(local_.cluster.size()), part, found_.data()));
+  const auto clusters =
+      static_cast<size_t>(near_clusters(local_, static_cast<int32_t>(local_.cluster.size()), part, found_.data()));
   NearUnits& u = near_;
   u.begin.resize(clusters + 1);
   u.group.resize(clusters);

@@ -46,8 +46,8 @@ private:
   std::vector<LargeArray<BandBlock>> band_;
 };
 
-/// Slabs of a search: new, found, to be finished, finished.
-constexpr size_t slabs_at_work = 4;
+/// Slabs of a search: new, found, finished.
+constexpr size_t slabs_at_work = 3;
 
 struct Workspace {
   Selection selection;
