@@ -1,5 +1,6 @@
 // node_search.cpp — bounds, values and sides of a node's blocks; then its active points.
 #include "density/node_search.hpp"
+#include "density/seek.hpp"
 #include "density/values_kernel.hpp"
 #include <algorithm>
 #include <bit>
@@ -90,7 +91,7 @@ void NodeSearch::work_through(const Node& node, NodeState& s, Workspace& w) cons
     }
   }
   settle(s, w);
-  need_neighbors(s);
+  need_neighbors(s, w.near_found);
 }
 
 /// Sides by rows, where the node lies on more than one.
@@ -159,15 +160,15 @@ void NodeSearch::store(NodeState& s, Workspace& w) const {
   }
 }
 
-void NodeSearch::need_neighbors(NodeState& s) const {
+void NodeSearch::need_neighbors(NodeState& s, RowHints& hint) const {
   const unsigned open = open_faces(s);
   for (int n = 0; open && n < 27; n += 3) {
     const Vec3i row = direction(n + 1);
     if ((row.x && !(open >> (row.x > 0) & 1)) || (row.y && !(open >> (2 + (row.y > 0)) & 1)))
       continue;
     const Vec3i first = s.corner + node_blocks * direction(n);
-    auto at = std::lower_bound(nodes_.node.begin(), nodes_.node.end(), first,
-                               [](const Node& a, Vec3i c) { return a.corner < c; });
+    auto at = seek(nodes_.node.begin(), nodes_.node.end(), hint[static_cast<size_t>(n / 3)], first,
+                   [](const Node& a, Vec3i c) { return a.corner < c; });
     for (int z = -1; z <= 1; ++z) {
       const Vec3i corner = s.corner + node_blocks * direction(n + z + 1);
       if (at != nodes_.node.end() && at->corner == corner)

@@ -23,7 +23,7 @@ private:
   /// The values of some points of block b of the node at work, put into the band's memory.
   const float* pack(int b, const uint64_t* points, Workspace& w) const;
   void evaluate_left_out(uint64_t blocks, uint64_t before, Vec3i node, Workspace& w) const;
-  void need_neighbors(NodeState& s) const;
+  void need_neighbors(NodeState& s, RowHints& hint) const;
   void evaluate(Workspace& w, float* value) const;
   CellRange cells_of(Vec3i corner) const;
   /// Å, of the points of a cube of blocks.

@@ -1,5 +1,6 @@
 // node_state.cpp — neighbors of nodes, and the order of blocks.
 #include "density/node_state.hpp"
+#include "density/seek.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <bit>
@@ -30,7 +31,7 @@ unsigned open_faces(const NodeState& s) {
 }
 
 bool sides_around(const SlabState& before, const SlabState& slab, const SlabState& after, const NodeState& s,
-                  const FacedBits** below, const FacedBits** above) {
+                  RowHints& hint, const FacedBits** below, const FacedBits** above) {
   static const std::unique_ptr<const Sides> outside = [] {
     auto sides = std::make_unique<Sides>();
     std::fill_n(&sides->below.row[0][0], node_edge * node_edge, ~0u);
@@ -42,7 +43,8 @@ bool sides_around(const SlabState& before, const SlabState& slab, const SlabStat
   bool mixed = false;
   for (int n = 0; n < 27; n += 3) {
     const std::vector<NodeState>& nodes = slabs[n / 9]->node;
-    auto at = std::lower_bound(nodes.begin(), nodes.end(), s.corner + node_blocks * direction(n), before_corner);
+    auto at = seek(nodes.begin(), nodes.end(), hint[static_cast<size_t>(n / 3)],
+                   s.corner + node_blocks * direction(n), before_corner);
     for (int z = n; z < n + 3; ++z) {
       below[z] = &outside->below;
       above[z] = &outside->above;

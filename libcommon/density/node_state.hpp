@@ -2,6 +2,7 @@
 #pragma once
 #include "density/band.hpp"
 #include "density/band_kernel.hpp"
+#include <array>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -45,10 +46,13 @@ struct SlabState {
 /// Bit 2·axis + (upper side): not every point of that face is below the band.
 unsigned open_faces(const NodeState& s);
 
+/// Where the three nodes along z in each of the nine rows around a node were found last: the next one's are near.
+using RowHints = std::array<size_t, 9>;
+
 /// A node of a slab among its neighbors: below[27] and above[27] as band_points() wants them. False when all are on
 /// one side. before, after: the next slabs.
 bool sides_around(const SlabState& before, const SlabState& slab, const SlabState& after, const NodeState& s,
-                  const FacedBits** below, const FacedBits** above);
+                  RowHints& hint, const FacedBits** below, const FacedBits** above);
 
 /// Puts the nodes that any of the slabs needs into the one in the middle.
 void add_needed(const SlabState& before, SlabState& slab, const SlabState& after);

@@ -92,7 +92,7 @@ void Search::finish(const SlabState& before, SlabState& slab, const SlabState& a
   NodeState& s = slab.node[node];
   const FacedBits *below[27], *above[27];
   s.closed = s.inside;
-  if (sides_around(before, slab, after, s, below, above))
+  if (sides_around(before, slab, after, s, w.near_finished, below, above))
     node_.finish(s, below, above, w);
 }
 

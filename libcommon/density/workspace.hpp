@@ -67,6 +67,7 @@ struct Workspace {
     turn = new_turn;
     packed().restart();
   }
+  RowHints near_found = {}, near_finished = {};
   Spares spares = {};
   SearchCounts counts = {};
   int64_t points = 0; ///< of the grid, evaluated

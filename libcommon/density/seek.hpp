@@ -1,0 +1,28 @@
+// seek.hpp — a sorted list asked again and again, each time near the last answer.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+
+namespace molmesh::density {
+
+/// std::lower_bound, with steps that double from where `hint` says; leaves the answer's place in it.
+template <class Iterator, class Value, class Before>
+Iterator seek(Iterator begin, Iterator end, size_t& hint, const Value& value, Before&& before) {
+  const auto n = static_cast<size_t>(end - begin);
+  const auto at = [&](size_t i) { return begin + static_cast<std::ptrdiff_t>(i); };
+  size_t lo = std::min(hint, n), hi = lo; // all before lo are before the value, none from hi on
+  for (size_t step = 1; lo > 0 && !before(*at(lo - 1), value); step *= 2) {
+    hi = lo - 1;
+    lo -= std::min(step, lo);
+  }
+  for (size_t step = 1; hi < n && before(*at(hi), value); step *= 2) {
+    lo = hi + 1;
+    hi = std::min(lo + step, n);
+  }
+  const Iterator found = std::lower_bound(at(lo), at(hi), value, before);
+  hint = static_cast<size_t>(found - begin);
+  return found;
+}
+
+} // namespace molmesh::density
