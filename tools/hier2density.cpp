@@ -9,6 +9,7 @@
 #include "formats/hier/hier.hpp"
 #include "formats/vdb/leaves.hpp"
 #include "formats/vdb/vdb.hpp"
+#include "par/par.hpp"
 
 using namespace molmesh;
 
@@ -98,7 +99,8 @@ Status run(const Options& o, cli::Run& r) {
   cli::InputFile in(o.input);
   cli::OutputFile out(o.output, cli::OutputFile::Content::binary);
   r.phase("read");
-  const Hierarchy h = formats::read_hier(in.stream(), in.name());
+  Hierarchy h;
+  par::start_threads_during(o.resolved_threads(), [&] { h = formats::read_hier(in.stream(), in.name()); });
   formats::Leaves leaves(o.resolved_threads());
   d.take = [&](const FieldInfo& info, std::span<const density::BandBlocks> runs) {
     r.phase("write");

@@ -50,6 +50,22 @@ void for_n(int64_t n, int threads, int64_t grain, F&& f) {
     std::rethrow_exception(error);
 }
 
+/// work() on the calling thread, while the others of its loops start. A first loop would wait for them, up to 12 ms
+/// where the system puts a new thread on the core of the one that waits, and that one does not sleep.
+template <class Work>
+void start_threads_during(int threads, Work&& work) {
+  std::exception_ptr error;
+#pragma omp parallel num_threads(threads) if (threads > 1)
+#pragma omp master
+  try {
+    work();
+  } catch (...) {
+    error = std::current_exception();
+  }
+  if (error)
+    std::rethrow_exception(error);
+}
+
 template <class F>
 void for_n(int64_t n, int threads, F&& f) {
   for_n(n, threads, int64_t{1024}, static_cast<F&&>(f));
