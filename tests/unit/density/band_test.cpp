@@ -1,5 +1,6 @@
 // band_test.cpp — corners of band cells of a node among its neighbors, against the same cell by cell.
 #include "density/band_kernel.hpp"
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <hwy/targets.h>
@@ -84,6 +85,52 @@ TEST_CASE("corners of band cells of a node, whose neighbors give their faces alo
       CHECK(found > 1000);
       CHECK(found < 32 * 32 * 32);
     }
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}
+
+TEST_CASE("corners of band cells as far as a node knows them alone") {
+  std::mt19937_64 random(5);
+  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    INFO(hwy::TargetName(target));
+    const auto n = random_sides(random);
+    auto sides = std::make_unique<density::Sides>(), beyond = std::make_unique<density::Sides>();
+    sides->below = n->below_rows[0];
+    sides->above = n->above_rows[0];
+    beyond->below = n->below_rows[1];
+    beyond->above = n->above_rows[1];
+    const density::CellRange cells{{-1, -1, -1}, {32, 32, 31}};
+    auto active = std::make_unique<density::NodeBits>();
+    density::likely_band_points(*sides, *beyond, cells, *active);
+    const auto holds_at = [](const density::NodeBits& own, const density::NodeBits& far, int x, int y, int z) {
+      const auto in = [](int i) { return std::clamp(i, 0, 31); };
+      const bool inner = x == in(x) && y == in(y) && z == in(z);
+      return ((inner ? own : far).row[in(x)][in(y)] >> in(z)&1) != 0;
+    };
+    int64_t wrong = 0, found = 0;
+    for (int x = 0; x < 32; ++x)
+      for (int y = 0; y < 32; ++y)
+        for (int z = 0; z < 32; ++z) {
+          bool corner = false;
+          for (int c = 0; c < 8; ++c) {
+            const int at[3] = {x - (c >> 2), y - (c >> 1 & 1), z - (c & 1)};
+            bool in = true, all_below = true, all_above = true;
+            for (int a = 0; a < 3; ++a)
+              in = in && at[a] >= cells.first[a] && at[a] < cells.end[a];
+            for (int k = 0; k < 8; ++k) {
+              const int i = at[0] + (k >> 2), j = at[1] + (k >> 1 & 1), l = at[2] + (k & 1);
+              all_below = all_below && holds_at(sides->below, beyond->below, i, j, l);
+              all_above = all_above && holds_at(sides->above, beyond->above, i, j, l);
+            }
+            corner = corner || (in && !all_below && !all_above);
+          }
+          wrong += corner != (active->row[x][y] >> z & 1);
+          found += corner;
+        }
+    CHECK(wrong == 0);
+    CHECK(found > 1000);
+    CHECK(found < 32 * 32 * 32);
   }
   hwy::SetSupportedTargetsForTest(0);
 }

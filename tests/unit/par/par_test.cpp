@@ -52,6 +52,20 @@ TEST_CASE("an exception in a loop reaches the caller") {
                     std::runtime_error);
 }
 
+TEST_CASE("what runs while threads start runs once, on the calling thread, and may throw") {
+  for (int threads : {1, 2, 5}) {
+    int runs = 0;
+    std::thread::id where;
+    par::start_threads_during(threads, [&] {
+      ++runs;
+      where = std::this_thread::get_id();
+    });
+    CHECK(runs == 1);
+    CHECK(where == std::this_thread::get_id());
+    CHECK_THROWS_AS(par::start_threads_during(threads, [] { throw std::runtime_error("x"); }), std::runtime_error);
+  }
+}
+
 TEST_CASE("exclusive_scan turns counts into offsets") {
   std::vector<int64_t> count{3, 0, 2, 5};
   CHECK(par::exclusive_scan(count) == 10);
