@@ -54,8 +54,10 @@ void for_n(int64_t n, int threads, int64_t grain, F&& f) {
 /// where the system puts a new thread on the core of the one that waits, and that one does not sleep.
 template <class Work>
 void start_threads_during(int threads, Work&& work) {
+  if (threads <= 1)
+    return work();
   std::exception_ptr error;
-#pragma omp parallel num_threads(threads) if (threads > 1)
+#pragma omp parallel num_threads(threads)
 #pragma omp master
   try {
     work();
