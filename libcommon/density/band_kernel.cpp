@@ -43,8 +43,8 @@ HWY_INLINE uint64_t column(const uint32_t* row) {
 }
 
 /// An x-plane of the 34³ points around a node: bit z of row y + 1; those before, at and behind the first and the
-/// last z as columns, bit y + 1. Then, in the same places, the four points of a cell that lie in the plane: of rows
-/// y and y + 1, columns z and z + 1, from -1 on.
+/// last z as columns, bit y + 1. Then, from the same places, corners of a cell that lie in the plane: all four of
+/// rows y, y + 1 and columns z, z + 1 in `row` and `before`, the two with the higher z in `behind`.
 struct Plane {
   HWY_ALIGN uint32_t row[64];
   uint64_t before, first, behind;

@@ -40,7 +40,7 @@ void place_atoms(const ClusteredAtoms& from, const int32_t* list, size_t n, cons
 /// many.
 int32_t near_clusters(const LocalClusters& c, int32_t n, const LocalBox& box, int32_t* out);
 
-/// Units that may matter in a box: sums of atoms that are raised to one power.
+/// Units that may matter in a box: sums of atoms that are raised to one power. Arrays may be longer.
 struct NearUnits {
   int32_t n = 0;
   std::vector<int32_t> begin;   ///< [n + 1] position in `cluster`

@@ -2,11 +2,11 @@
 #pragma once
 #include <algorithm>
 #include <cstddef>
-#include <iterator>
 
 namespace molmesh::density {
 
-/// std::lower_bound, with steps that double from where `hint` says; leaves the answer's place in it.
+/// std::lower_bound of random-access iterators, with steps that double from place `hint`, any number; leaves the
+/// answer's place in it.
 template <class Iterator, class Value, class Before>
 Iterator seek(Iterator begin, Iterator end, size_t& hint, const Value& value, Before&& before) {
   const auto n = static_cast<size_t>(end - begin);

@@ -50,8 +50,9 @@ void for_n(int64_t n, int threads, int64_t grain, F&& f) {
     std::rethrow_exception(error);
 }
 
-/// work() on the calling thread, while the others of its loops start. A first loop would wait for them, up to 12 ms
-/// where the system puts a new thread on the core of the one that waits, and that one does not sleep.
+/// work() on the calling thread, its own loops on that thread alone, while the others start that later loops are to
+/// have; what it throws reaches the caller. Else the first loop waits for them, 10 ms and more where the system
+/// puts a new thread on the core of the one that waits, since that one does not sleep.
 template <class Work>
 void start_threads_during(int threads, Work&& work) {
   if (threads <= 1)
