@@ -50,15 +50,17 @@ struct Plane {
   uint64_t before, first, behind;
 };
 
+/// A column of 32 points with one more at either end.
+HWY_INLINE uint64_t column_of(uint64_t low, uint64_t mid, uint64_t high) {
+  return low | mid << 1 | high << 33;
+}
+
 /// nodes[9]: the 3 × 3 nodes that the plane passes, by (y, z).
 HWY_INLINE void make_plane(const FacedBits* const* nodes, int32_t x, Plane& p) {
   const auto y_edge = [&](int n) { return nodes[n]->y_face[n < 3][x]; };
   std::memcpy(p.row + 1, nodes[4]->row[x], sizeof nodes[4]->row[x]);
   p.row[0] = y_edge(1);
   p.row[33] = y_edge(7);
-  const auto column_of = [&](uint32_t low, uint32_t mid, uint32_t high) {
-    return uint64_t{low} | uint64_t{mid} << 1 | uint64_t{high} << 33;
-  };
   p.before = column_of(y_edge(0) >> 31, nodes[3]->z_face[1][x], y_edge(6) >> 31);
   p.first = column_of(y_edge(1) & 1, nodes[4]->z_face[0][x], y_edge(7) & 1);
   p.behind = column_of(y_edge(2) & 1, nodes[5]->z_face[0][x], y_edge(8) & 1);
@@ -73,11 +75,10 @@ HWY_INLINE void make_plane_alone(const FacedBits& node, const NodeBits& beyond, 
   std::memcpy(p.row + 1, own, sizeof node.row[0]);
   p.row[0] = outer[0];
   p.row[33] = outer[31];
-  const auto widened = [](uint64_t mid, uint64_t low, uint64_t high) { return low | mid << 1 | high << 33; };
   const uint64_t low = column<0>(outer), high = column<31>(outer);
-  p.before = widened(low, low & 1, low >> 31);
-  p.first = inner ? widened(node.z_face[0][x], low & 1, low >> 31) : p.before;
-  p.behind = widened(high, high & 1, high >> 31);
+  p.before = column_of(low & 1, low, low >> 31);
+  p.first = inner ? column_of(low & 1, node.z_face[0][x], low >> 31) : p.before;
+  p.behind = column_of(high & 1, high, high >> 31);
 }
 
 using Planes = Plane[34];

@@ -40,13 +40,36 @@ std::unique_ptr<Neighborhood> random_sides(std::mt19937_64& random) {
   return n;
 }
 
-bool is_band_cell(const Neighborhood& n, int x, int y, int z) {
-  bool all_below = true, all_above = true;
-  for (int c = 0; c < 8; ++c) {
-    all_below = all_below && holds(n.below, x + (c >> 2), y + (c >> 1 & 1), z + (c & 1));
-    all_above = all_above && holds(n.above, x + (c >> 2), y + (c >> 1 & 1), z + (c & 1));
-  }
-  return !all_below && !all_above;
+/// active: the corners of band cells among `cells`, by below(x, y, z) and above(x, y, z), from -1 to 32.
+template <class Below, class Above>
+void check_corners(const density::NodeBits& active, const density::CellRange& cells, Below&& below, Above&& above) {
+  const auto is_band_cell = [&](const int* cell) {
+    bool all_below = true, all_above = true;
+    for (int c = 0; c < 8; ++c) {
+      const int x = cell[0] + (c >> 2), y = cell[1] + (c >> 1 & 1), z = cell[2] + (c & 1);
+      all_below = all_below && below(x, y, z);
+      all_above = all_above && above(x, y, z);
+    }
+    return !all_below && !all_above;
+  };
+  int64_t wrong = 0, found = 0;
+  for (int x = 0; x < 32; ++x)
+    for (int y = 0; y < 32; ++y)
+      for (int z = 0; z < 32; ++z) {
+        bool corner = false;
+        for (int c = 0; c < 8; ++c) {
+          const int cell[3] = {x - (c >> 2), y - (c >> 1 & 1), z - (c & 1)};
+          bool in = true;
+          for (int a = 0; a < 3; ++a)
+            in = in && cell[a] >= cells.first[a] && cell[a] < cells.end[a];
+          corner = corner || (in && is_band_cell(cell));
+        }
+        wrong += corner != (active.row[x][y] >> z & 1);
+        found += corner;
+      }
+  CHECK(wrong == 0);
+  CHECK(found > 1000);
+  CHECK(found < 32 * 32 * 32);
 }
 
 } // namespace
@@ -66,24 +89,9 @@ TEST_CASE("corners of band cells of a node, whose neighbors give their faces alo
       }
       auto active = std::make_unique<density::NodeBits>();
       density::band_points(below, above, cells, *active);
-      int64_t wrong = 0, found = 0;
-      for (int x = 0; x < 32; ++x)
-        for (int y = 0; y < 32; ++y)
-          for (int z = 0; z < 32; ++z) {
-            bool corner = false;
-            for (int c = 0; c < 8; ++c) {
-              const int cell[3] = {x - (c >> 2), y - (c >> 1 & 1), z - (c & 1)};
-              bool in = true;
-              for (int a = 0; a < 3; ++a)
-                in = in && cell[a] >= cells.first[a] && cell[a] < cells.end[a];
-              corner = corner || (in && is_band_cell(*n, 32 + cell[0], 32 + cell[1], 32 + cell[2]));
-            }
-            wrong += corner != (active->row[x][y] >> z & 1);
-            found += corner;
-          }
-      CHECK(wrong == 0);
-      CHECK(found > 1000);
-      CHECK(found < 32 * 32 * 32);
+      check_corners(
+          *active, cells, [&](int x, int y, int z) { return holds(n->below, 32 + x, 32 + y, 32 + z); },
+          [&](int x, int y, int z) { return holds(n->above, 32 + x, 32 + y, 32 + z); });
     }
   }
   hwy::SetSupportedTargetsForTest(0);
@@ -108,29 +116,9 @@ TEST_CASE("corners of band cells as far as a node knows them alone") {
       const bool inner = x == in(x) && y == in(y) && z == in(z);
       return ((inner ? own : far).row[in(x)][in(y)] >> in(z)&1) != 0;
     };
-    int64_t wrong = 0, found = 0;
-    for (int x = 0; x < 32; ++x)
-      for (int y = 0; y < 32; ++y)
-        for (int z = 0; z < 32; ++z) {
-          bool corner = false;
-          for (int c = 0; c < 8; ++c) {
-            const int at[3] = {x - (c >> 2), y - (c >> 1 & 1), z - (c & 1)};
-            bool in = true, all_below = true, all_above = true;
-            for (int a = 0; a < 3; ++a)
-              in = in && at[a] >= cells.first[a] && at[a] < cells.end[a];
-            for (int k = 0; k < 8; ++k) {
-              const int i = at[0] + (k >> 2), j = at[1] + (k >> 1 & 1), l = at[2] + (k & 1);
-              all_below = all_below && holds_at(sides->below, beyond->below, i, j, l);
-              all_above = all_above && holds_at(sides->above, beyond->above, i, j, l);
-            }
-            corner = corner || (in && !all_below && !all_above);
-          }
-          wrong += corner != (active->row[x][y] >> z & 1);
-          found += corner;
-        }
-    CHECK(wrong == 0);
-    CHECK(found > 1000);
-    CHECK(found < 32 * 32 * 32);
+    check_corners(
+        *active, cells, [&](int x, int y, int z) { return holds_at(sides->below, beyond->below, x, y, z); },
+        [&](int x, int y, int z) { return holds_at(sides->above, beyond->above, x, y, z); });
   }
   hwy::SetSupportedTargetsForTest(0);
 }
