@@ -15,6 +15,8 @@ namespace {
 
 constexpr int most_halvings = 2;
 constexpr double room_to_halve = (1 << 18) - 8; ///< spacings of a box: a lattice takes twice as many
+/// Of a uniform lattice, some 12 million elements: it is filled with the smaller cells.
+constexpr double most_uniform_cells = 1 << 20;
 /// With the default band some 16,000 surface cells; a ball of as many, 29 spacings in radius, loses 0.05 %.
 constexpr int64_t most_active_points = 1 << 15;
 /// A ball with as few surface cells loses several per cent, and their areas are not what cells have on average.
@@ -61,6 +63,9 @@ Look look_at(const BlockGrid& grid, const Options& options, int halvings) {
   const Vec3d extent = (lattice.position(lattice.cells) - lattice.position({0, 0, 0})) / grid.frame.spacing;
   if (lattice.view().any_cut || std::max({extent.x, extent.y, extent.z}) >= room_to_halve)
     return {};
+  if (options.adapt == 0 &&
+      double(lattice.cells.x) * double(lattice.cells.y) * double(lattice.cells.z) > most_uniform_cells)
+    return {};
   const Surface surface = find_surface(lattice, options.threads);
   return {one_sheet_a_cell(surface, lattice.isovalue),
           chords_cut_too_much(surface, lattice.isovalue, improve::most_offset * (1 << halvings))};
@@ -70,7 +75,7 @@ Look look_at(const BlockGrid& grid, const Options& options, int halvings) {
 
 FinerGrid finer_grid(const BlockGrid& grid, const Options& options) {
   FinerGrid finer;
-  if (options.adapt == 0 || active_points(grid) > most_active_points)
+  if (active_points(grid) > most_active_points)
     return finer;
   Look look = look_at(grid, options, 0);
   while (look.one_sheet_a_cell && look.cells_too_large && finer.halvings < most_halvings) {

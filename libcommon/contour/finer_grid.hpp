@@ -13,7 +13,7 @@ struct FinerGrid {
 
 /// Chords between points a spacing h apart cut some 0.4 h²/r² off a ball of radius r, more than I8 allows up to
 /// some 5 h. While they would the spacing is halved (halved_grid.hpp), but never
-/// - where the cells are to be uniform: those are the grid's,
+/// - to more than a million cells where they are to be uniform,
 /// - on grids of many points, where the volume is that of large bodies,
 /// - where a wall cuts the grid, or the box would have too many of the halved spacings,
 /// - where a cell may hold more than one sheet, before or after: the trilinear functions of G, whose topology the

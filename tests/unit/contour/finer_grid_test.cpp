@@ -11,7 +11,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
 using namespace molmesh;
@@ -109,13 +111,16 @@ TEST_CASE("finer grids keep components and Euler number") {
   CHECK(finer_ones > 5);
 }
 
-TEST_CASE("a body of few spacings keeps its volume to half a per cent, uniform cells stay the grid's") {
+TEST_CASE("a body of few spacings keeps its volume to half a per cent, in uniform cells too") {
   for (double radius : {0.8, 1.0, 1.15, 2.4, 3.5}) {
     const BlockGrid grid = atom_grid(radius, 0.5);
-    for (auto meshed : {Options::interior, Options::both}) {
-      CAPTURE(radius, int(meshed));
+    for (auto [meshed, adapt] : {std::pair<decltype(Options::meshed), std::optional<double>>{Options::interior, {}},
+                                 {Options::both, {}},
+                                 {Options::interior, 0.}}) {
+      CAPTURE(radius, int(meshed), adapt.has_value());
       Options options;
       options.meshed = meshed;
+      options.adapt = adapt;
       contour::Summary summary;
       TetMesh mesh = mesh_of(grid, options, summary);
       CHECK(summary.halvings == (radius < 0.9 ? 2 : radius < 3.5 ? 1 : 0));
@@ -127,11 +132,17 @@ TEST_CASE("a body of few spacings keeps its volume to half a per cent, uniform c
       CHECK(result.after.min > 25);
       CHECK(result.after.max < 140);
     }
-    Options options;
-    options.adapt = 0;
-    contour::Summary summary;
-    mesh_of(grid, options, summary);
-    CHECK(summary.halvings == 0);
+  }
+}
+
+TEST_CASE("a uniform lattice of many cells is not filled with smaller ones") {
+  Options options;
+  options.adapt = 0;
+  options.meshed = Options::both;
+  options.box.kind = contour::BoxRequest::factor;
+  for (const double factor : {6., 40.}) {
+    options.box.scale = factor;
+    CHECK(contour::finer_grid(atom_grid(1, 0.5), options).grid.has_value() == (factor < 10));
   }
 }
 
