@@ -1,7 +1,7 @@
 // relax.hpp — contour::relax on a Backend: the host's passes; a team looks for a vertex's place, an element of its
 // star to each thread, in the order and with the rounding of improve::Spokes.
 #pragma once
-#include "contour/detail/move_vertex.hpp"
+#include "contour/detail/move_nearer.hpp"
 #include "contour/detail/relax_passes.hpp"
 #include "cuda/improve/device_isosurface.hpp"
 #include "geom/predicates.hpp"
@@ -75,9 +75,13 @@ public:
       quality_[k] = q <= worst || orient3d(p[0], p[1], p[2], p[3]) <= 0 ? refused : q;
     }
     team_.sync();
+    bool allowed = true;
     for (int32_t k = 0; k < n_; ++k)
-      if (quality_[k] == refused)
-        return false;
+      allowed = allowed && quality_[k] != refused;
+    if (!allowed) {
+      team_.sync();
+      return false;
+    }
     if (team_.rank() == 0)
       r_.e.position[vertex_] = x;
     for (int32_t k = team_.rank(); k < n_; k += Team::size)
@@ -149,6 +153,25 @@ struct MoveTeams {
   }
 };
 
+/// Those who have the turn; what a vertex's triangles are off all threads of its team write alike.
+struct MoveNearerTeams {
+  contour::detail::NearerView v;
+  improve::IsosurfaceView surface;
+  const int32_t* active;
+  Fate* fate;
+  improve::Spoke<float>* spoke; ///< [star entries]
+  float* quality;               ///< [star entries]
+  using Shared = MoveTeams::Shared;
+  template <class Team>
+  HD void operator()(int64_t i, Team team, Shared& shared) const {
+    if (fate[i] != Fate::stays)
+      return;
+    TeamStar<Team> star(v.r, active[i], team, spoke, quality, shared.side);
+    if (contour::detail::move_nearer_or_make_room(v, surface, active[i], star) && team.rank() == 0)
+      fate[i] = Fate::moves;
+  }
+};
+
 template <class Backend>
 class TeamMover {
 public:
@@ -165,6 +188,16 @@ public:
   void move(const RelaxView& r, const int32_t* active, int64_t n, Fate* fate, double most_distance) {
     b_.for_teams("move vertices", n,
                  MoveTeams{r, surface_.view(), most_distance, active, fate, spoke_.data(), quality_.data()},
+                 {double(n) * entries_ * 112});
+  }
+  void measure(const contour::ElementsView& e, float* off) {
+    b_.for_n("measure triangles", e.tris,
+             contour::detail::MeasureTriangles<improve::IsosurfaceView>{e, surface_.view(), off},
+             {double(e.tris) * 140});
+  }
+  void move_nearer(const contour::detail::NearerView& v, const int32_t* active, int64_t n, Fate* fate) {
+    b_.for_teams("move nearer", n,
+                 MoveNearerTeams{v, surface_.view(), active, fate, spoke_.data(), quality_.data()},
                  {double(n) * entries_ * 112});
   }
 

@@ -1,98 +1,20 @@
 // relax.cpp — the passes on the host's threads, many elements or places at a time.
 #include "contour/relax.hpp"
-#include "contour/detail/at.hpp"
-#include "contour/detail/move_vertex.hpp"
+#include "contour/detail/move_nearer.hpp"
 #include "contour/detail/relax_passes.hpp"
+#include "contour/host_star.hpp"
 #include "error.hpp"
-#include "geom/predicates.hpp"
 #include "improve/isosurface.hpp"
 #include "improve/near_isosurface.hpp"
 #include "improve/quality_kernel.hpp"
-#include "improve/spokes.hpp"
 #include "par/launcher.hpp"
 #include <algorithm>
 #include <array>
-#include <vector>
 
 namespace molmesh::contour {
 
-using detail::at;
 using detail::Fate;
 namespace {
-
-/// Of detail::move_vertex; keeps its memory from star to star.
-class Star {
-public:
-  void begin(const detail::RelaxView& r, int32_t candidate) {
-    r_ = &r;
-    vertex_ = r.vertex[candidate];
-    element_ = r.element + r.first[candidate];
-    elements_ = at(r.first[candidate + 1] - r.first[candidate]);
-    eights_.resize((elements_ + 7) / 8);
-    moving_.resize(elements_);
-    const Vec3d x = r.e.position[vertex_];
-    spokes_.clear(x, r.shape);
-    length_ = 0;
-    // In three steps, so that many elements and then corners are on their way from memory at once.
-    tet_.resize(elements_);
-    for (size_t k = 0; k < elements_; ++k)
-      tet_[k] = r.e.tet[element_[k]];
-    for (const Tet& t : tet_)
-      for (const int32_t v : t)
-        __builtin_prefetch(&r.e.position[v]);
-    for (size_t k = 0; k < elements_; ++k) {
-      const Tet& t = tet_[k];
-      std::array<Vec3d, 4> p;
-      size_t moving = 0;
-      for (size_t i = 0; i < 4; ++i) {
-        p[i] = r.e.position[t[i]];
-        eights_[k / 8].set(k % 8, i, p[i]);
-        length_ += norm(p[i] - x);
-        if (t[i] == vertex_)
-          moving = i;
-      }
-      spokes_.add(p, static_cast<int>(moving));
-      moving_[k] = moving;
-    }
-    length_ /= 3. * double(elements_);
-  }
-  double length() const { return length_; }
-  improve::Spokes& spokes() { return spokes_; }
-  bool take(Vec3d x, float worst) {
-    quality_.resize(8 * eights_.size());
-    for (size_t k = 0; k < elements_; ++k)
-      eights_[k / 8].set(k % 8, moving_[k], x);
-    for (size_t g = 0; g < eights_.size(); ++g) {
-      float q[8];
-      improve::qualities(eights_[g], q, r_->shape);
-      for (size_t k = 8 * g; k < elements_ && k < 8 * g + 8; ++k) {
-        if (q[k % 8] <= worst)
-          return false;
-        const improve::EightElements& e = eights_[g];
-        if (q[k % 8] < improve::surely_positive &&
-            orient3d(e.corner(k % 8, 0), e.corner(k % 8, 1), e.corner(k % 8, 2), e.corner(k % 8, 3)) <= 0)
-          return false;
-        quality_[k] = q[k % 8];
-      }
-    }
-    r_->e.position[vertex_] = x;
-    for (size_t k = 0; k < elements_; ++k)
-      r_->quality[element_[k]] = quality_[k];
-    return true;
-  }
-
-private:
-  const detail::RelaxView* r_ = nullptr;
-  const int32_t* element_ = nullptr;
-  size_t elements_ = 0;
-  int32_t vertex_ = 0;
-  double length_ = 0;
-  improve::Spokes spokes_;
-  std::vector<Tet> tet_;
-  std::vector<improve::EightElements> eights_;
-  std::vector<size_t> moving_;
-  std::vector<float> quality_;
-};
 
 /// A chunk of elements: those of the lattice apart, the others eight at a time.
 struct JudgeChunk {
@@ -139,11 +61,62 @@ struct MoveFirst {
   void operator()(int64_t i) const {
     if (fate[i] != Fate::stays)
       return;
-    thread_local Star star;
+    thread_local HostStar star;
     star.begin(r, active[i]);
     const auto& here = near(surface);
     if (detail::move_vertex(r, here, most_distance, active[i], star))
       fate[i] = Fate::moves;
+  }
+};
+
+template <class Surface>
+struct MoveNearerFirst {
+  static constexpr int64_t grain = 16;
+  detail::NearerView v;
+  const Surface& surface;
+  const int32_t* active;
+  Fate* fate;
+  void operator()(int64_t i) const {
+    if (fate[i] != Fate::stays)
+      return;
+    thread_local HostStar star;
+    star.begin(v.r, active[i]);
+    const auto& here = near(surface);
+    if (detail::move_nearer_or_make_room(v, here, active[i], star))
+      fate[i] = Fate::moves;
+  }
+};
+
+/// A chunk of triangles: those that may be far eight at a time.
+template <class Surface>
+struct MeasureChunk {
+  static constexpr int64_t grain = 256;
+  detail::MeasureTriangles<const Surface&> all;
+  void run(int64_t begin, int64_t end) const {
+    for (int64_t t = begin; t < end; ++t)
+      for (const int32_t v : all.e.tri[t])
+        __builtin_prefetch(&all.e.position[v]);
+    improve::EightPlaces c;
+    std::array<int64_t, 8> which;
+    size_t n = 0;
+    const auto measure = [&] {
+      improve::EightProbes probes;
+      near(all.isosurface).probe_eight(c, static_cast<int>(n), probes);
+      for (size_t i = 0; i < n; ++i)
+        all.off[which[i]] = probes.is_known(i) ? detail::Off::measured(all.isosurface, c[i], probes.distance[i])
+                                               : detail::Off::unknown;
+      n = 0;
+    };
+    for (int64_t t = begin; t < end; ++t) {
+      all.off[t] = detail::Off::not_measured;
+      if (!all.may_be_far(t))
+        continue;
+      c.set(n, all.centroid(t));
+      which[n] = t;
+      if (++n == which.size())
+        measure();
+    }
+    measure();
   }
 };
 
@@ -158,6 +131,12 @@ public:
   void move(const detail::RelaxView& r, const int32_t* active, int64_t n, Fate* fate, double most_distance) {
     m_.for_n("move vertices", n, MoveFirst<Surface>{r, surface_, most_distance, active, fate});
   }
+  void measure(const ElementsView& e, float* off) {
+    m_.for_n("measure triangles", e.tris, MeasureChunk<Surface>{{e, surface_, off}});
+  }
+  void move_nearer(const detail::NearerView& v, const int32_t* active, int64_t n, Fate* fate) {
+    m_.for_n("move nearer", n, MoveNearerFirst<Surface>{v, surface_, active, fate});
+  }
 
 private:
   par::Launcher& m_;
@@ -167,6 +146,8 @@ private:
 /// Without a surface: vertices on it do not ask.
 struct NoSurface {
   bool probe(Vec3d, double&, Vec3d&) const { return false; }
+  void probe_eight(const improve::EightPlaces&, int, improve::EightProbes& out) const { out.known = 0; }
+  bool project(Vec3d&, double) const { return false; }
   double spacing() const { return 0; }
 };
 

@@ -27,6 +27,7 @@ public:
     return view_.to_distance(f, gradient, distance, normal);
   }
 
+  bool project(Vec3d& p, double reach) const { return view_.project(p, reach); }
   void probe_eight(const EightPlaces& p, int n, EightProbes& out) const { improve::probe_eight(view_, p, n, out); }
 
 private:

@@ -84,6 +84,18 @@ struct RelaxView {
   /// Candidates that share an element with candidate c, some more than once, up to the first -1.
   HD const int32_t* neighbours(int64_t c) const { return neighbour + 3 * first[c] + c; }
 
+  /// Of candidate c, where an element may have changed.
+  HD void update_worst(int64_t c) const {
+    if (!changed[c])
+      return;
+    float w = 1;
+    for (int64_t k = first[c]; k < first[c + 1]; ++k)
+      if (const float q = quality[element[k]]; q < w)
+        w = q;
+    worst[c] = w;
+    changed[c] = 0;
+  }
+
   static constexpr uint32_t at_rest = ~uint32_t{0}; ///< of turn: does not want to move
 };
 
@@ -140,16 +152,8 @@ struct StartRound {
   int round;
   HD void operator()(int64_t i) const {
     const int32_t c = active[i];
-    float w = r.worst[c];
-    if (r.changed[c]) {
-      w = 1;
-      for (int64_t k = r.first[c]; k < r.first[c + 1]; ++k)
-        if (const float q = r.quality[r.element[k]]; q < w)
-          w = q;
-      r.worst[c] = w;
-      r.changed[c] = 0;
-    }
-    r.turn[c] = w < r.goal ? turn(c, round) : RelaxView::at_rest;
+    r.update_worst(c);
+    r.turn[c] = r.worst[c] < r.goal ? turn(c, round) : RelaxView::at_rest;
     r.wakes[c] = 0;
   }
 };

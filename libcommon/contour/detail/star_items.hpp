@@ -13,6 +13,11 @@ struct NumberCandidates {
   int32_t* number;
   HD void operator()(int64_t i) const { number[vertex[i]] = static_cast<int32_t>(i); }
 };
+struct ForgetCandidates {
+  const int32_t* vertex;
+  int32_t* number;
+  HD void operator()(int64_t i) const { number[vertex[i]] = -1; }
+};
 /// Elements at a wanted vertex.
 struct NearTets {
   static constexpr int64_t most = 1;

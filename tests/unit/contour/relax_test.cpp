@@ -112,10 +112,9 @@ TEST_CASE("interior and exterior alone are parts of the mesh of both, point for 
     return std::exp(-0.5 * (norm2(x - Vec3d{1.3, 0.2, 0}) - 4)) +
            std::exp(-0.5 * (norm2(x + Vec3d{1.4, 0, 0.3}) - 5));
   };
-  const BlockGrid grid = test::sample_grid({-14, -12, -12}, {29, 25, 25}, 0.5, 2, two);
   Options options;
   options.box.kind = contour::BoxRequest::tight; // the same box for all three
-  const auto elements = [&](Options::Meshed meshed, int32_t region) {
+  const auto elements = [&](const BlockGrid& grid, Options::Meshed meshed, int32_t region) {
     options.meshed = meshed;
     contour::Summary summary;
     const TetMesh mesh = contour::contour(grid, options, summary, [](const std::string&) {});
@@ -131,6 +130,9 @@ TEST_CASE("interior and exterior alone are parts of the mesh of both, point for 
     }
     return found;
   };
-  CHECK(elements(Options::interior, molecule) == elements(Options::both, molecule));
-  CHECK(elements(Options::exterior, outside) == elements(Options::both, outside));
+  for (const BlockGrid& grid :
+       {test::sample_grid({-14, -12, -12}, {29, 25, 25}, 0.5, 2, two), test::creased_grid(6)}) {
+    CHECK(elements(grid, Options::interior, molecule) == elements(grid, Options::both, molecule));
+    CHECK(elements(grid, Options::exterior, outside) == elements(grid, Options::both, outside));
+  }
 }

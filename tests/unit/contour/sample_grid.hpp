@@ -115,4 +115,19 @@ inline BlockGrid random_grid(std::mt19937_64& random, int trial) {
   });
 }
 
+/// Balls of radius 1.7 at random places, with sharp creases between them: merged cells lie across these.
+inline BlockGrid creased_grid(unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> u(-4, 4);
+  std::vector<Vec3d> centre;
+  for (int i = 0; i < 32; ++i)
+    centre.push_back({u(random), u(random), u(random)});
+  return cube_grid(7.5, 0.24, [&](Vec3d x) {
+    double sum = 0;
+    for (const Vec3d& c : centre)
+      sum += std::exp(-2 * (norm2(x - c) - 1.7 * 1.7));
+    return sum;
+  });
+}
+
 } // namespace molmesh::test

@@ -5,6 +5,7 @@
 #include "geom/log.hpp"
 #include "unit/contour/sample_grid.hpp"
 #include "unit/refusal.hpp"
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <random>
@@ -178,6 +179,17 @@ TEST_CASE(
   options.box.lower = {-1.1, -9, -9};
   options.box.upper = {9, 1.77, 9};
   CHECK(compare(grid, options).differ == 0);
+}
+
+TEST_CASE("device stages: the host's where surface triangles far from the isosurface come nearer") {
+  Options options;
+  options.adapt = 0.41;
+  for (const unsigned seed : {1u, 4u, 6u}) {
+    const Seen seen = compare(test::creased_grid(seed), options, 2);
+    CHECK(seen.differ == 0);
+    const auto& kernels = seen.report.kernels;
+    CHECK(std::any_of(kernels.begin(), kernels.end(), [](const auto& k) { return k.name == "move nearer"; }));
+  }
 }
 
 TEST_CASE("the portable logarithm is within two units of the last place of the library's") {

@@ -1,0 +1,95 @@
+// nearer_passes.hpp — after relaxation, surface triangles far from the isosurface come nearer; over a launcher: one
+// text, one result.
+#pragma once
+#include "contour/detail/nearer_items.hpp"
+#include "contour/detail/vertex_stars.hpp"
+
+namespace molmesh::contour::detail {
+
+/// Mover: measure(e, off) measures all triangles; move_nearer(view, active, n, fate) lets those move who have the
+/// turn; begin as RelaxPasses has it.
+template <class Launcher, class Mover>
+class NearerPasses {
+  template <class T>
+  using Array = typename Launcher::template Array<T>;
+  using Ids = List<Launcher, int32_t>;
+
+public:
+  /// stars: memory for those of this.
+  NearerPasses(Launcher& m, Mover& mover, const RelaxView& r, VertexStars<Launcher>& stars)
+      : m_(m), mover_(mover), stars_(stars), off_(m.template array<float>(r.e.tris)) {
+    constexpr double angle = 16;
+    v_.r = r;
+    v_.room = static_cast<float>(improve::angle_quality(angle));
+    v_.off = off_.data();
+  }
+
+  /// How often a vertex moved.
+  int64_t run() {
+    constexpr int most_passes = 6, most_rounds = 20;
+    mover_.measure(v_.r.e, v_.off);
+    far_ = gather<int32_t>(m_, "far triangles", v_.r.e.tris, FarTriangles{v_.off, nullptr});
+    int64_t moved = 0;
+    for (int pass = 0; pass < most_passes && far_.n > 0; ++pass) {
+      find_candidates(pass);
+      const int64_t moves = stars_.run_rounds(
+          v_.r, most_rounds,
+          [&](const int32_t* active, int round) {
+            return StartNearer{v_, active, round};
+          },
+          [&](const int32_t* active, int64_t n, Fate* fate) { mover_.move_nearer(v_, active, n, fate); });
+      if (moves == 0)
+        break;
+      moved += moves;
+      far_ = gather<int32_t>(m_, "far triangles", far_.n, FarTriangles{v_.off, far_.data()});
+    }
+    return moved;
+  }
+
+private:
+  /// The far triangles' corners; after the first pass, for the few that elements hold back, all vertices of
+  /// elements there. No triangle becomes far: a pass looks among what the one before it found.
+  void find_candidates(int pass) {
+    const ElementsView& e = v_.r.e;
+    auto wanted = m_.filled(e.positions, uint8_t{0});
+    m_.for_n("want corners", far_.n, WantCorners<Tri>{e.tri, far_.data(), wanted.data()});
+    near_ = gather<int32_t>(m_, "near triangles", pass > 0 ? near_.n : e.tris,
+                            NearTriangles{e, wanted.data(), pass > 0 ? near_.data() : nullptr});
+    if (pass > 0) {
+      const Ids at_far = near_elements(m_, e, wanted.data(), &stars_.near());
+      m_.for_n("want neighbours", at_far.n, WantCorners<Tet>{e.tet, at_far.data(), wanted.data()});
+    }
+    auto vertex = flagged(m_, "candidates", e.positions, wanted.data());
+    auto near = near_elements(m_, e, wanted.data(), pass > 1 ? &stars_.near() : nullptr);
+    stars_.gather_stars(v_.r, std::move(vertex), std::move(near));
+    mover_.begin(v_.r, stars_.candidates(), stars_.entries());
+    gather_triangles();
+  }
+  void gather_triangles() {
+    const int64_t n = stars_.candidates();
+    const TriangleCandidate of{v_.r.e.tri, near_.data(), stars_.number()};
+    Array<int32_t> owner;
+    int64_t entries = 0;
+    place_by(m_, "triangle stars", 3 * near_.n, n, of, [&](int64_t slots) {
+      entries = slots;
+      triangle_ = m_.template array<int32_t>(slots);
+      owner = m_.template array<int32_t>(slots);
+      return PlaceTriangleStars{of, triangle_.data(), owner.data()};
+    });
+    first_ = m_.filled(n + 1, entries);
+    m_.for_n("first of triangles", entries, FirstOfStars{owner.data(), first_.data()}, {double(entries) * 4});
+    v_.first = first_.data();
+    v_.triangle = triangle_.data();
+  }
+
+  Launcher& m_;
+  Mover& mover_;
+  VertexStars<Launcher>& stars_;
+  NearerView v_{};
+  Array<float> off_;
+  Ids far_, near_; ///< triangles
+  Array<int32_t> triangle_;
+  Array<int64_t> first_;
+};
+
+} // namespace molmesh::contour::detail

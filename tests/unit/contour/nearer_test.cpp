@@ -1,0 +1,52 @@
+// nearer_test.cpp — surface triangles across creases are no farther from the isosurface than half a spacing.
+#include "contour/contour.hpp"
+#include "geom/tet_measures.hpp"
+#include "improve/isosurface.hpp"
+#include "unit/contour/sample_grid.hpp"
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+using namespace molmesh;
+
+namespace {
+
+/// Spacings from the centroid to its foot on the isosurface, of the farthest surface triangle.
+double farthest(const TetMesh& mesh, const improve::Isosurface& isosurface) {
+  double most = 0;
+  for (size_t t = 0; t < mesh.tri.size(); ++t) {
+    if (mesh.boundary[t] != surface)
+      continue;
+    Vec3d centroid;
+    for (const int32_t v : mesh.tri[t])
+      centroid += mesh.point[static_cast<size_t>(v)] / 3.;
+    Vec3d foot = centroid;
+    if (isosurface.project(foot, 5 * isosurface.spacing()))
+      most = std::max(most, norm(foot - centroid) / isosurface.spacing());
+  }
+  return most;
+}
+
+double least_angle(const TetMesh& mesh) {
+  double least = 180;
+  for (const Tet& t : mesh.tet) {
+    const auto x = [&](size_t i) { return mesh.point[static_cast<size_t>(t[i])]; };
+    const Dihedrals d = dihedrals(x(0), x(1), x(2), x(3));
+    least = std::min(least, *std::min_element(d.degree, d.degree + 6));
+  }
+  return least;
+}
+
+} // namespace
+
+TEST_CASE("surface triangles across creases come within half a spacing of the isosurface") {
+  for (const unsigned seed : {2u, 4u, 8u, 9u, 11u, 12u}) {
+    CAPTURE(seed);
+    const BlockGrid grid = test::creased_grid(seed);
+    contour::Options options;
+    options.adapt = 0.41;
+    contour::Summary summary;
+    const TetMesh mesh = contour::contour(grid, options, summary, [](const std::string&) {});
+    CHECK(farthest(mesh, improve::Isosurface(grid, 1)) < 0.5);
+    CHECK(least_angle(mesh) > 13);
+  }
+}
