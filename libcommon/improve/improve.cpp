@@ -142,7 +142,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   }
   if (density && result.rounds == 0) // good enough as it came, and to stay so
     settle(std::min(goal, at_first));
-  for (int repeat = 0, idle = 0; density && repeat < recoveries && idle < 4; ++repeat) {
+  for (int repeat = 0, idle = 0; density && repeat < recoveries && idle < 5; ++repeat) {
     Pass pass;
     pass.goal = goal;
     pass.effort = idle + 1;

@@ -44,11 +44,14 @@ void Mending::flatten() {
   }
 }
 
-void Mending::mend(int rounds) {
-  editor_.straighten = editor_.bold = false;
+void Mending::mend(int rounds, double hopeless) {
+  editor_.straighten = false;
+  editor_.bold = bend;
   editor_.loose = loose;
   editor_.goal = pass_.goal;
   for (int k = 0, idle = 0; k < rounds && idle < 2; ++k) { // after two in vain, one of each kind, all are
+    if (k > 0 && k * deficit() > hopeless)
+      return;
     const int64_t done = editor_.counts.total();
     editor_.worst_first = (k % 2 == 0) == pass_.worst_first;
     std::vector<int32_t> list = below_goal_();

@@ -22,19 +22,23 @@ public:
 
   float floor = 0.01f; ///< share of the goal: what an operation that sets out may leave for the mending
   bool loose = false;  ///< Editor::loose, while mending
+  bool bend = false;   ///< Editor::bold, while mending
 
   /// From now on operations may flatten elements down to the floor.
   void set_out();
   /// What has changed since is made to fit the target.
   void flatten();
-  void mend(int rounds = 6);
+  /// hopeless: deficit() after the first round that is given up, after the second half of it, and so on.
+  void mend(int rounds = 6, double hopeless = 1e30);
   /// Bent triangles are made to fit where no element falls under the goal.
   void straighten();
   /// Of what mending has left below the goal: operations that set out are tried on the worst elements and those
-  /// next to them (effort 4: all round the worst one), each with mending after. What lowers the deficit stays,
-  /// where no more points are off and no more triangles bent than `before` allows; all else is put back. trials:
-  /// how many more, counted down.
+  /// next to them, each with mending after. What lowers the deficit stays, where no more points are off and no more
+  /// triangles bent than `before` allows; all else is put back. trials: how many more, counted down.
   void shake(FaultCount& faults, const Faults& before, int64_t bent_for_a_point, int& trials);
+  /// As shake(), but any of these operations, and what raises the deficit by a little stays too, less and less the
+  /// fewer trials are left (threshold accepting). Where it ends may be worse than where it began.
+  void wander(FaultCount& faults, const Faults& before, int64_t bent_for_a_point, int& trials);
 
   std::vector<int32_t> elements() const;
   /// 0 where no element is far enough below the goal to count as a fault; more for every one, and for worse ones.
@@ -44,7 +48,8 @@ private:
   std::vector<int32_t> below(float goal, const std::vector<int32_t>& of) const; ///< of elements, in their order
   std::vector<int32_t> bad();                                                   ///< in the order of the slots
   std::vector<int32_t> worst();
-  bool operate(int32_t t, int k);
+  static constexpr int operations = 34;
+  bool operate(int32_t t, int k); ///< k: 0 … operations - 1
   struct Trial;
   struct Aim;
   enum class Outcome : uint8_t { none, idle, worse, better };

@@ -4,6 +4,7 @@
 #include "improve/faults.hpp"
 #include "improve/mend.hpp"
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace molmesh::improve {
@@ -11,7 +12,9 @@ namespace {
 
 constexpr size_t most_points = 64; // more were let go here and there: that is what the rounds are for
 constexpr size_t most_states = 4;
-constexpr int most_trials = 300, most_wide_trials = 6000; // of Mending::shake
+constexpr int most_trials = 300, most_bent_trials = 2000; // of Mending::shake
+constexpr int most_steps = 3000;                          // of Mending::wander
+constexpr double hopeless = 3; // of Mending::mend: of 357 that came right 350 lacked less
 
 // How far a trial goes. Bold ones come second, for the points that are left.
 struct Daring {
@@ -19,8 +22,10 @@ struct Daring {
   bool loose;       ///< Editor::loose, while mending
   int64_t for_bent; ///< triangles that may be bent for a point that comes back
   bool straighten;  ///< bent triangles once more, when elements are mended
+  bool bend;        ///< triangles may bend, while mending
 };
-constexpr Daring careful{0.01f, false, 0, false}, bold{1e-5f, true, 2, false}, in_necks{1e-5f, true, 2, true};
+constexpr Daring careful{0.01f, false, 0, false, false}, bold{1e-5f, true, 2, false, false},
+    in_necks{1e-5f, true, 2, true, false}, bending{1e-5f, true, 8, true, true};
 
 class Recovery {
 public:
@@ -34,11 +39,11 @@ public:
     if (shaken) {
       editor_.worst_first = !pass_.worst_first; // as mending leaves it
       if (faults_.points_off().size() <= most_points)
-        try_necks();
+        try_necks(in_necks);
       return;
     }
-    for (const Daring& daring : {careful, bold}) {
-      if (pass_.effort > 1 && !daring.loose)
+    for (const Daring& daring : {careful, bold, bending}) {
+      if (daring.bend ? pass_.effort < 4 : pass_.effort > (daring.loose ? 3 : 1))
         continue; // in vain the time before
       dare(daring);
       const std::vector<int32_t> points = faults_.points_off();
@@ -46,25 +51,28 @@ public:
         return;
       if (points.size() > 1)
         all_back(points);
+      here_.reset();
       for (const int32_t v : faults_.points_off())
         if (is_off(v))
           bring_back(v);
+      here_.reset();
     }
     if (pass_.effort > 1)
       try_harder();
     if (pass_.effort > 2)
-      try_necks();
+      try_necks(pass_.effort > 3 ? bending : in_necks);
   }
 
 private:
-  void try_necks() {
-    follow_necks();
+  void try_necks(const Daring& daring) {
+    follow_necks(daring);
     try_harder();
   }
   void dare(const Daring& daring) {
     daring_ = daring;
     mending_.floor = daring.floor;
     mending_.loose = daring.loose;
+    mending_.bend = daring.bend;
   }
   bool is_off(int32_t v) const { return m_.incident[size_t(v)] >= 0 && editor_.off(v) > 1; }
 
@@ -78,7 +86,7 @@ private:
     if (operation()) {
       mending_.set_out();
       mending_.flatten();
-      mending_.mend();
+      mending_.mend(6, pass_.effort > 1 ? 1e30 : hopeless);
       if (daring_.straighten && mending_.deficit() == 0)
         mending_.straighten();
       if (faults_.better_than(before, daring_.for_bent)) {
@@ -114,10 +122,11 @@ private:
       return;
     const Snapshot snapshot = editor_.save(mending_.elements());
     const Faults before = faults_();
-    int trials = pass_.effort > 3 ? most_wide_trials : most_trials;
+    int trials = pass_.effort > 3 ? most_bent_trials : most_trials, steps = pass_.effort > 4 ? most_steps : 0;
     for (const auto& [lacks, state] : std::exchange(nearly_, {})) {
       editor_.restore(state);
       mending_.shake(faults_, before, daring_.for_bent, trials);
+      mending_.wander(faults_, before, daring_.for_bent, steps);
       if (faults_.better_than(before, daring_.for_bent))
         return;
     }
@@ -173,8 +182,8 @@ private:
   }
 
   // Where the target is narrow: this leaves elements as small as the neck, so it comes last.
-  void follow_necks() {
-    dare(in_necks);
+  void follow_necks(const Daring& daring) {
+    dare(daring);
     const double same = 0.1 * editor_.spacing();
     std::vector<Vec3d> met;
     for (const int32_t v : faults_.points_off()) {
@@ -194,19 +203,26 @@ private:
   }
 
   void bring_back(int32_t v) {
-    const Snapshot snapshot = editor_.save(mending_.elements());
+    if (!here_)
+      here_.emplace(editor_.save(mending_.elements()));
+    if (try_all(v, *here_))
+      here_.reset();
+  }
+
+  // True when the part has changed: then it is better.
+  bool try_all(int32_t v, const Snapshot& snapshot) {
     const Faults before = faults_();
     if (attempt(snapshot, before, [&] { return editor_.smooth(v); }) ||
         attempt(snapshot, before, [&] { return editor_.hand_over(v); }) ||
         attempt(snapshot, before, [&] { return cut_off(v); }))
-      return;
+      return true;
     if (daring_.loose)
       for (const float floor : {0.1f, 0.01f})
         if (attempt(snapshot, before, [&] { return step_by_step({v}, floor); }))
-          return;
+          return true;
     for (const double ratio : {0.5, 0.35, 0.65})
       if (attempt(snapshot, before, [&] { return editor_.nest(v, ratio); }))
-        return;
+        return true;
     std::vector<std::array<int32_t, 3>> edges; // neighbour on the surface, element, 4 i + j
     for (const auto& [t, e] : snapshot.element)
       if (const int i = e.find(v); i >= 0)
@@ -220,7 +236,8 @@ private:
       if (attempt(snapshot, before, [&, e = t, k = ij] { return editor_.contract(e, k / 4, k % 4); }) ||
           attempt(snapshot, before, [&, e = t, k = ij] { return editor_.merge(e, k / 4, k % 4); }) ||
           attempt(snapshot, before, [&, e = t, k = ij] { return editor_.remove_edge(e, k / 4, k % 4); }))
-        return;
+        return true;
+    return false;
   }
 
   Editor& editor_;
@@ -231,6 +248,7 @@ private:
   FaultCount faults_;
   Mending mending_;
   Daring daring_ = careful;
+  std::optional<Snapshot> here_;                    ///< of bring_back(): nothing has changed since
   std::vector<std::pair<double, Snapshot>> nearly_; ///< what it lacks, state; ascending
 };
 

@@ -7,9 +7,7 @@
 
 namespace molmesh::improve {
 
-constexpr int operations = 34;
-
-// The worst elements and those beside them; with effort 4 all at the worst one's corners too.
+// The worst elements and those beside them.
 std::vector<int32_t> Mending::worst() {
   constexpr size_t most = 4;
   std::vector<int32_t> list = bad();
@@ -19,15 +17,6 @@ std::vector<int32_t> Mending::worst() {
     for (const int32_t t : m_.element[size_t(list[i])].n)
       if (t >= 0 && editor_.owned(t) && std::find(list.begin(), list.end(), t) == list.end())
         list.push_back(t);
-  if (pass_.effort < 4 || list.empty())
-    return list;
-  const Element first = m_.element[size_t(list[0])];
-  for (const int32_t t : slots_) {
-    const Element& e = m_.element[size_t(t)];
-    if (e.alive() && std::any_of(first.v.begin(), first.v.end(), [&](int32_t v) { return e.find(v) >= 0; }) &&
-        std::find(list.begin(), list.end(), t) == list.end())
-      list.push_back(t);
-  }
   return list;
 }
 
@@ -116,6 +105,7 @@ size_t Mending::first_telling(const std::vector<Trial>& all, size_t from, FaultC
                     Mending mending(editor, part.mesh, part.slots, pass_, nullptr);
                     mending.floor = floor;
                     mending.loose = loose;
+                    mending.bend = bend;
                     FaultCount f(editor, part.mesh, part.slots, pass_.goal);
                     work_off(mending, f, editor.save(mending.elements()),
                              [&](int32_t t) { return copy.number(t); });

@@ -18,7 +18,7 @@ public:
   void note(const std::vector<int32_t>& points, const Pass& pass, int32_t time);
 
 private:
-  static constexpr int efforts = 5;
+  static constexpr int efforts = 6;
   using Times = std::array<std::array<int32_t, efforts>, 2>; ///< 0: never
 
   Pass of_;
