@@ -21,11 +21,10 @@ TEST_CASE("points come back where mending alone leaves elements below the goal")
     int keep;
     double a, b, c, d;
   };
-  const Narrow k =
-      GENERATE(Narrow{gap, 0, 0.787139, 0.713566, 0.023118, 0.315767},
-               Narrow{spike, 0, 0.808929, 0.398991, 0.424702, 0.413719},
-               Narrow{spike, 0, 0.193356, 0.100474, 0.482637, 0.613703},
-               Narrow{spike, 0, 0.161364, 0.328523, 0.169865, 0.837378}); // the surface bends
+  const Narrow k = GENERATE(Narrow{gap, 0, 0.787139, 0.713566, 0.023118, 0.315767},
+                            Narrow{spike, 0, 0.808929, 0.398991, 0.424702, 0.413719},
+                            Narrow{spike, 0, 0.193356, 0.100474, 0.482637, 0.613703},
+                            Narrow{spike, 0, 0.161364, 0.328523, 0.169865, 0.837378}); // the surface bends
   CAPTURE(k.kind, k.keep, k.a);
   const Vec3d way = Vec3d{k.c - 0.5, k.d - 0.5, k.a - 0.3} / norm(Vec3d{k.c - 0.5, k.d - 0.5, k.a - 0.3});
   const Vec3d middle{5 + 0.3 * k.a, 5 - 0.3 * k.b, 5 + 0.3 * k.c};
