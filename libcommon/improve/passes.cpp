@@ -222,14 +222,13 @@ Counts Schedule::settle(float floor, const Guard& guard) {
   for (const int32_t v : items)
     part.push_back(parts_.owner[size_t(v)]);
   const int32_t time = ++time_;
-  return for_parts(
-      items, part, guard,
-      [&](Editor& editor, std::vector<int32_t>& list) {
-        editor.time = time;
-        for (const int32_t v : list)
-          editor.settle(v, floor);
-      },
-      0); // nothing new comes
+  return for_parts(items, part, guard,
+                   [&](Editor& editor, std::vector<int32_t>& list) {
+                     editor.time = time;
+                     for (const int32_t v : list)
+                       editor.settle(v, floor);
+                   },
+                   {.slots_per_item = 0}); // nothing new comes
 }
 
 } // namespace molmesh::improve

@@ -171,10 +171,11 @@ std::vector<int32_t> Schedule::parts_of(const std::vector<int32_t>& elements) co
 
 // Items of one part, in order, go to one editor with slots of its own.
 Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item,
-                           const Guard& guard, const Work& work, double slots_per_item, size_t slots) {
+                           const Guard& guard, const Work& work, const PartShares& shares) {
   struct Job {
     PartRoom room;
     std::vector<int32_t> items;
+    size_t weight = 0;
     Counts counts;
     Sheets sheets{1};
     uint32_t clock = 0;
@@ -193,7 +194,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     jobs[size_t(j)].items.push_back(items[i]);
   }
   for (Job& job : jobs) {
-    const auto elements = slots + static_cast<size_t>(slots_per_item * double(job.items.size())),
+    const auto elements = shares.slots + static_cast<size_t>(shares.slots_per_item * double(job.items.size())),
                vertices = 16 + elements / 4;
     const auto reserve = [](std::vector<int32_t>& pool, std::vector<int32_t>& room, size_t count, size_t& size) {
       while (room.size() < count && !pool.empty())
@@ -217,10 +218,12 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
   }
   stamp_.resize(m_.element.size(), 0);
   std::vector<Job*> largest_first; // else threads wait for one that came last
-  for (Job& job : jobs)
+  for (Job& job : jobs) {
+    job.weight = shares.weight ? shares.weight(job.room.part) : job.items.size();
     largest_first.push_back(&job);
+  }
   std::stable_sort(largest_first.begin(), largest_first.end(),
-                   [](const Job* a, const Job* b) { return a->items.size() > b->items.size(); });
+                   [](const Job* a, const Job* b) { return a->weight > b->weight; });
   std::atomic<size_t> next{0};
   par::for_n(jobs.empty() ? 0 : threads_, threads_, 1, [&](int64_t) {
     for (const par::Helpers::Busy busy(helpers_);;) {

@@ -10,6 +10,13 @@
 
 namespace molmesh::improve {
 
+/// What parts keep for new elements, and which are worked on first.
+struct PartShares {
+  double slots_per_item = 2;
+  size_t slots = 64;                               ///< beside these
+  std::function<size_t(int32_t part)> weight = {}; ///< largest first; none: of items
+};
+
 /// Runs passes over a mesh that lives as long as it.
 class Schedule {
 public:
@@ -43,9 +50,8 @@ private:
   std::vector<int32_t> low_elements(float goal); ///< worthwhile
   bool in_few_parts(const std::vector<int32_t>& items, int shift, double cell);
   Counts work_off(const std::vector<int32_t>& items, const Pass& pass, int shift, double cell);
-  /// Each part keeps slots_per_item and `slots` more for new elements.
   Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
-                   const Work& work, double slots_per_item = 2, size_t slots = 64);
+                   const Work& work, const PartShares& shares = {});
   void find_worst(); ///< DynamicMesh::worst of the restless stretches
   void set_lattice(int shift, double cell);
   void set_parts(int shift, double cell); ///< its cells
