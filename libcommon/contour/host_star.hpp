@@ -10,7 +10,7 @@
 
 namespace molmesh::contour {
 
-/// Of detail::move_vertex; keeps its memory from star to star.
+/// Of detail::move_vertex and move_nearer; keeps its memory from star to star.
 class HostStar {
 public:
   void begin(const detail::RelaxView& r, int32_t candidate) {

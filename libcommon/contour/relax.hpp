@@ -9,8 +9,9 @@ namespace molmesh::contour {
 /// surface within a share of the grid spacing of `surface` (or no farther than they are); without it they stay.
 /// For elements of both sides: then inside and outside come out the same alone and together. No vertex's worst
 /// element gets worse, all stay positive by the exact predicate; the same result for any number of threads.
-/// Then corners of surface triangles whose centroids are over half a grid spacing from the surface move, so that
-/// fewer are, by no more than that too. Returns how often a vertex moved.
+/// Then corners of surface triangles whose centroids are over half a grid spacing from the surface move nearer: for
+/// that elements may fall to these limits, or to the star's worst where that is beyond. Returns how often a vertex
+/// moved.
 /// lattice_class: lattice_classes of the complex; the lattice's own elements need no look. Empty: all are looked
 /// at.
 int64_t relax(Elements& elements, const LargeArray<uint8_t>& lattice_class, const improve::Target* surface,

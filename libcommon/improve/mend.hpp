@@ -28,7 +28,8 @@ public:
   void set_out();
   /// What has changed since is made to fit the target.
   void flatten();
-  /// hopeless: deficit() after the first round that is given up, after the second half of it, and so on.
+  /// Given up where deficit() is over `hopeless` after the first round, over half of it after the second, and so
+  /// on.
   void mend(int rounds = 6, double hopeless = 1e30);
   /// Bent triangles are made to fit where no element falls under the goal.
   void straighten();

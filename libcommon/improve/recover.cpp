@@ -14,7 +14,7 @@ constexpr size_t most_points = 64; // more were let go here and there: that is w
 constexpr size_t most_states = 4;
 constexpr int most_trials = 300, most_bent_trials = 2000; // of Mending::shake
 constexpr int most_steps = 3000;                          // of Mending::wander
-constexpr double hopeless = 3; // of Mending::mend: of 357 that came right 350 lacked less
+constexpr double hopeless = 3; // of Mending::mend: of 357 that came right 353 lacked less after a round
 
 // How far a trial goes. Bold ones come second, for the points that are left.
 struct Daring {
@@ -44,14 +44,13 @@ public:
     }
     for (const Daring& daring : {careful, bold, bending}) {
       if (daring.bend ? pass_.effort < 4 : pass_.effort > (daring.loose ? 3 : 1))
-        continue; // in vain the time before
+        continue; // not yet, or in vain the time before
       dare(daring);
       const std::vector<int32_t> points = faults_.points_off();
       if (points.empty() || points.size() > most_points)
         return;
       if (points.size() > 1)
         all_back(points);
-      here_.reset();
       for (const int32_t v : faults_.points_off())
         if (is_off(v))
           bring_back(v);
@@ -126,7 +125,8 @@ private:
     for (const auto& [lacks, state] : std::exchange(nearly_, {})) {
       editor_.restore(state);
       mending_.shake(faults_, before, daring_.for_bent, trials);
-      mending_.wander(faults_, before, daring_.for_bent, steps);
+      if (steps > 0 && !faults_.better_than(before, daring_.for_bent))
+        mending_.wander(faults_, before, daring_.for_bent, steps);
       if (faults_.better_than(before, daring_.for_bent))
         return;
     }

@@ -6,7 +6,7 @@ namespace molmesh::improve {
 void Mending::wander(FaultCount& faults, const Faults& before, int64_t bent_for_a_point, int& trials) {
   constexpr double first_rise = 0.15; // of the deficit, in one step
   constexpr int idle_for_a_trial = 20;
-  uint64_t state = 1;
+  uint64_t state = 1; // the same walk every time
   const auto random = [&](size_t n) {
     state = state * 6364136223846793005u + 1442695040888963407u;
     return static_cast<size_t>((state >> 33) % n);
@@ -18,7 +18,7 @@ void Mending::wander(FaultCount& faults, const Faults& before, int64_t bent_for_
   std::vector<int32_t> list = worst();
   for (int idle = idle_for_a_trial * trials; current > 0 && trials > 0 && idle > 0 && !list.empty();) {
     const int32_t t = list[random(list.size())];
-    if (!m_.element[size_t(t)].alive() || !operate(t, static_cast<int>(random(operations)))) {
+    if (!operate(t, static_cast<int>(random(operations)))) {
       --idle;
       continue;
     }

@@ -22,7 +22,7 @@ public:
       for (const int32_t other : v.r.e.tri[t])
         if (other != v.r.vertex[c])
           rest_[k] += v.r.e.position[other];
-      double distance;
+      double distance = 0;
       if (!surface.probe(centroid(k, x_), distance, normal_[k]))
         off_[k] = Off::unknown;
       else
@@ -69,7 +69,8 @@ public:
   }
   HD void keep(const NearerView& v, const float* off) const {
     for (int64_t k = 0; k < n_; ++k)
-      v.off[triangle_[k]] = off[k];
+      if (float& of_triangle = v.off[triangle_[k]]; of_triangle != Off::not_measured) // it is none of the far ones
+        of_triangle = off[k];
   }
 
 private:

@@ -6,7 +6,8 @@
 namespace molmesh::contour::detail {
 
 /// Mover: judge(qualities) lets that item judge all elements; move(view, active, n, fate, most_distance) lets those
-/// move who have the turn; begin(view, candidates, entries) before the first round over these stars.
+/// move who have the turn; begin(view, candidates, entries) before the first round over these stars; and what
+/// NearerPasses asks.
 template <class Launcher, class Mover>
 class RelaxPasses {
   template <class T>

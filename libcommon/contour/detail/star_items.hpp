@@ -60,12 +60,13 @@ struct PlaceStars {
     owner[slot] = static_cast<int32_t>(of(i));
   }
 };
+/// Those between two owners have none; those after the last keep what they have.
 struct FirstOfStars {
   const int32_t* owner;
   int64_t* first;
   HD void operator()(int64_t slot) const {
-    if (slot == 0 || owner[slot - 1] != owner[slot])
-      first[owner[slot]] = slot;
+    for (int32_t c = slot == 0 ? 0 : owner[slot - 1] + 1; c <= owner[slot]; ++c)
+      first[c] = slot;
   }
 };
 

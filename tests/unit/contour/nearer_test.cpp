@@ -1,10 +1,13 @@
 // nearer_test.cpp — surface triangles across creases are no farther from the isosurface than half a spacing.
 #include "contour/contour.hpp"
+#include "contour/detail/star_items.hpp"
 #include "geom/tet_measures.hpp"
 #include "improve/isosurface.hpp"
 #include "unit/contour/sample_grid.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdint>
+#include <vector>
 
 using namespace molmesh;
 
@@ -49,4 +52,13 @@ TEST_CASE("surface triangles across creases come within half a spacing of the is
     CHECK(farthest(mesh, improve::Isosurface(grid, 1)) < 0.5);
     CHECK(least_angle(mesh) > 13);
   }
+}
+
+TEST_CASE("candidates without a triangle have an empty star, wherever they are") {
+  const std::vector<int32_t> owner{1, 1, 4, 6};
+  std::vector<int64_t> first(9 + 1, 4); // of nine candidates
+  const contour::detail::FirstOfStars item{owner.data(), first.data()};
+  for (int64_t slot = 0; slot < 4; ++slot)
+    item(slot);
+  CHECK(first == std::vector<int64_t>{0, 0, 2, 2, 2, 3, 3, 4, 4, 4});
 }

@@ -61,14 +61,14 @@ TEST_CASE("points pushed off the isosurface are recovered, no element is the wor
   improve::Schedule schedule(c.m, &c.surface, 32 * h, 1);
   const improve::Pass pass = recovery_pass(0.5);
   const float worst = schedule.worst();
-  const int64_t below = schedule.below(0.94f * pass.goal);
+  const int64_t below = schedule.below(improve::FaultCount::share * pass.goal);
   for (int k = 0; k < 4; ++k)
     schedule.recover(pass);
   const improve::Fidelity after = improve::measure_fidelity(c.m, c.surface, 1);
   CHECK(after.points_off == 0);
   CHECK(after.turned <= before.turned);
   CHECK(schedule.worst() >= worst);
-  CHECK(schedule.below(0.94f * pass.goal) <= below);
+  CHECK(schedule.below(improve::FaultCount::share * pass.goal) <= below);
   CHECK(surface_shape(improve::extract(c.m)).euler() == 2);
   CHECK_NOTHROW(improve::build(improve::extract(c.m), 180, 1));
 }
