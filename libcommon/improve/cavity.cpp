@@ -105,6 +105,34 @@ bool Editor::rim_in_wall() const {
   });
 }
 
+// Whether a new face between surface points is one of elements that stay: where the mesh ends in the surface, the
+// new elements at it would overlap one of these, and no triangles need cross.
+bool Editor::face_is_taken(const std::vector<int32_t>& old) {
+  const auto has = [](const std::vector<int32_t>& list, int32_t t) {
+    return std::find(list.begin(), list.end(), t) != list.end();
+  };
+  std::vector<int32_t> around; // the first corner
+  for (const int32_t i : used_) {
+    const FaceEntry& x = table_[size_t(i)];
+    const int32_t first = m_.incident[size_t(x.v[0])];
+    if (x.outer || first < 0 ||
+        std::any_of(x.v.begin(), x.v.end(), [&](int32_t v) { return m_.vertex[size_t(v)].kind != Kind::surface; }))
+      continue;
+    around.assign(1, first);
+    for (size_t k = 0; k < around.size(); ++k) {
+      const Element& e = m_.element[size_t(around[k])];
+      if (e.find(x.v[1]) >= 0 && e.find(x.v[2]) >= 0 && !has(old, around[k])) {
+        elsewhere_ = true;
+        return true;
+      }
+      for (size_t f = 0; f < 4; ++f)
+        if (e.v[f] != x.v[0] && e.n[f] >= 0 && !has(around, e.n[f]))
+          around.push_back(e.n[f]);
+    }
+  }
+  return false;
+}
+
 // Triangles that come to lie where the mesh ends go to rim_.
 void Editor::list_rim(const std::vector<Candidate>& now) {
   const uint8_t outside = lost_label();
@@ -130,6 +158,8 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
     if (rim_crosses(true))
       return false;
   }
+  if (sheets_ && face_is_taken(old))
+    return false;
   uint8_t inner = 0, outside = 0;
   for (const int32_t t : old) {
     const Element& e = m_.element[size_t(t)];

@@ -159,6 +159,7 @@ private:
   void list_rim(const std::vector<int32_t>& elements, int32_t v, int32_t without);
   uint8_t lost_label() const;
   bool rim_in_wall() const;
+  bool face_is_taken(const std::vector<int32_t>& old);
   /// Of a surface vertex that goes from one place to another.
   bool inside_walls(Vec3d from, Vec3d to) const { return m_.walls.allow(from, to, apart_from_walls * spacing()); }
   bool rim_crosses(bool stamped_go);

@@ -10,7 +10,8 @@ struct Pass {
   double cell = 1; ///< size of the parts, in the schedule's cells
   bool worst_first = true;
   /// 1: merges and splits too. Of recover(): 2: what cannot be mended is shaken; 3: the surface follows necks; 4:
-  /// it may bend while elements are mended; 5: and what shaking cannot mend wanders.
+  /// where it has elements on both sides it may bend while they are mended; 5: and what shaking cannot mend
+  /// wanders.
   int effort = 0;
   float yield = 1; ///< Editor::yield
   Guard guard;

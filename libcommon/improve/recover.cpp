@@ -42,9 +42,11 @@ public:
         try_necks(in_necks);
       return;
     }
-    for (const Daring& daring : {careful, bold, bending}) {
-      if (daring.bend ? pass_.effort < 4 : pass_.effort > (daring.loose ? 3 : 1))
-        continue; // not yet, or in vain the time before
+    // Where the mesh ends in it, a surface that bends freely could turn inside out unseen.
+    const bool bends = pass_.effort > 3 && editor_.alone();
+    for (const Daring& daring : {careful, bends ? bending : bold}) {
+      if (pass_.effort > 1 && !daring.loose)
+        continue; // in vain the time before
       dare(daring);
       const std::vector<int32_t> points = faults_.points_off();
       if (points.empty() || points.size() > most_points)
@@ -59,7 +61,7 @@ public:
     if (pass_.effort > 1)
       try_harder();
     if (pass_.effort > 2)
-      try_necks(pass_.effort > 3 ? bending : in_necks);
+      try_necks(bends ? bending : in_necks);
   }
 
 private:
