@@ -50,39 +50,20 @@ const Surface& near(const Surface& surface) {
   return surface;
 }
 
-template <class Surface>
+/// Those who have the turn; try_one(candidate, star) moves one.
+template <class TryOne>
 struct MoveFirst {
   static constexpr int64_t grain = 16;
   detail::RelaxView r;
-  const Surface& surface;
-  double most_distance;
   const int32_t* active;
   Fate* fate;
+  TryOne try_one;
   void operator()(int64_t i) const {
     if (fate[i] != Fate::stays)
       return;
     thread_local HostStar star;
     star.begin(r, active[i]);
-    const auto& here = near(surface);
-    if (detail::move_vertex(r, here, most_distance, active[i], star))
-      fate[i] = Fate::moves;
-  }
-};
-
-template <class Surface>
-struct MoveNearerFirst {
-  static constexpr int64_t grain = 16;
-  detail::NearerView v;
-  const Surface& surface;
-  const int32_t* active;
-  Fate* fate;
-  void operator()(int64_t i) const {
-    if (fate[i] != Fate::stays)
-      return;
-    thread_local HostStar star;
-    star.begin(v.r, active[i]);
-    const auto& here = near(surface);
-    if (detail::move_nearer_or_make_room(v, here, active[i], star))
+    if (try_one(active[i], star))
       fate[i] = Fate::moves;
   }
 };
@@ -129,13 +110,21 @@ public:
   }
   void begin(const detail::RelaxView&, int64_t, int64_t) {}
   void move(const detail::RelaxView& r, const int32_t* active, int64_t n, Fate* fate, double most_distance) {
-    m_.for_n("move vertices", n, MoveFirst<Surface>{r, surface_, most_distance, active, fate});
+    const auto try_one = [&](int32_t c, HostStar& star) {
+      const auto& here = near(surface_);
+      return detail::move_vertex(r, here, most_distance, c, star);
+    };
+    m_.for_n("move vertices", n, MoveFirst<decltype(try_one)>{r, active, fate, try_one});
   }
   void measure(const ElementsView& e, float* off) {
     m_.for_n("measure triangles", e.tris, MeasureChunk<Surface>{{e, surface_, off}});
   }
   void move_nearer(const detail::NearerView& v, const int32_t* active, int64_t n, Fate* fate) {
-    m_.for_n("move nearer", n, MoveNearerFirst<Surface>{v, surface_, active, fate});
+    const auto try_one = [&](int32_t c, HostStar& star) {
+      const auto& here = near(surface_);
+      return detail::move_nearer_or_make_room(v, here, c, star);
+    };
+    m_.for_n("move nearer", n, MoveFirst<decltype(try_one)>{v.r, active, fate, try_one});
   }
 
 private:

@@ -68,16 +68,7 @@ private:
   void gather_triangles() {
     const int64_t n = stars_.candidates();
     const TriangleCandidate of{v_.r.e.tri, near_.data(), stars_.number()};
-    Array<int32_t> owner;
-    int64_t entries = 0;
-    place_by(m_, "triangle stars", 3 * near_.n, n, of, [&](int64_t slots) {
-      entries = slots;
-      triangle_ = m_.template array<int32_t>(slots);
-      owner = m_.template array<int32_t>(slots);
-      return PlaceTriangleStars{of, triangle_.data(), owner.data()};
-    });
-    first_ = m_.filled(n + 1, entries);
-    m_.for_n("first of triangles", entries, FirstOfStars{owner.data(), first_.data()}, {double(entries) * 4});
+    place_stars<PlaceTriangleStars>(m_, "triangle stars", 3 * near_.n, n, of, triangle_, first_);
     v_.first = first_.data();
     v_.triangle = triangle_.data();
   }

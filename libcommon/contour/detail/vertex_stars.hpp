@@ -16,6 +16,24 @@ List<Launcher, int32_t> near_elements(Launcher& m, const ElementsView& e, const 
                          NearTets{e.tet, wanted, among ? among->data() : nullptr});
 }
 
+/// The entries of each candidate in order, those of candidate c from first[c] on, by Place{of, entry, owner}; of:
+/// the candidate of a corner, -1: none. Returns how many there are.
+template <class Place, class Launcher, class Of, class Entries, class Firsts>
+int64_t place_stars(Launcher& m, const char* name, int64_t corners, int64_t candidates, const Of& of,
+                    Entries& entry, Firsts& first) {
+  Entries owner;
+  int64_t entries = 0;
+  place_by(m, name, corners, candidates, of, [&](int64_t slots) {
+    entries = slots;
+    entry = m.template array<int32_t>(slots);
+    owner = m.template array<int32_t>(slots);
+    return Place{of, entry.data(), owner.data()};
+  });
+  first = m.filled(candidates + 1, entries);
+  m.for_n("first of stars", entries, FirstOfStars{owner.data(), first.data()}, {double(entries) * 4});
+  return entries;
+}
+
 template <class Launcher>
 class VertexStars {
   template <class T>
@@ -41,22 +59,13 @@ public:
              DescribeNear{r.e.tet, r.quality, near_.data(), number_.data(), described.data()},
              {double(near_.n) * 60});
     const CornerCandidate of{described.data()};
-    Array<int32_t> owner;
-    int64_t entries = 0;
-    place_by(m_, "stars", 4 * near_.n, n, of, [&](int64_t slots) {
-      entries = slots;
-      element_ = m_.template array<int32_t>(slots);
-      owner = m_.template array<int32_t>(slots);
-      return PlaceStars{of, element_.data(), owner.data()};
-    });
-    first_ = m_.filled(n + 1, entries);
-    m_.for_n("first of stars", entries, FirstOfStars{owner.data(), first_.data()}, {double(entries) * 4});
-    neighbour_ = m_.template array<int32_t>(3 * entries + n);
+    entries_ = place_stars<PlaceStars>(m_, "stars", 4 * near_.n, n, of, element_, first_);
+    neighbour_ = m_.template array<int32_t>(3 * entries_ + n);
     worst_ = m_.template array<float>(n);
     m_.for_n(
         "name stars", n,
         NameStars{first_.data(), near_.data(), described.data(), element_.data(), neighbour_.data(), worst_.data()},
-        {double(entries) * 28});
+        {double(entries_) * 28});
     turn_ = m_.filled(n, RelaxView::at_rest);
     wakes_ = m_.filled(n, uint8_t{1});
     changed_ = m_.filled(n, uint8_t{0});
@@ -70,7 +79,6 @@ public:
     r.wakes = wakes_.data();
     r.changed = changed_.data();
     r.moves = moves_.data();
-    entries_ = entries;
   }
 
   /// Start: item that says whose turn it is, made of (active, round); move(active, n, fate) lets those move who
