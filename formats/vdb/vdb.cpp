@@ -2,7 +2,7 @@
 #include "formats/vdb/vdb.hpp"
 #include "error.hpp"
 #include "formats/vdb/decode.hpp"
-#include "par/par.hpp"
+#include "par/pages.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -153,8 +153,8 @@ void Reader::read_leaves() {
     refuse("R3: a leaf occurs twice");
   const size_t n = leaf.size();
   grid_.corner.resize(n);
-  grid_.value.resize(512 * n);
-  grid_.active.resize(8 * n);
+  par::resize_pages(grid_.value, 512 * n, threads_);
+  par::resize_pages(grid_.active, 8 * n, threads_);
   par::for_n(static_cast<int64_t>(n), threads_, 256, [&](int64_t i) {
     const auto b = static_cast<size_t>(i);
     grid_.corner[b] = leaf[b].corner;

@@ -3,6 +3,7 @@
 #include "formats/vtu/vtk_array.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "mesh/adjacency.hpp"
+#include "par/pages.hpp"
 #include <algorithm>
 #include <cmath>
 #include <istream>
@@ -18,14 +19,16 @@ constexpr double coordinate_limit = 1e30; // Å; squares and cubes of it stay fi
 constexpr int64_t tet_limit = int64_t{1} << 29, point_limit = std::numeric_limits<int32_t>::max();
 
 std::string read_all(std::istream& in, const std::string& file) {
+  constexpr size_t step = size_t{1} << 20;
   std::string text;
   const auto start = in.tellg();
   if (start >= 0 && in.seekg(0, std::ios::end)) {
-    text.reserve(static_cast<size_t>(std::max<std::streamoff>(in.tellg() - start, 0)));
+    const auto size = static_cast<size_t>(std::max<std::streamoff>(in.tellg() - start, 0));
+    text.reserve(size + step); // the last step finds the end
+    prepare_pages(text.data(), size);
     in.seekg(start);
   }
   in.clear();
-  constexpr size_t step = size_t{1} << 20;
   for (size_t size = 0;;) {
     text.resize(size + step);
     in.read(text.data() + size, step);
@@ -119,7 +122,7 @@ private:
   // And room, untouched, for a mesh that takes this one's place and is somewhat larger.
   template <class Vector>
   static void reserve(Vector& v, size_t n) {
-    v.reserve(n + n / 16);
+    par::reserve_pages(v, n, n / 16, 1);
   }
 
   void read_cells(const Piece& p, int32_t first_point) {

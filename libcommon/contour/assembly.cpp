@@ -52,7 +52,8 @@ public:
     for (const auto& list : own)
       start.push_back(static_cast<int64_t>(list.size()));
     Vec3d* const point = points(par::exclusive_scan(start));
-    LargeArray<int32_t> number(at(e.positions));
+    LargeArray<int32_t> number;
+    par::resize_pages(number, at(e.positions), threads_);
     for (int64_t r = 0; r < runs; ++r)
       par::for_n(static_cast<int64_t>(own[at(r)].size()), threads_, [&](int64_t i) {
         const int32_t v = own[at(r)][at(i)];
@@ -64,8 +65,8 @@ public:
 
 private:
   template <class Array>
-  static auto room(Array& array, int64_t n) -> decltype(array.data()) {
-    array.resize(at(n));
+  auto room(Array& array, int64_t n) -> decltype(array.data()) {
+    par::resize_pages(array, at(n), threads_);
     return array.data();
   }
   TetMesh& mesh_;

@@ -3,7 +3,7 @@
 #include "contour/detail/at.hpp"
 #include "contour/detail/face_pass.hpp"
 #include "contour/detail/ring_pass.hpp"
-#include "par/par.hpp"
+#include "par/pages.hpp"
 #include <algorithm>
 #include <utility>
 
@@ -23,10 +23,11 @@ struct Joined {
 };
 
 template <class T>
-void append(LargeArray<T>& to, size_t n) {
+void append(LargeArray<T>& to, size_t n, int threads) {
   if (to.size() + n > to.capacity())
     to.reserve(2 * (to.size() + n));
   to.resize(to.size() + n);
+  par::prepare_pages(to.data() + to.size() - n, n * sizeof(T), threads);
 }
 
 /// Appends the batches in order; their new points get the numbers from `first` on, those in out already included.
@@ -47,18 +48,17 @@ void join(const std::vector<Batch>& batches, int32_t first, Joined& out, int thr
     s.point += b.point.size();
     s.spoiled += b.spoiled.size();
   }
-  append(e.tet, s.tet - before.tet);
-  append(e.tri, s.tri - before.tri);
-  append(e.tri_sides, s.tri - before.tri);
-  append(e.boundary, s.tri - before.tri);
-  append(out.link, s.link - before.link);
-  append(e.position, s.point - before.point);
-  append(out.wall, s.point - before.point);
-  append(out.spoiled, s.spoiled - before.spoiled);
+  append(e.tet, s.tet - before.tet, threads);
+  append(e.tri, s.tri - before.tri, threads);
+  append(e.tri_sides, s.tri - before.tri, threads);
+  append(e.boundary, s.tri - before.tri, threads);
+  append(out.link, s.link - before.link, threads);
+  append(e.position, s.point - before.point, threads);
+  append(out.wall, s.point - before.point, threads);
+  append(out.spoiled, s.spoiled - before.spoiled, threads);
   par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t i) {
     const Batch& b = batches[at(i)];
     const Start& to = start[at(i)];
-    prepare_pages(e.tet.data() + to.tet, b.tet.size() * sizeof(Tet));
     const int32_t zero = first + static_cast<int32_t>(to.point) - 1;
     const auto number = [&](int32_t v) { return v >= 0 || v == detail::no_vertex ? v : zero - v; };
     for (size_t k = 0; k < b.tet.size(); ++k)
@@ -114,7 +114,7 @@ LargeArray<int64_t> sort_by_edge(LargeArray<Link>& links, int32_t vertices, int 
   LargeArray<Link> sorted;
   par::place_by(
       n, vertices, threads, [&](int64_t i) { return links[at(i)].inside; },
-      [&](int64_t slots) { sorted.resize(at(slots)); },
+      [&](int64_t slots) { par::resize_pages(sorted, at(slots), threads); },
       [&](int64_t slot, int64_t i) { sorted[at(slot)] = links[at(i)]; });
   links.swap(sorted);
   const LargeArray<int64_t> run =
@@ -180,7 +180,7 @@ Elements make_elements(const ComplexView& view, int threads) {
   out.edge_points = static_cast<int64_t>(out.position.size()) - out.face_points;
   const LargeArray<Vec3d> more = std::move(out.position);
   const int64_t own = view.vertices(), points = own + static_cast<int64_t>(more.size());
-  out.position = LargeArray<Vec3d>(at(points));
+  par::resize_pages(out.position, at(points), threads);
   par::for_n(points, threads,
              [&](int64_t i) { out.position[at(i)] = i < own ? view.position[i] : more[at(i - own)]; });
   return std::move(out);

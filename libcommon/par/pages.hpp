@@ -9,13 +9,18 @@ namespace molmesh::par {
 /// Room for n elements, which will be written soon, and for `more`, which may be.
 template <class Vector>
 void reserve_pages(Vector& v, size_t n, size_t more, int threads) {
-  constexpr int64_t chunk = int64_t{1} << 22; // bytes
   v.reserve(n + more);
-  auto* const begin = reinterpret_cast<std::byte*>(v.data() + v.size());
-  const auto bytes = static_cast<int64_t>((n - v.size()) * sizeof(*v.data()));
-  for_n((bytes + chunk - 1) / chunk, threads, 1, [&](int64_t c) {
-    prepare_pages(begin + c * chunk, static_cast<size_t>(std::min(chunk, bytes - c * chunk)));
-  });
+  if (n > v.size())
+    prepare_pages(v.data() + v.size(), (n - v.size()) * sizeof(*v.data()), threads);
+}
+
+/// n elements, all to be overwritten; in memory at hand where there is enough of it.
+template <class Vector>
+void resize_pages(Vector& v, size_t n, int threads) {
+  if (v.capacity() < n)
+    v = {};
+  reserve_pages(v, n, 0, threads);
+  v.resize(n);
 }
 
 } // namespace molmesh::par

@@ -74,6 +74,15 @@ void for_n(int64_t n, int threads, F&& f) {
   for_n(n, threads, int64_t{1024}, static_cast<F&&>(f));
 }
 
+/// As molmesh::prepare_pages, on all threads.
+inline void prepare_pages(void* begin, size_t bytes, int threads) {
+  constexpr size_t piece = size_t{1} << 22;
+  for_n(static_cast<int64_t>((bytes + piece - 1) / piece), threads, 1, [&](int64_t i) {
+    const size_t first = static_cast<size_t>(i) * piece;
+    molmesh::prepare_pages(static_cast<std::byte*>(begin) + first, std::min(piece, bytes - first));
+  });
+}
+
 /// combine(… combine(combine(init, f(0)), f(1)) …) in a fixed tree: chunks of `grain` left to right, then the
 /// chunk results left to right. Same bits for any number of threads; `combine` need not commute.
 template <class T, class F, class C>
@@ -126,6 +135,7 @@ LargeArray<T> select(int64_t n, int threads, Keep&& keep) {
     start[static_cast<size_t>(c)] = kept;
   });
   LargeArray<T> out(static_cast<size_t>(exclusive_scan(start)));
+  prepare_pages(out.data(), out.size() * sizeof(T), threads);
   for_n(chunks, threads, 1, [&](int64_t c) {
     auto to = out.begin() + start[static_cast<size_t>(c)];
     each(c, [&](int64_t i) { *to++ = static_cast<T>(i); });
@@ -153,6 +163,7 @@ void place_by(int64_t n, int64_t keys, int threads, Key&& key, Sized&& sized, Pl
   const int64_t total = exclusive_scan(start);
   sized(total);
   LargeArray<uint32_t> order(static_cast<size_t>(total));
+  prepare_pages(order.data(), order.size() * sizeof(uint32_t), threads);
   for_n(chunks, threads, 1, [&](int64_t c) {
     each(c, [&](int64_t& slot, int64_t i) { order[static_cast<size_t>(slot++)] = static_cast<uint32_t>(i); });
   });
