@@ -8,10 +8,11 @@
 
 namespace molmesh::contour {
 
-/// The tolerance of a grid of `spacing` Å, in spacings, where none is asked for: a tenth of a spacing, or 0.1 Å, to
-/// which an atom is known anyhow; at most half a spacing.
+/// The tolerance of a grid of `spacing` Å, in spacings, where none is asked for: a tenth of a spacing, or 0.2 Å,
+/// since triangles are off by half of what a cell's surface is off its mean plane, and no atom's place is known to
+/// less than 0.1 Å; at most 0.85, of which corners that move nearer make half a spacing.
 inline double default_adapt(double spacing) {
-  return std::clamp(0.1 / spacing, 0.1, 0.5);
+  return std::clamp(0.2 / spacing, 0.1, 0.85);
 }
 
 struct Options {

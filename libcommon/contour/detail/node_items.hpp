@@ -137,8 +137,8 @@ struct Sheet {
     if (length > 0)
       normal = normal / length;
   }
-  /// Normals within 53° of their mean: one sheet, no crease.
-  HD bool has(const SurfaceSample& s) const { return dot(s.normal, normal) >= 0.6; }
+  /// Normals within 72.5° of their mean: one sheet, no sharp crease.
+  HD bool has(const SurfaceSample& s) const { return dot(s.normal, normal) >= 0.3; }
 };
 
 /// Sets the flags of node i: whole when its children are, its surface is nearly plane, and merging keeps the
