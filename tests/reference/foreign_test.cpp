@@ -14,7 +14,6 @@ TEST_CASE("TetGen's mesh of 1TII reaches 15 degrees, with its surface kept") {
   contour::Options options;
   options.fill_cavities = true;
   options.drop_below = 50;
-  options.adapt = 0.05; // from the default surface TetGen's mesh comes to 14.5 degrees (docs/improve.md)
   contour::Summary summary;
   const TetMesh ours = contour::contour(grid, options, summary, [](const std::string&) {});
   TetMesh mesh = reference::tetgen_fill(ours.point, ours.tri, {}, "q1.6");
