@@ -67,7 +67,7 @@ void describe(CLI::App& app, Options& o) {
          "--adapt", o.adapt,
          "auto or 0 to 100: how far the surface may lie from a coarser cell's mean plane, in grid spacings, and "
          "less where the chords of a small body would cost it volume; 0: uniform cells; auto: 0.1, or as many as "
-         "0.1 Å are, at most 0.5; cells are the grid's own and larger, bodies of few spacings get halves or "
+         "0.2 Å are, at most 0.85; cells are the grid's own and larger, bodies of few spacings get halves or "
          "quarters")
       ->type_name("ERROR");
   app.add_option("--cavities", o.cavities, "closed cavities: keep (region 3) or fill (region 1)")

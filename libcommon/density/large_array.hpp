@@ -1,7 +1,6 @@
 // large_array.hpp — a vector for arrays of many megabytes: resizing does not touch them.
-// Its pages are large ones where the system grants them: a virtual machine that keeps its page tables by traps
-// fills 512 MB in 0.04 s then, and in 0.7 to 1.6 s with ordinary ones, prepared or not; where its host has to fetch
-// them, in 0.8 to 1.2 and 1.6 s. And walks over scattered elements miss fewer translations.
+// Its pages are large ones where the system grants them: they are filled several times as fast, unless a virtual
+// machine's host has to fetch them, and walks over scattered elements miss fewer translations (docs/density.md).
 #pragma once
 #include <atomic>
 #include <cstddef>

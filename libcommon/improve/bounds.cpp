@@ -189,18 +189,46 @@ struct Apart {
 
 } // namespace
 
-// True when a triangle of rim_ crosses another one or another of rim_, or leaves this part's cell. Triangles of
-// other parts change meanwhile, each in its own cell, so none of those is met; triangles of no part stay as they
-// are.
+// near_: what may stand in the way of any triangle of rim_. Triangles of other parts change meanwhile, each in its
+// own cell, so none of those is met; triangles of no part stay as they are.
+void Editor::gather_near(const Sheets& sheets, const SheetTriangle& around, bool may_be_stale) {
+  sheets.any(around, [&](const SheetTriangle& other) {
+    near_.push_back({other, may_be_stale ? Near::Stays::may_be_stale : Near::Stays::not_asked});
+    return false;
+  });
+}
+
+bool Editor::stays_near(Near& n, bool stamped_go) const {
+  if (n.stays == Near::Stays::yes || n.stays == Near::Stays::no)
+    return n.stays == Near::Stays::yes;
+  const auto owner = [&](size_t k) { return parts_.owner[size_t(n.triangle.v[k])]; };
+  const bool stays = !((owner(0) >= 0 && owner(0) != room_.part && owner(0) == owner(1) && owner(0) == owner(2)) ||
+                       (stamped_go && stamp_[size_t(n.triangle.face / 4)] == clock_) ||
+                       (n.stays == Near::Stays::may_be_stale && changed_sheets_.knows(n.triangle.face)));
+  n.stays = stays ? Near::Stays::yes : Near::Stays::no;
+  return stays;
+}
+
+// True when a triangle of rim_ crosses another one or another of rim_, or leaves this part's cell.
 bool Editor::rim_crosses(bool stamped_go) {
   elsewhere_ |= !rim_.empty();
   rim_sheet_.clear();
+  SheetTriangle around; // the box of all
   for (const auto& t : rim_) {
     for (const int32_t v : t)
       if (parts_.at(m_.point[size_t(v)]) != room_.part)
         return true;
-    rim_sheet_.push_back(sheet_triangle(m_.point, t, -1));
+    const SheetTriangle& now = rim_sheet_.emplace_back(sheet_triangle(m_.point, t, -1));
+    for (int a = 0; a < 3; ++a) {
+      around.low[a] = std::min(around.low[a], now.low[a]);
+      around.high[a] = std::max(around.high[a], now.high[a]);
+    }
   }
+  if (rim_.empty())
+    return false;
+  near_.clear();
+  gather_near(changed_sheets_, around, false);
+  gather_near(*sheets_, around, true);
   for (size_t i = 0; i < rim_.size(); ++i) {
     const SheetTriangle& now = rim_sheet_[i];
     // Triangles of a hole with four of them share edges, all with all: turned inside out none crosses another.
@@ -214,21 +242,19 @@ bool Editor::rim_crosses(bool stamped_go) {
     for (size_t j = 0; j < i; ++j)
       if (!now.of_one_sheet(rim_sheet_[j], true) && triangles_cross(m_.point, now.v, rim_[j]))
         return true;
-    const auto crosses = [&](const SheetTriangle& other, bool may_be_stale) {
+    for (Near& n : near_) {
+      const SheetTriangle& other = n.triangle;
+      if (!now.box_meets(other))
+        continue;
       const Apart apart(now.v, other.v);
       const bool one_sheet = now.of_one_sheet(other, apart.beside());
-      if (one_sheet && !apart.share_edge()) // before what is further away in memory
-        return false;
-      const auto owner = [&](size_t k) { return parts_.owner[size_t(other.v[k])]; };
-      if ((owner(0) >= 0 && owner(0) != room_.part && owner(0) == owner(1) && owner(0) == owner(2)) ||
-          (stamped_go && stamp_[size_t(other.face / 4)] == clock_) ||
-          (may_be_stale && changed_sheets_.knows(other.face)))
-        return false;
+      if ((one_sheet && !apart.share_edge()) || !stays_near(n, stamped_go)) // the latter is further away in memory
+        continue;
       note(apart, other.v);
-      return !one_sheet && triangles_cross(m_.point, now.v, other.v);
-    };
-    if (changed_sheets_.any(now, [&](const SheetTriangle& other) { return crosses(other, false); }) ||
-        sheets_->any(now, [&](const SheetTriangle& other) { return crosses(other, true); }) || turns_over(now.v))
+      if (!one_sheet && triangles_cross(m_.point, now.v, other.v))
+        return true;
+    }
+    if (turns_over(now.v))
       return true;
   }
   return false;

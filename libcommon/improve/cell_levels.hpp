@@ -9,9 +9,24 @@
 
 namespace molmesh::improve {
 
+inline int64_t cell_of(double place) {
+  constexpr double far = 4e18; // where differences still fit
+  return static_cast<int64_t>(std::clamp(std::floor(place), -far, far));
+}
+
 struct CellRange {
   std::array<int64_t, 3> low, high;
 
+  /// Whether this cell is the first of those that the range shares with a box whose lowest corner that is.
+  template <class T>
+  bool first_with(Vec3<T> box_low, double size, std::array<int64_t, 3> cell) const {
+    for (int a = 0; a < 3; ++a)
+      if (std::max(low[size_t(a)], cell_of(double(box_low[a]) / size)) != cell[size_t(a)])
+        return false;
+    return true;
+  }
+
+  bool operator==(const CellRange&) const = default;
   double count() const {
     double cells = 1;
     for (size_t a = 0; a < 3; ++a)
@@ -29,11 +44,6 @@ struct CellRange {
 
 inline double cell_size(double cell, int level) {
   return std::ldexp(cell, 2 * level);
-}
-
-inline int64_t cell_of(double place) {
-  constexpr double far = 4e18; // where differences still fit
-  return static_cast<int64_t>(std::clamp(std::floor(place), -far, far));
 }
 
 template <class T>

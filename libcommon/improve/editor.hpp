@@ -162,6 +162,14 @@ private:
   bool face_is_taken(const std::vector<int32_t>& old);
   /// Of a surface vertex that goes from one place to another.
   bool inside_walls(Vec3d from, Vec3d to) const { return m_.walls.allow(from, to, apart_from_walls * spacing()); }
+  /// A triangle near rim_, and whether it stays where it is.
+  struct Near {
+    enum class Stays : uint8_t { not_asked, may_be_stale, yes, no };
+    SheetTriangle triangle;
+    Stays stays;
+  };
+  void gather_near(const Sheets& sheets, const SheetTriangle& around, bool may_be_stale);
+  bool stays_near(Near& n, bool stamped_go) const;
   bool rim_crosses(bool stamped_go);
   bool turns_over(const std::array<int32_t, 3>& t) const;
   void move_rim();
@@ -251,6 +259,7 @@ private:
   std::vector<std::array<int32_t, 3>> rim_;
   std::vector<int64_t> rim_face_;
   std::vector<SheetTriangle> rim_sheet_;
+  std::vector<Near> near_;
   /// A triangle across the edge opposite a triangle's vertex.
   struct Beyond {
     int edge;

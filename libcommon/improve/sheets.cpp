@@ -24,6 +24,8 @@ SheetTriangle sheet_triangle(const std::vector<Vec3d>& point, std::array<int32_t
 void Sheets::insert(const SheetTriangle& t) {
   if (eight_.size() + 27 > INT32_MAX)
     fail(Status::failed, "too many surface triangles to keep from crossing each other");
+  if (const int32_t* const at = face_.find(uint64_t(t.face)); at && *at >= 0 && move(*at, t))
+    return;
   erase(t.face);
   if (free_.empty()) {
     free_.push_back(static_cast<int32_t>(triangle_.size()));
@@ -35,6 +37,24 @@ void Sheets::insert(const SheetTriangle& t) {
   face_[uint64_t(t.face)] = id;
   levels_ |= uint64_t{1} << cell_level(t.low, t.high, cell_);
   for_cells(t, [&](uint64_t key) { put(chain_[key], id); });
+}
+
+/// Most moves are short. False, and nothing done, where that needs other cells.
+bool Sheets::move(int32_t id, const SheetTriangle& t) {
+  SheetTriangle& before = triangle_[size_t(id)];
+  const int level = cell_level(t.low, t.high, cell_);
+  if (cell_level(before.low, before.high, cell_) != level || cells(before, level) != cells(t, level))
+    return false;
+  before = t;
+  for_cells(t, [&](uint64_t key) {
+    for (int32_t c = chain_[key]; c >= 0; c = eight_[size_t(c)].next)
+      for (size_t n = 0; n < 8; ++n)
+        if (Eight& e = eight_[size_t(c)]; e.triangle[n] == id) {
+          e.set(n, id, t);
+          return;
+        }
+  });
+  return true;
 }
 
 void Sheets::put(int32_t& chain, int32_t id) {

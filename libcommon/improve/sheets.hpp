@@ -47,7 +47,7 @@ public:
   void merge(const Sheets& later);
   size_t alive() const { return triangle_.size() - free_.size(); }
   size_t boxes() const; ///< that cells hold: 27 for each triangle at most
-  /// True as soon as f(triangle) is, over all whose boxes t's meets, some more than once.
+  /// True as soon as f(triangle) is, over all whose boxes t's meets, each once.
   template <class F>
   bool any(const SheetTriangle& t, F&& f) const;
 
@@ -88,6 +88,7 @@ private:
     const int level = cell_level(t.low, t.high, cell_);
     cells(t, level).for_each([&](int64_t i, int64_t j, int64_t k) { f(cell_key(i, j, k, level)); });
   }
+  bool move(int32_t id, const SheetTriangle& t);
   void put(int32_t& chain, int32_t id);
   void take_out(int32_t chain, int32_t id);
 
@@ -106,14 +107,18 @@ bool Sheets::any(const SheetTriangle& t, F&& f) const {
   if (alive() > 0)
     for_levels(levels_, [&](int level) {
       const CellRange range = cells(t, level);
+      const double size = cell_size(cell_, level);
       all = all || range.count() > 27 + double(triangle_.size()); // one far larger than those
       if (!all)
         range.for_each([&](int64_t i, int64_t j, int64_t k) {
           const int32_t* first = found ? nullptr : chain_.find(cell_key(i, j, k, level));
           for (int32_t c = first ? *first : -1; c >= 0 && !found; c = eight_[size_t(c)].next) {
-            const auto gap = eight_[size_t(c)].gaps(t);
+            const Eight& e = eight_[size_t(c)];
+            const auto gap = e.gaps(t);
             for (size_t n = 0; n < 8 && !found; ++n)
-              found = gap[n] <= 0 && f(triangle_[size_t(eight_[size_t(c)].triangle[n])]);
+              found = gap[n] <= 0 &&
+                      range.first_with(Vec3f{e.low[0][n], e.low[1][n], e.low[2][n]}, size, {i, j, k}) &&
+                      f(triangle_[size_t(e.triangle[n])]);
           }
         });
     });

@@ -1,5 +1,6 @@
 // par_test.cpp — same results at any number of threads.
 #include "par/launcher.hpp"
+#include "par/pages.hpp"
 #include "par/par.hpp"
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -129,4 +130,35 @@ TEST_CASE("a launcher's short loops run on the calling thread") {
   CHECK(elsewhere == 0);
   launcher.for_n("long", 16 * WhoRuns::grain * par::Launcher::least_pieces, WhoRuns{&elsewhere});
   CHECK(elsewhere > 0);
+}
+
+TEST_CASE("memory that is asked for keeps what it and its neighbours hold") {
+  std::vector<LargeArray<uint8_t>> array;
+  const auto pattern = [](size_t a, size_t i) { return static_cast<uint8_t>(31 * a + i % 251); };
+  for (const size_t n : {100u, 5000u, 200'000u, 3'000'001u, 9u}) {
+    LargeArray<uint8_t> one(n);
+    for (size_t i = 0; i < n; ++i)
+      one[i] = pattern(array.size(), i);
+    array.push_back(std::move(one));
+  }
+  for (const int threads : {1, 2})
+    for (LargeArray<uint8_t>& one : array)
+      par::prepare_pages(one.data() + one.size() / 3, one.size() / 2, threads);
+  for (size_t a = 0; a < array.size(); ++a)
+    for (size_t i = 0; i < array[a].size(); ++i)
+      REQUIRE(array[a][i] == pattern(a, i));
+}
+
+TEST_CASE("arrays are made anew in the memory that they have, or in enough of it") {
+  std::vector<int32_t> v{1, 2, 3};
+  v.reserve(300'000);
+  const int32_t* const before = v.data();
+  par::resize_pages(v, 200'000, 2);
+  CHECK(v.size() == 200'000);
+  CHECK(v.data() == before);
+  par::resize_pages(v, 700'000, 2);
+  CHECK(v.size() == 700'000);
+  v.back() = 7;
+  par::resize_pages(v, 2, 2);
+  CHECK(v.size() == 2);
 }
