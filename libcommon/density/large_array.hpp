@@ -31,7 +31,7 @@ inline void ask_for_large_pages(void* array, std::size_t bytes) {
   auto begin = reinterpret_cast<std::uintptr_t>(array), end = begin + bytes;
   if (const auto heap = reinterpret_cast<std::uintptr_t>(sbrk(0)); end <= heap) {
     const std::uintptr_t before = asked_up_to.exchange(heap);
-    if (before == heap)
+    if (before >= heap) // by another thread, which may have seen it later
       return;
     begin = before == 0 ? begin : before;
     end = heap;
