@@ -14,6 +14,16 @@ constexpr int32_t most_cells = 1 << 20; // a Morton key holds 21 bits an axis
 /// How much spacings beyond the grid may stretch or shrink, as a share, for the walls to lie where asked.
 constexpr double most_stretch = 0.3;
 
+/// Where the middle of the grid should lie, in lattice points from the lower wall; `middle`: where it does. A third
+/// or two thirds into an octree cell of `half` is as far into its cells of every smaller level. On a corner of
+/// large cells, where the middle of a box comes to lie, all cells round it are divided for balance, level after
+/// level.
+int32_t off_centre(int32_t middle, int32_t half) {
+  const int32_t corner = middle / half * half;
+  const int32_t third = corner + half / 3, two_thirds = corner + half - half / 3;
+  return std::abs(third - middle) < std::abs(two_thirds - middle) ? third : two_thirds;
+}
+
 /// Largest level whose cells are no longer than half of `extent` cells; at most 12.
 int level_for(double extent) {
   int level = 0;
@@ -173,6 +183,17 @@ bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
     const auto low_change = static_cast<int32_t>(std::lround(double(change) * below / beyond));
     begin -= low_change;
     end += change - low_change;
+  }
+  if (exact && whole && top_level > 0 && begin < first && end > last) {
+    const int32_t middle = (first + last) / 2 - begin;
+    const int32_t shift = (off_centre(middle, unit / 2) - middle) / 32 * 32; // surface cells stay the same
+    const auto gives_way = [](int32_t spacings, double asked) {
+      return std::abs(spacings - asked) <= most_stretch * asked;
+    };
+    if (gives_way(first - begin + shift, first - low) && gives_way(end - last - shift, high - last)) {
+      begin -= shift;
+      end -= shift;
+    }
   }
   cells[a] = end - begin;
   base_[a] = begin;
