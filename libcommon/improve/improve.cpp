@@ -41,6 +41,8 @@ const Stage stages[] = {
     {0.97, 1, 32, true, lifted},
 };
 constexpr size_t refresh_offset = 4;
+// From this round on elements longer than parts, as a far box has, are worked on too, on one thread: they are few.
+constexpr size_t lattice_outgrown = 8;
 // What settling and straightening spoil takes this many rounds to heal: with fewer they may spoil nothing.
 constexpr int rounds_to_heal = 8;
 // Where two cells a part leave fewer than this, first passes take one: a single part would be one thread's work.
@@ -123,6 +125,12 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
       result.counts += c;
       done += c.total();
     }
+    if (size_t(round) >= lattice_outgrown)
+      if (pass.cell = schedule.cell_of_all(stage.cell); pass.cell > 0) {
+        const Counts c = schedule.run(pass);
+        result.counts += c;
+        done += c.total();
+      }
     if (density && heals && size_t(round) >= straighten_first && size_t(round) <= straighten_last) {
       pass.goal = static_cast<float>(straighten_share * straighten_share * goal);
       pass.guard = straight;

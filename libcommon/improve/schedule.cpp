@@ -1,5 +1,6 @@
 // schedule.cpp — parts, their reserved slots, and the sheets near them.
 #include "improve/schedule.hpp"
+#include "improve/element_pass.hpp"
 #include "par/pages.hpp"
 #include <algorithm>
 #include <atomic>
@@ -106,11 +107,8 @@ int64_t Schedule::below(float goal) const {
       [](int64_t a, int64_t b) { return a + b; });
 }
 
-void Schedule::set_lattice(int shift, double cell) {
-  struct Box {
-    Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-  };
-  const auto [low, high] = par::reduce(
+Schedule::Box Schedule::bounds() const {
+  return par::reduce(
       static_cast<int64_t>(m_.point.size()), threads_, Box{},
       [&](int64_t v) {
         return m_.incident[size_t(v)] >= 0 ? Box{m_.point[size_t(v)], m_.point[size_t(v)]} : Box{};
@@ -120,6 +118,28 @@ void Schedule::set_lattice(int shift, double cell) {
         a.high = {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)};
         return a;
       });
+}
+
+double Schedule::cell_of_all(double cell) const {
+  const double most = cell * cell_ / 4;
+  const Box box = bounds();
+  const double extent = std::max({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z});
+  if (extent <= most)
+    return 0;
+  const bool any_longer = par::reduce(
+      static_cast<int64_t>(m_.element.size()), threads_, false,
+      [&](int64_t e) {
+        const Element& el = m_.element[size_t(e)];
+        return el.alive() && std::any_of(std::begin(edges), std::end(edges), [&](const auto& ij) {
+                 return norm(m_.point[size_t(el.v[size_t(ij[0])])] - m_.point[size_t(el.v[size_t(ij[1])])]) > most;
+               });
+      },
+      [](bool a, bool b) { return a || b; });
+  return any_longer ? 16 * extent / cell_ : 0;
+}
+
+void Schedule::set_lattice(int shift, double cell) {
+  const auto [low, high] = bounds();
   parts_.low = low;
   // Fractions of a cell that never line up again on all axes: every neighborhood lies inside some part soon.
   static constexpr double stride[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};

@@ -40,6 +40,9 @@ public:
   /// How many parts of that size, in the schedule's cells, hold a point of the surface.
   int64_t parts_at_surface(double cell);
   int64_t below(float goal) const;
+  /// Size of parts, in the schedule's cells, of which one holds nearly always the whole mesh. 0 where no edge is
+  /// longer than a quarter of parts of `cell`: they will do.
+  double cell_of_all(double cell) const;
 
 private:
   std::vector<int32_t> surface_points() const;
@@ -52,6 +55,10 @@ private:
   Counts work_off(const std::vector<int32_t>& items, const Pass& pass, int shift, double cell);
   Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
                    const Work& work, const PartShares& shares = {});
+  struct Box {
+    Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  };
+  Box bounds() const;
   void find_worst(); ///< DynamicMesh::worst of the restless stretches
   void set_lattice(int shift, double cell);
   void set_parts(int shift, double cell); ///< its cells
