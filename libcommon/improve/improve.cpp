@@ -102,6 +102,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
       goal, static_cast<float>(std::min(angle_quality(result.before.min), angle_quality(result.before.max))));
   const bool heals = options.iterations >= rounds_to_heal;
   const bool small = schedule.parts_at_surface(2) < fewest_parts;
+  double cell_of_all = 0;
   for (int round = 0; round < options.iterations && schedule.worst() < goal; ++round) {
     const Stage& stage = stages[std::min<size_t>(size_t(round), std::size(stages) - 1)];
     Pass pass;
@@ -125,12 +126,14 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
       result.counts += c;
       done += c.total();
     }
-    if (size_t(round) >= lattice_outgrown)
-      if (pass.cell = schedule.cell_of_all(stage.cell); pass.cell > 0) {
-        const Counts c = schedule.run(pass);
-        result.counts += c;
-        done += c.total();
-      }
+    if (size_t(round) == lattice_outgrown)
+      cell_of_all = schedule.cell_of_all(stage.cell);
+    if (cell_of_all > 0) {
+      pass.cell = cell_of_all;
+      const Counts c = schedule.run(pass);
+      result.counts += c;
+      done += c.total();
+    }
     if (density && heals && size_t(round) >= straighten_first && size_t(round) <= straighten_last) {
       pass.goal = static_cast<float>(straighten_share * straighten_share * goal);
       pass.guard = straight;
