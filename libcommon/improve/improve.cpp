@@ -32,15 +32,21 @@ struct Stage {
   double cell;
   bool worst_first;
   const Guard& guard;
+  double least_step = 0.01;
 };
 const Stage stages[] = {
-    {0.35, 0, 1, true, kept},    {0.6, 0, 1, true, kept},     {0.8, 1, 1, true, kept},
-    {0.9, 1, 2, true, kept},     {1, 1, 2, false, kept},      {1, 1, 8, true, kept},
-    {0.8, 1, 8, true, released}, {1, 1, 8, false, released},  {0.5, 1, 32, true, lifted},
-    {1, 1, 32, true, released},  {0.97, 1, 32, true, lifted}, {1, 1, 32, false, released},
+    {0.35, 0, 1, true, kept, 0.1}, {0.6, 0, 1, true, kept, 0.1}, {0.8, 1, 1, true, kept, 0.1},
+    {0.9, 1, 2, true, kept, 0.1},  {1, 1, 2, false, kept, 0.03}, {1, 1, 8, true, kept},
+    {0.8, 1, 8, true, released},   {1, 1, 8, false, released},   {0.5, 1, 32, true, lifted},
+    {1, 1, 32, true, released},    {0.97, 1, 32, true, lifted},  {1, 1, 32, false, released},
     {0.97, 1, 32, true, lifted},
 };
 constexpr size_t refresh_offset = 4;
+// Where that many elements are below the goal the first rounds take them in the mesh's order and search for places
+// by coarse steps alone: the rounds after find what is left to finer ones. Not without a density, where the surface
+// that came in hardly gives way: TetGen's mesh of 1TII came to 14.9 degrees, not 17.3.
+constexpr int64_t many_elements = 16384;
+constexpr size_t rounds_of_many = 5;
 // From this round on elements longer than parts, as a far box has, are worked on too, on one thread: they are few.
 constexpr size_t lattice_outgrown = 8;
 // What settling and straightening spoil takes this many rounds to heal: with fewer they may spoil nothing.
@@ -56,7 +62,9 @@ const Guard straight{40, 0.24, 0.5, 0};
 
 // Points off the isosurface come back where that can be mended; every repetition has other parts, and none of them
 // where none is left. Efforts begin anew after each that brings one back, and a large mesh has many of these.
-constexpr int recoveries = 32;
+// Of many points the first ones bring most back, in smaller parts: more of these at once, and less to put by for
+// each.
+constexpr int recoveries = 32, recoveries_of_many = 4;
 
 } // namespace
 
@@ -102,6 +110,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
       goal, static_cast<float>(std::min(angle_quality(result.before.min), angle_quality(result.before.max))));
   const bool heals = options.iterations >= rounds_to_heal;
   const bool small = schedule.parts_at_surface(2) < fewest_parts;
+  const bool many = density && schedule.below(goal) >= many_elements;
   double cell_of_all = 0;
   for (int round = 0; round < options.iterations && schedule.worst() < goal; ++round) {
     const Stage& stage = stages[std::min<size_t>(size_t(round), std::size(stages) - 1)];
@@ -111,6 +120,8 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     pass.effort = stage.effort;
     pass.cell = stage.cell;
     pass.worst_first = stage.worst_first;
+    pass.in_mesh_order = many && size_t(round) < rounds_of_many;
+    pass.least_step = many ? stage.least_step : Pass{}.least_step;
     pass.guard = density || stage.guard.lift == 0 ? stage.guard : hardly_lifted;
     pass.yield = round == 0 ? 0.25f : 1.f; // clusters far smaller than the grid have to go as a whole
     if (stage.guard.lift > 0)
@@ -158,7 +169,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     pass.goal = goal;
     pass.effort = idle + 1;
     pass.worst_first = repeat % 2 == 0;
-    pass.cell = 0.5; // what goes wrong is taken back: parts are small
+    pass.cell = many && repeat < recoveries_of_many ? 0.35 : 0.5; // what goes wrong is taken back: parts are small
     pass.guard = released;
     const Counts c = schedule.recover(pass);
     idle = c.total() > 0 ? std::min(idle, 1) : idle + 1;

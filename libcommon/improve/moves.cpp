@@ -62,8 +62,9 @@ bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double le
     } straightness{*this, above};
     return pattern_search(straightness, x, best, 1, length, basis, dimensions, bind, [](Vec3d) { return true; });
   }
-  return pattern_search(spokes_, x, best, aim, length, basis, dimensions, bind,
-                        [&](Vec3d y) { return sails_fit(y, before); });
+  return pattern_search(
+      spokes_, x, best, aim, length, basis, dimensions, bind, [&](Vec3d y) { return sails_fit(y, before); },
+      least_step);
 }
 
 // The best place on the target around x where the surface fits better. The way along the gradient alone leads

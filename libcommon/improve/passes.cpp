@@ -84,6 +84,12 @@ void sort_worst_first(const DynamicMesh& m, std::vector<int32_t>& list) {
 
 namespace {
 
+// What is near in the mesh's order is near in space, and still in the caches.
+void sort_in_mesh_order(const DynamicMesh& m, std::vector<int32_t>& list, float first_below) {
+  par::sort_unique(list, 1);
+  std::stable_partition(list.begin(), list.end(), [&](int32_t t) { return m.element[size_t(t)].q < first_below; });
+}
+
 // The elements at a surface vertex: all of them hang together by their faces.
 void add_star(const DynamicMesh& m, int32_t v, std::vector<int32_t>& list) {
   const auto first = static_cast<std::ptrdiff_t>(list.size());
@@ -144,7 +150,7 @@ bool Schedule::in_few_parts(const std::vector<int32_t>& items, int shift, double
   return squares * fewest_parts_in_effect > 1;
 }
 
-// In the lattice's parts, from the worst down, and what comes of them.
+// In the lattice's parts, and what comes of them.
 Counts Schedule::work_off(const std::vector<int32_t>& items, const Pass& pass, int shift, double cell) {
   constexpr int32_t sweeps = 4;
   const int32_t start = time_;
@@ -156,9 +162,13 @@ Counts Schedule::work_off(const std::vector<int32_t>& items, const Pass& pass, i
     editor.goal = pass.goal;
     editor.worst_first = pass.worst_first;
     editor.yield = pass.yield;
+    editor.least_step = pass.least_step;
     for (int32_t sweep = 1; sweep <= sweeps && !list.empty(); ++sweep) {
       editor.time = start + sweep;
-      sort_worst_first(m_, list);
+      if (pass.in_mesh_order)
+        sort_in_mesh_order(m_, list, pass.goal / 2);
+      else
+        sort_worst_first(m_, list);
       editor.changed.clear();
       for (const int32_t e : list)
         if (worthwhile(e, pass.goal) && !improve_element(editor, m_, e, pass))
