@@ -186,7 +186,8 @@ bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
   }
   if (exact && whole && top_level > 0 && begin < first && end > last) {
     const int32_t middle = (first + last) / 2 - begin;
-    const int32_t shift = (off_centre(middle, unit / 2) - middle) / 32 * 32; // surface cells stay the same
+    constexpr int32_t largest_surface_cell = 1 << most_merges; // in steps of these all surface cells stay the same
+    const int32_t shift = (off_centre(middle, unit / 2) - middle) / largest_surface_cell * largest_surface_cell;
     const auto gives_way = [](int32_t spacings, double asked) {
       return std::abs(spacings - asked) <= most_stretch * asked;
     };

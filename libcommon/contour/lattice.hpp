@@ -9,6 +9,9 @@
 
 namespace molmesh::contour {
 
+/// Levels that surface cells may merge over: 32 fine spacings at most.
+inline constexpr int most_merges = 5;
+
 /// What --box asks for.
 struct BoxRequest {
   enum Kind { automatic, tight, factor, corners } kind = automatic;

@@ -125,10 +125,10 @@ public:
   Counts counts;
   float goal = 1; ///< elements of less quality count in the deficit
   bool worst_first = true;
-  bool straighten = false;  ///< operations are to make the surface fit
-  bool bold = false;        ///< operations may bend the surface
-  bool loose = false;       ///< surface vertices move anywhere near enough to the target, not on it alone
-  double least_step = 0.01; ///< pattern_search()
+  bool straighten = false;         ///< operations are to make the surface fit
+  bool bold = false;               ///< operations may bend the surface
+  bool loose = false;              ///< surface vertices move anywhere near enough to the target, not on it alone
+  double least_step = finest_step; ///< pattern_search()
   float yield = 1;  ///< contractions may lower the worst element to this share where the deficit falls by a tenth
   int32_t time = 1; ///< what operations write to DynamicMesh::touched
 

@@ -32,7 +32,7 @@ struct Stage {
   double cell;
   bool worst_first;
   const Guard& guard;
-  double least_step = 0.01;
+  double least_step = finest_step; // where many elements are below the goal
 };
 const Stage stages[] = {
     {0.35, 0, 1, true, kept, 0.1}, {0.6, 0, 1, true, kept, 0.1}, {0.8, 1, 1, true, kept, 0.1},
@@ -46,7 +46,6 @@ constexpr size_t refresh_offset = 4;
 // by coarse steps alone: the rounds after find what is left to finer ones. Not without a density, where the surface
 // that came in hardly gives way: TetGen's mesh of 1TII came to 14.9 degrees, not 17.3.
 constexpr int64_t many_elements = 16384;
-constexpr size_t rounds_of_many = 5;
 // From this round on elements longer than parts, as a far box has, are worked on too, on one thread: they are few.
 constexpr size_t lattice_outgrown = 8;
 // What settling and straightening spoil takes this many rounds to heal: with fewer they may spoil nothing.
@@ -120,8 +119,8 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     pass.effort = stage.effort;
     pass.cell = stage.cell;
     pass.worst_first = stage.worst_first;
-    pass.in_mesh_order = many && size_t(round) < rounds_of_many;
-    pass.least_step = many ? stage.least_step : Pass{}.least_step;
+    pass.least_step = many ? stage.least_step : finest_step;
+    pass.in_mesh_order = pass.least_step > finest_step;
     pass.guard = density || stage.guard.lift == 0 ? stage.guard : hardly_lifted;
     pass.yield = round == 0 ? 0.25f : 1.f; // clusters far smaller than the grid have to go as a whole
     if (stage.guard.lift > 0)
@@ -131,16 +130,12 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
       done = flow(m, isosurface.get(), pass);
       result.counts.moves += done;
     }
-    for (int repeat = 0; repeat < 2; ++repeat) {
-      pass.cell = repeat == 0 && small ? std::min(stage.cell, 1.) : stage.cell;
-      const Counts c = schedule.run(pass);
-      result.counts += c;
-      done += c.total();
-    }
     if (size_t(round) == lattice_outgrown)
       cell_of_all = schedule.cell_of_all(stage.cell);
-    if (cell_of_all > 0) {
-      pass.cell = cell_of_all;
+    for (const double cell : {small ? std::min(stage.cell, 1.) : stage.cell, stage.cell, cell_of_all}) {
+      if (cell == 0)
+        continue;
+      pass.cell = cell;
       const Counts c = schedule.run(pass);
       result.counts += c;
       done += c.total();

@@ -1,6 +1,7 @@
 // pass.hpp — what a pass over a mesh aims at.
 #pragma once
 #include "improve/guard.hpp"
+#include "improve/search.hpp"
 
 namespace molmesh::improve {
 
@@ -11,7 +12,7 @@ struct Pass {
   bool worst_first = true;
   /// Elements in the mesh's order, those under half of the goal before the others; else the worst ones first.
   bool in_mesh_order = false;
-  double least_step = 0.01; ///< of searches for a vertex's place, pattern_search()
+  double least_step = finest_step; ///< of searches for a vertex's place, pattern_search()
   /// 1: merges and splits too. Of recover(): 2: what cannot be mended is shaken; 3: the surface follows necks; 4:
   /// where it has elements on both sides it may bend while they are mended; 5: and what shaking cannot mend
   /// wanders.

@@ -40,7 +40,7 @@ public:
   /// How many parts of that size, in the schedule's cells, hold a point of the surface.
   int64_t parts_at_surface(double cell);
   int64_t below(float goal) const;
-  /// Size of parts, in the schedule's cells, of which one holds nearly always the whole mesh. 0 where no edge is
+  /// Size of parts, in the schedule's cells, of which one nearly always holds the whole mesh. 0 where no edge is
   /// longer than a quarter of parts of `cell`: they will do.
   double cell_of_all(double cell) const;
 

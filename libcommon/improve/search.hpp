@@ -7,6 +7,9 @@
 
 namespace molmesh::improve {
 
+/// Steps under this share of the length are rarely worth their time.
+inline constexpr double finest_step = 0.01;
+
 /// Raises best = worth.worst(x) by moving x until it reaches the goal or no step helps. `basis`: up to three
 /// orthonormal directions to search. constrain(y) moves a trial onto what the vertex is bound to, or refuses;
 /// constrain.all(y, n), where there is one, does so to n trials and puts those not refused in front, in order; it
@@ -14,7 +17,7 @@ namespace molmesh::improve {
 /// that is faster than asking one by one. Steps under `least_step` of the length are not tried. Host and device.
 template <class Worth, class Constrain, class Accept>
 HD bool pattern_search(Worth& worth, Vec3d& x, float& best, float goal, double length, const Vec3d* basis,
-                       int dimensions, Constrain constrain, Accept accept, double least_step = 0.01) {
+                       int dimensions, Constrain constrain, Accept accept, double least_step = finest_step) {
   Vec3d direction[14];
   int directions = 0;
   for (int a = 0; a < dimensions; ++a) {

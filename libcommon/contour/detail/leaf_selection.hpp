@@ -59,7 +59,6 @@ private:
     Array<uint8_t> flags, corners;
     SurfaceNodes view;
   };
-  static constexpr int most_merges = 5; // surface cells of 32 fine spacings at most
   // Chords may cut off this share of the volume beyond what tetsmooth gives back by putting points outside the
   // isosurface; below this tolerance all surface cells that are not plane stay fine.
   static constexpr double most_cut = 0.007, least_tolerance = 0.02;
