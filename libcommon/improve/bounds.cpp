@@ -184,7 +184,7 @@ struct Apart {
           of_first &= ~(1u << i), of_second &= ~(1u << j);
   }
   bool beside() const { return of_first != 7; }
-  bool share_edge() const { return std::has_single_bit(of_first); }
+  bool share_edge() const { return of_first == 1 || of_first == 2 || of_first == 4; }
 };
 
 } // namespace
@@ -193,7 +193,11 @@ struct Apart {
 // own cell, so none of those is met; triangles of no part stay as they are.
 void Editor::gather_near(const Sheets& sheets, const SheetTriangle& around, bool may_be_stale) {
   sheets.any(around, [&](const SheetTriangle& other) {
+    const size_t n = near_.size();
     near_.push_back({other, may_be_stale ? Near::Stays::may_be_stale : Near::Stays::not_asked});
+    if (n % 8 == 0)
+      near_box_.emplace_back();
+    near_box_[n / 8].set(n % 8, static_cast<int32_t>(n), other);
     return false;
   });
 }
@@ -227,6 +231,7 @@ bool Editor::rim_crosses(bool stamped_go) {
   if (rim_.empty())
     return false;
   near_.clear();
+  near_box_.clear();
   gather_near(changed_sheets_, around, false);
   gather_near(*sheets_, around, true);
   for (size_t i = 0; i < rim_.size(); ++i) {
@@ -242,18 +247,19 @@ bool Editor::rim_crosses(bool stamped_go) {
     for (size_t j = 0; j < i; ++j)
       if (!now.of_one_sheet(rim_sheet_[j], true) && triangles_cross(m_.point, now.v, rim_[j]))
         return true;
-    for (Near& n : near_) {
-      const SheetTriangle& other = n.triangle;
-      if (!now.box_meets(other))
-        continue;
-      const Apart apart(now.v, other.v);
-      const bool one_sheet = now.of_one_sheet(other, apart.beside());
-      if ((one_sheet && !apart.share_edge()) || !stays_near(n, stamped_go)) // the latter is further away in memory
-        continue;
-      note(apart, other.v);
-      if (!one_sheet && triangles_cross(m_.point, now.v, other.v))
-        return true;
-    }
+    for (const EightBoxes& eight : near_box_)
+      for (uint32_t met = eight.met(now); met; met &= met - 1) {
+        Near& n = near_[size_t(eight.triangle[size_t(std::countr_zero(met))])];
+        const SheetTriangle& other = n.triangle;
+        const Apart apart(now.v, other.v);
+        const bool one_sheet = now.of_one_sheet(other, apart.beside());
+        if ((one_sheet && !apart.share_edge()) ||
+            !stays_near(n, stamped_go)) // the latter is further away in memory
+          continue;
+        note(apart, other.v);
+        if (!one_sheet && triangles_cross(m_.point, now.v, other.v))
+          return true;
+      }
     if (turns_over(now.v))
       return true;
   }

@@ -17,13 +17,10 @@ inline int64_t cell_of(double place) {
 struct CellRange {
   std::array<int64_t, 3> low, high;
 
-  /// Whether this cell is the first of those that the range shares with a box whose lowest corner that is.
-  template <class T>
-  bool first_with(Vec3<T> box_low, double size, std::array<int64_t, 3> cell) const {
-    for (int a = 0; a < 3; ++a)
-      if (std::max(low[size_t(a)], cell_of(double(box_low[a]) / size)) != cell[size_t(a)])
-        return false;
-    return true;
+  /// Axes, a bit each, on which the cell is the range's first. A cell that is first on each axis in one of two
+  /// ranges is the first that they share.
+  uint8_t begins(int64_t i, int64_t j, int64_t k) const {
+    return uint8_t((i == low[0]) | (j == low[1]) << 1 | (k == low[2]) << 2);
   }
 
   bool operator==(const CellRange&) const = default;

@@ -115,9 +115,10 @@ struct DynamicMesh {
   bool counts_here(const Element& e, size_t face) const {
     return e.label[face] != 0 && (e.n[face] < 0 || element[size_t(e.n[face])].region > e.region);
   }
-  /// Whether one of its vertices is.
+  /// Whether one of its edges is: both ends.
   bool crowded(const std::array<int32_t, 3>& triangle) const {
-    return std::any_of(triangle.begin(), triangle.end(), [&](int32_t v) { return vertex[size_t(v)].crowded; });
+    return std::count_if(triangle.begin(), triangle.end(), [&](int32_t v) { return vertex[size_t(v)].crowded; }) >=
+           2;
   }
   float quality(const std::array<int32_t, 4>& v) const {
     return tet_quality(point[size_t(v[0])], point[size_t(v[1])], point[size_t(v[2])], point[size_t(v[3])]);

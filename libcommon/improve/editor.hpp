@@ -261,6 +261,7 @@ private:
   std::vector<int64_t> rim_face_;
   std::vector<SheetTriangle> rim_sheet_;
   std::vector<Near> near_;
+  std::vector<EightBoxes> near_box_; ///< of these
   /// A triangle across the edge opposite a triangle's vertex.
   struct Beyond {
     int edge;

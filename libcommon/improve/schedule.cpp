@@ -41,6 +41,15 @@ double cell_for(const std::vector<SheetTriangle>& triangles) {
   return 3. * double(*median);
 }
 
+// Whether b has a corner before the plane of a, or hardly behind it. Sheets that face away from each other have
+// elements between them, which keep them apart.
+bool reaches_before(const std::vector<Vec3d>& point, const SheetTriangle& a, const SheetTriangle& b,
+                    double hardly) {
+  const Vec3d normal{double(a.normal.x), double(a.normal.y), double(a.normal.z)};
+  return std::any_of(b.v.begin(), b.v.end(),
+                     [&](int32_t v) { return dot(normal, point[size_t(v)] - point[size_t(a.v[0])]) > -hardly; });
+}
+
 } // namespace
 
 void Schedule::find_crowded(bool everywhere) {
@@ -60,13 +69,17 @@ void Schedule::find_crowded(bool everywhere) {
     Sheets all(cell);
     for (const SheetTriangle& t : triangle)
       all.insert(t);
+    // Until points may leave the isosurface, triangles stay within a quarter of a spacing of it (Guard::distance).
+    const double apart = target_->spacing() / 2, hardly = target_->spacing() / 4;
+    const Vec3f beyond{float(apart), float(apart), float(apart)};
     par::for_n(static_cast<int64_t>(triangle.size()), threads_, [&](int64_t t) {
       SheetTriangle wide = triangle[size_t(t)];
-      const auto apart = static_cast<float>(target_->spacing());
-      wide.low = wide.low - Vec3f{apart, apart, apart};
-      wide.high = wide.high + Vec3f{apart, apart, apart};
-      crowded[size_t(t)] =
-          all.any(wide, [&](const SheetTriangle& other) { return dot(wide.normal, other.normal) < 0.3f; });
+      wide.low = wide.low - beyond;
+      wide.high = wide.high + beyond;
+      crowded[size_t(t)] = all.any(wide, [&](const SheetTriangle& other) {
+        return dot(wide.normal, other.normal) < 0.3f && reaches_before(m_.point, wide, other, hardly) &&
+               reaches_before(m_.point, other, wide, hardly);
+      });
     });
   }
   for (Vertex& v : m_.vertex)

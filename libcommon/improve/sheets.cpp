@@ -36,7 +36,7 @@ void Sheets::insert(const SheetTriangle& t) {
   triangle_[size_t(id)] = t;
   face_[uint64_t(t.face)] = id;
   levels_ |= uint64_t{1} << cell_level(t.low, t.high, cell_);
-  for_cells(t, [&](uint64_t key) { put(chain_[key], id); });
+  for_cells(t, [&](uint64_t key, uint8_t begins) { put(chain_[key], id, begins); });
 }
 
 /// Most moves are short. False, and nothing done, where that needs other cells.
@@ -46,10 +46,10 @@ bool Sheets::move(int32_t id, const SheetTriangle& t) {
   if (cell_level(before.low, before.high, cell_) != level || cells(before, level) != cells(t, level))
     return false;
   before = t;
-  for_cells(t, [&](uint64_t key) {
+  for_cells(t, [&](uint64_t key, uint8_t) {
     for (int32_t c = chain_[key]; c >= 0; c = eight_[size_t(c)].next)
       for (size_t n = 0; n < 8; ++n)
-        if (Eight& e = eight_[size_t(c)]; e.triangle[n] == id) {
+        if (EightBoxes& e = eight_[size_t(c)]; e.triangle[n] == id) {
           e.set(n, id, t);
           return;
         }
@@ -57,7 +57,7 @@ bool Sheets::move(int32_t id, const SheetTriangle& t) {
   return true;
 }
 
-void Sheets::put(int32_t& chain, int32_t id) {
+void Sheets::put(int32_t& chain, int32_t id, uint8_t begins) {
   int32_t* at = &chain;
   size_t n = 0; // where there is room
   for (; *at >= 0; at = &eight_[size_t(*at)].next) {
@@ -73,12 +73,13 @@ void Sheets::put(int32_t& chain, int32_t id) {
     n = 0;
   }
   eight_[here].set(n, id, triangle_[size_t(id)]);
+  eight_[here].begins[n] = begins;
 }
 
 void Sheets::take_out(int32_t chain, int32_t id) {
   for (; chain >= 0; chain = eight_[size_t(chain)].next)
     for (size_t n = 0; n < 8; ++n)
-      if (Eight& e = eight_[size_t(chain)]; e.triangle[n] == id) {
+      if (EightBoxes& e = eight_[size_t(chain)]; e.triangle[n] == id) {
         e.set(n, -1, {});
         return;
       }
@@ -90,14 +91,14 @@ void Sheets::erase(int64_t face) {
     return;
   const int32_t id = std::exchange(at, -1);
   SheetTriangle& t = triangle_[size_t(id)];
-  for_cells(t, [&](uint64_t key) { take_out(chain_[key], id); });
+  for_cells(t, [&](uint64_t key, uint8_t) { take_out(chain_[key], id); });
   t.face = -1;
   free_.push_back(id);
 }
 
 size_t Sheets::boxes() const {
   size_t n = 0;
-  for (const Eight& e : eight_)
+  for (const EightBoxes& e : eight_)
     n += e.triangle.size() - size_t(std::count(e.triangle.begin(), e.triangle.end(), -1));
   return n;
 }

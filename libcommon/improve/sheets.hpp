@@ -6,6 +6,7 @@
 #include "improve/open_table.hpp"
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -31,6 +32,38 @@ struct SheetTriangle {
   }
 };
 
+/// Boxes of triangles side by side: many are looked through, and few are met.
+struct EightBoxes {
+  std::array<std::array<float, 8>, 3> low, high;
+  std::array<int32_t, 8> triangle; ///< -1: none, and nothing meets it
+  std::array<uint8_t, 8> begins{}; ///< axes, a bit each, on which this is the first of the box's cells
+  int32_t next = -1;
+
+  EightBoxes() {
+    for (size_t n = 0; n < 8; ++n)
+      set(n, -1, {});
+  }
+  void set(size_t n, int32_t id, const SheetTriangle& t) {
+    triangle[n] = id;
+    for (size_t a = 0; a < 3; ++a) {
+      low[a][n] = t.low[int(a)];
+      high[a][n] = t.high[int(a)];
+    }
+  }
+  /// Those that t's box meets, a bit each.
+  uint32_t met(const SheetTriangle& t) const {
+    std::array<float, 8> gap; // along the axis where that is most
+    gap.fill(-1);
+    for (size_t a = 0; a < 3; ++a)
+      for (size_t n = 0; n < 8; ++n)
+        gap[n] = std::max(gap[n], std::max(t.low[int(a)] - high[a][n], low[a][n] - t.high[int(a)]));
+    uint32_t bits = 0;
+    for (size_t n = 0; n < 8; ++n)
+      bits |= uint32_t{gap[n] <= 0} << n;
+    return bits;
+  }
+};
+
 SheetTriangle sheet_triangle(const std::vector<Vec3d>& point, std::array<int32_t, 3> v, int64_t face);
 
 class Sheets {
@@ -52,44 +85,18 @@ public:
   bool any(const SheetTriangle& t, F&& f) const;
 
 private:
-  /// Boxes side by side: a cell is looked through from end to end, and few of its triangles are wanted.
-  struct Eight {
-    std::array<std::array<float, 8>, 3> low, high;
-    std::array<int32_t, 8> triangle; ///< -1: none
-    int32_t next = -1;
-
-    Eight() {
-      for (size_t n = 0; n < 8; ++n)
-        set(n, -1, {});
-    }
-    void set(size_t n, int32_t id, const SheetTriangle& t) {
-      triangle[n] = id;
-      for (size_t a = 0; a < 3; ++a) {
-        low[a][n] = t.low[int(a)];
-        high[a][n] = t.high[int(a)];
-      }
-    }
-    /// How far each is from t's along the axis where that is most; ≤ 0: they meet.
-    std::array<float, 8> gaps(const SheetTriangle& t) const {
-      std::array<float, 8> gap;
-      gap.fill(-1);
-      for (size_t a = 0; a < 3; ++a)
-        for (size_t n = 0; n < 8; ++n)
-          gap[n] = std::max(gap[n], std::max(t.low[int(a)] - high[a][n], low[a][n] - t.high[int(a)]));
-      return gap;
-    }
-  };
   CellRange cells(const SheetTriangle& t, int level) const {
     return cell_range(t.low, t.high, cell_size(cell_, level));
   }
-  /// f(key of the cell), over the cells that hold t.
+  /// f(key of the cell, axes on which it is the first), over the cells that hold t.
   template <class F>
   void for_cells(const SheetTriangle& t, F&& f) const {
     const int level = cell_level(t.low, t.high, cell_);
-    cells(t, level).for_each([&](int64_t i, int64_t j, int64_t k) { f(cell_key(i, j, k, level)); });
+    const CellRange range = cells(t, level);
+    range.for_each([&](int64_t i, int64_t j, int64_t k) { f(cell_key(i, j, k, level), range.begins(i, j, k)); });
   }
   bool move(int32_t id, const SheetTriangle& t);
-  void put(int32_t& chain, int32_t id);
+  void put(int32_t& chain, int32_t id, uint8_t begins);
   void take_out(int32_t chain, int32_t id);
 
   double cell_;
@@ -98,7 +105,7 @@ private:
   uint64_t levels_ = 0;       ///< a bit each where there are or were triangles
   OpenTable chain_;           ///< of a cell: its first eight, -1: none; cells of one key share a chain
   OpenTable face_;            ///< of a face: its triangle, -1: gone
-  std::vector<Eight> eight_;
+  std::vector<EightBoxes> eight_;
 };
 
 template <class F>
@@ -107,18 +114,17 @@ bool Sheets::any(const SheetTriangle& t, F&& f) const {
   if (alive() > 0)
     for_levels(levels_, [&](int level) {
       const CellRange range = cells(t, level);
-      const double size = cell_size(cell_, level);
       all = all || range.count() > 27 + double(triangle_.size()); // one far larger than those
       if (!all)
         range.for_each([&](int64_t i, int64_t j, int64_t k) {
           const int32_t* first = found ? nullptr : chain_.find(cell_key(i, j, k, level));
+          const uint8_t begun = range.begins(i, j, k); // each box in the first of the cells that t shares with it
           for (int32_t c = first ? *first : -1; c >= 0 && !found; c = eight_[size_t(c)].next) {
-            const Eight& e = eight_[size_t(c)];
-            const auto gap = e.gaps(t);
-            for (size_t n = 0; n < 8 && !found; ++n)
-              found = gap[n] <= 0 &&
-                      range.first_with(Vec3f{e.low[0][n], e.low[1][n], e.low[2][n]}, size, {i, j, k}) &&
-                      f(triangle_[size_t(e.triangle[n])]);
+            const EightBoxes& e = eight_[size_t(c)];
+            for (uint32_t met = e.met(t); met && !found; met &= met - 1) {
+              const auto n = size_t(std::countr_zero(met));
+              found = (begun | e.begins[n]) == 7 && f(triangle_[size_t(e.triangle[n])]);
+            }
           }
         });
     });
