@@ -64,6 +64,10 @@ const Guard straight{40, 0.24, 0.5, 0};
 // Of many points the first ones bring most back, in smaller parts: more of these at once, and less to put by for
 // each.
 constexpr int recoveries = 32, recoveries_of_many = 4;
+// Efforts, one after the other while nothing comes back. Where the mesh ends in the surface, which then must not
+// bend as it likes, some more passes have a wider guard and larger parts instead.
+constexpr int efforts[] = {1, 2, 3, 4, 5, 3, 5, 3, 5}, narrow_efforts = 5;
+const Guard widened{70, 0.24, 1, 0};
 
 } // namespace
 
@@ -159,13 +163,15 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   }
   if (density && result.rounds == 0) // good enough as it came, and to stay so
     settle(std::min(goal, at_first));
-  for (int repeat = 0, idle = 0; density && repeat < recoveries && idle < 5; ++repeat) {
+  const int most_idle = schedule.ends_in_surface() ? static_cast<int>(std::size(efforts)) : narrow_efforts;
+  for (int repeat = 0, idle = 0; density && repeat < recoveries && idle < most_idle; ++repeat) {
+    const bool narrow = idle < narrow_efforts;
     Pass pass;
     pass.goal = goal;
-    pass.effort = idle + 1;
+    pass.effort = efforts[idle];
     pass.worst_first = repeat % 2 == 0;
-    pass.cell = many && repeat < recoveries_of_many ? 0.35 : 0.5; // what goes wrong is taken back: parts are small
-    pass.guard = released;
+    pass.cell = many && repeat < recoveries_of_many ? 0.35 : narrow ? 0.5 : 1; // what goes wrong is taken back
+    pass.guard = narrow ? released : widened;
     const Counts c = schedule.recover(pass);
     idle = c.total() > 0 ? std::min(idle, 1) : idle + 1;
     result.counts += c;

@@ -36,6 +36,7 @@ public:
   /// Where the mesh ends in a surface, it is kept from crossing itself; at first only near opposed sheets. This
   /// looks anew, or everywhere from now on.
   void find_crowded(bool everywhere);
+  bool ends_in_surface() const { return sheets_.alive() > 0; } ///< as far as find_crowded() has looked
   float worst();
   /// How many parts of that size, in the schedule's cells, hold a point of the surface.
   int64_t parts_at_surface(double cell);
