@@ -23,6 +23,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace molmesh::improve {
@@ -120,8 +121,8 @@ public:
   ChangeLog log;
   /// Elements made or changed by operations since the caller last cleared it.
   std::vector<int32_t> changed;
-  /// How sheets differs now.
-  const Sheets& changed_sheets() const { return changed_sheets_; }
+  /// How sheets differs now; the editor does not work on.
+  Sheets take_changed_sheets() { return std::move(changed_sheets_); }
   Counts counts;
   float goal = 1; ///< elements of less quality count in the deficit
   bool worst_first = true;

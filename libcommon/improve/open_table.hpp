@@ -1,5 +1,6 @@
 // open_table.hpp — 64-bit keys to small numbers, by open addressing; emptied at once by a clock.
 #pragma once
+#include "density/large_array.hpp"
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -27,7 +28,7 @@ public:
   /// -1 at first. Valid until the next call.
   int32_t& operator[](uint64_t key) {
     if (2 * (used_ + 1) > slot_.size()) {
-      std::vector<Slot> old(std::max<size_t>(64, 4 * slot_.size()));
+      Slots old(std::max<size_t>(64, 4 * slot_.size()));
       old.swap(slot_);
       for (const Slot& s : old)
         if (is_used(s))
@@ -54,6 +55,7 @@ private:
     int32_t number = -1;
     uint32_t clock = 0; ///< when it was filled
   };
+  using Slots = std::vector<Slot, LargeAllocator<Slot>>;
   bool is_used(const Slot& s) const { return s.clock == clock_; }
   /// Where the key is or would go. Keys next to each other are asked for together, and lie so.
   size_t place(uint64_t key) const {
@@ -64,7 +66,7 @@ private:
       i = (i + 1) & mask;
     return i;
   }
-  std::vector<Slot> slot_; ///< a power of two
+  Slots slot_; ///< a power of two
   size_t used_ = 0;
   uint32_t clock_ = 1;
 };

@@ -67,6 +67,7 @@ void Schedule::find_crowded(bool everywhere) {
   std::vector<uint8_t> crowded(triangle.size(), everywhere);
   if (!everywhere) {
     Sheets all(cell);
+    all.reserve(triangle.size());
     for (const SheetTriangle& t : triangle)
       all.insert(t);
     // Until points may leave the isosurface, triangles stay within a quarter of a spacing of it (Guard::distance).
@@ -268,7 +269,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
                     last_stamp_);
       work(editor, job.items);
       job.counts = editor.counts;
-      job.sheets = editor.changed_sheets();
+      job.sheets = editor.take_changed_sheets();
       job.clock = editor.clock();
     }
     helpers_.help();

@@ -1,6 +1,7 @@
 // sheets.hpp — the triangles where a mesh ends in a curved surface, by place: hash grids of their boxes.
 // Nothing on the other side keeps such a triangle from crossing another sheet of the surface.
 #pragma once
+#include "density/large_array.hpp"
 #include "geom/vec.hpp"
 #include "improve/cell_levels.hpp"
 #include "improve/open_table.hpp"
@@ -71,6 +72,10 @@ public:
   /// Cells of this size (Å), larger ones for larger triangles. A few of the triangles' edges is best.
   explicit Sheets(double cell) : cell_(cell) {}
   double cell() const { return cell_; }
+  void reserve(size_t triangles) {
+    triangle_.reserve(triangles);
+    eight_.reserve(triangles); // on a surface somewhat fewer
+  }
   /// In place of what was known of that face.
   void insert(const SheetTriangle& t);
   void erase(int64_t face);
@@ -100,12 +105,12 @@ private:
   void take_out(int32_t chain, int32_t id);
 
   double cell_;
-  std::vector<SheetTriangle> triangle_;
+  std::vector<SheetTriangle, LargeAllocator<SheetTriangle>> triangle_;
   std::vector<int32_t> free_; ///< of triangle_
   uint64_t levels_ = 0;       ///< a bit each where there are or were triangles
   OpenTable chain_;           ///< of a cell: its first eight, -1: none; cells of one key share a chain
   OpenTable face_;            ///< of a face: its triangle, -1: gone
-  std::vector<EightBoxes> eight_;
+  std::vector<EightBoxes, LargeAllocator<EightBoxes>> eight_;
 };
 
 template <class F>
