@@ -14,20 +14,18 @@ bool Editor::outward(const Element& e, size_t face) const {
   return lower != m_.labels[e.label[face]].reversed;
 }
 
-double Editor::misfit(Vec3d a, Vec3d b, Vec3d c) const {
-  return improve::misfit(*target_, guard_, most_tilt_, a, b, c);
+double Editor::misfit(Vec3d a, Vec3d b, Vec3d c, double most_tilt) const {
+  return improve::misfit(*target_, guard_, most_tilt, a, b, c);
 }
 
-// Of a labelled face with vertex `from` put at `at`; 0 for flat labels and without a target.
-double Editor::misfit_face(const Element& e, size_t face, int32_t from, Vec3d at) const {
+// Of a labelled face; 0 for flat labels and without a target.
+double Editor::misfit_face(const Element& e, size_t face, double most_tilt) const {
   if (!target_ || !m_.labels[e.label[face]].curved())
     return 0;
   std::array<Vec3d, 3> p;
-  for (size_t i = 0; i < 3; ++i) {
-    const int32_t v = e.v[size_t(outward_face[face][i])];
-    p[i] = v == from ? at : m_.point[size_t(v)];
-  }
-  return outward(e, face) ? misfit(p[0], p[1], p[2]) : misfit(p[0], p[2], p[1]);
+  for (size_t i = 0; i < 3; ++i)
+    p[i] = m_.point[size_t(e.v[size_t(outward_face[face][i])])];
+  return outward(e, face) ? misfit(p[0], p[1], p[2], most_tilt) : misfit(p[0], p[2], p[1], most_tilt);
 }
 
 // How far from the target loose vertices may be, in units of off().
@@ -142,7 +140,7 @@ bool Editor::sails_fit(Vec3d x, const Fit& before) const {
 
 bool Editor::bent(int32_t t, size_t face) const {
   const Element& e = m_.element[size_t(t)];
-  return m_.counts_here(e, face) && misfit_face(e, face, -1, {}) > 1;
+  return m_.counts_here(e, face) && misfit_face(e, face, std::min(most_tilt_, bent_tilt_)) > 1;
 }
 
 std::optional<double> Editor::off_at(Vec3d x) const {

@@ -2,6 +2,7 @@
 #include "improve/editor.hpp"
 #include "par/par.hpp"
 #include <algorithm>
+#include <utility>
 
 namespace molmesh::improve {
 
@@ -221,11 +222,13 @@ bool Editor::join(int32_t e, int i, int j) {
   }
   rim_.clear();
   rim_face_.clear();
+  const bool was_crowded = std::exchange(m_.vertex[size_t(b)].crowded, kb.crowded || ka.crowded);
   if (sheets_)
     list_rim(star2_, b, a);
   // star2_ but the ring, which goes, has the same elements before and after.
   if (!finish_contraction(a, b, kb.kind == Kind::surface)) {
     m_.point[size_t(b)] = pb;
+    m_.vertex[size_t(b)].crowded = was_crowded;
     return false;
   }
   move_rim();
@@ -243,6 +246,7 @@ bool Editor::finish_contraction(int32_t a, int32_t b, bool moved) {
   old_ = star_;
   const bool was_crowded = m_.vertex[size_t(b)].crowded;
   m_.vertex[size_t(b)].crowded |= m_.vertex[size_t(a)].crowded;
+  const bool more_crowded = m_.vertex[size_t(b)].crowded && !was_crowded;
   if (!replace(old_, now_, m_.vertex[size_t(a)].kind != Kind::interior, moved)) {
     m_.vertex[size_t(b)].crowded = was_crowded;
     return false;
@@ -251,6 +255,12 @@ bool Editor::finish_contraction(int32_t a, int32_t b, bool moved) {
   m_.touched[size_t(b)] = time;
   room_.vertex.push_back(a);
   ++counts.contractions;
+  if (sheets_ && more_crowded && star(b, star2_)) { // its other triangles may be now, too
+    rim_.clear();
+    rim_face_.clear();
+    list_rim(star2_, b, -1);
+    move_rim();
+  }
   return true;
 }
 

@@ -115,7 +115,7 @@ struct DynamicMesh {
   bool counts_here(const Element& e, size_t face) const {
     return e.label[face] != 0 && (e.n[face] < 0 || element[size_t(e.n[face])].region > e.region);
   }
-  /// Whether one of its edges is: both ends.
+  /// Whether two of its corners are.
   bool crowded(const std::array<int32_t, 3>& triangle) const {
     return std::count_if(triangle.begin(), triangle.end(), [&](int32_t v) { return vertex[size_t(v)].crowded; }) >=
            2;

@@ -90,7 +90,8 @@ public:
   }
   /// The surface near v follows the target down into a neck, in such shells.
   bool follow_neck(int32_t v, const Neck& neck, double ratio);
-  /// Whether the face is a surface triangle, counted from this side, that does not keep the guard.
+  /// Whether the face is a surface triangle, counted from this side, that does not keep the guard, or is turned by
+  /// more than Guard::widest_unbent.
   bool bent(int32_t e, size_t face) const;
   /// Of a surface vertex: how far off the target, in units of a fiftieth of a spacing (what I8 allows);
   /// two spacings where the target is not known.
@@ -121,7 +122,7 @@ public:
   ChangeLog log;
   /// Elements made or changed by operations since the caller last cleared it.
   std::vector<int32_t> changed;
-  /// How sheets differs now; the editor does not work on.
+  /// How sheets differs now; to be called last.
   Sheets take_changed_sheets() { return std::move(changed_sheets_); }
   Counts counts;
   float goal = 1; ///< elements of less quality count in the deficit
@@ -176,8 +177,10 @@ private:
   bool turns_over(const std::array<int32_t, 3>& t) const;
   void move_rim();
   bool has_room(size_t old, size_t now) const { return now <= old + room_.element.size(); }
-  double misfit(Vec3d a, Vec3d b, Vec3d c) const;
-  double misfit_face(const Element& e, size_t face, int32_t from, Vec3d at) const;
+  double misfit(Vec3d a, Vec3d b, Vec3d c, double most_tilt) const;
+  double misfit(Vec3d a, Vec3d b, Vec3d c) const { return misfit(a, b, c, most_tilt_); }
+  double misfit_face(const Element& e, size_t face, double most_tilt) const;
+  double misfit_face(const Element& e, size_t face) const { return misfit_face(e, face, most_tilt_); }
   bool edge_is_labelled(int32_t a, int32_t b);
   bool surface_link_holds(int32_t a, int32_t b, const Ring& r);
   float worst(const std::vector<int32_t>& elements) const;
@@ -245,6 +248,7 @@ private:
   PartRoom& room_;
   Guard guard_;
   double most_tilt_; ///< the guard's
+  double bent_tilt_ = Guard{Guard::widest_unbent}.tilt();
   uint32_t clock_;
   struct FaceEntry {
     std::array<int32_t, 3> v;       ///< ascending
@@ -262,7 +266,7 @@ private:
   std::vector<int64_t> rim_face_;
   std::vector<SheetTriangle> rim_sheet_;
   std::vector<Near> near_;
-  std::vector<EightBoxes> near_box_; ///< of these
+  std::vector<EightBoxes> near_box_; ///< of these; EightBoxes::triangle: index into near_
   /// A triangle across the edge opposite a triangle's vertex.
   struct Beyond {
     int edge;

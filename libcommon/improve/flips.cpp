@@ -135,8 +135,8 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
       if (!target_)
         return false;
       Fit old_fit, fit;
-      old_fit.add(misfit_face(after, face_s, -1, {}));
-      old_fit.add(misfit_face(before, face_t, -1, {}));
+      old_fit.add(misfit_face(after, face_s));
+      old_fit.add(misfit_face(before, face_t));
       const auto p = [&](int32_t v) { return m_.point[size_t(v)]; };
       const bool out = outward(after, face_s);
       fit.add(out ? misfit(p(vs), p(b), p(vt)) : misfit(p(vt), p(b), p(vs)));

@@ -15,6 +15,8 @@ struct Guard {
   double lift = 0;         ///< how far one operation may take a surface point off the target, in spacings
   double leave = anywhere; ///< and how far all of them; of targets whose distances are exact
   bool operator==(const Guard&) const = default;
+  /// Wider guards let triangles bend further, and those still count as bent.
+  static constexpr double widest_unbent = 44;
   HD double tilt() const { return 1 - std::cos(angle * 3.14159265358979323846 / 180); } ///< as misfit() wants it
 };
 

@@ -26,7 +26,7 @@ bool Editor::find_side(int32_t v, Side& side) const {
       for (const int32_t w : e.v)
         rim.push_back(w == v || w == e.v[f] ? -1 : w);
       if (outward(e, f))
-        side.before.add(misfit_face(e, f, -1, {}));
+        side.before.add(misfit_face(e, f));
     }
   }
   side.grows = distance < 0;

@@ -65,8 +65,8 @@ const Guard straight{40, 0.24, 0.5, 0};
 // each.
 constexpr int recoveries = 32, recoveries_of_many = 4;
 // Efforts, one after the other while nothing comes back. Where the mesh ends in the surface, which then must not
-// bend as it likes, some more passes have a wider guard and larger parts instead.
-constexpr int efforts[] = {1, 2, 3, 4, 5, 3, 5, 3, 5}, narrow_efforts = 5;
+// bend as it likes, four more have a wider guard and larger parts instead, either order of the worst for both.
+constexpr int efforts[] = {1, 2, 3, 4, 5, 3, 5, 5, 3}, narrow_efforts = 5;
 const Guard widened{70, 0.24, 1, 0};
 
 } // namespace
@@ -128,7 +128,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     pass.guard = density || stage.guard.lift == 0 ? stage.guard : hardly_lifted;
     pass.yield = round == 0 ? 0.25f : 1.f; // clusters far smaller than the grid have to go as a whole
     if (stage.guard.lift > 0)
-      schedule.find_crowded(true);
+      schedule.find_crowded(Schedule::everywhere);
     int64_t done = 0;
     if (flow) {
       done = flow(m, isosurface.get(), pass);
@@ -150,8 +150,10 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
       result.counts += schedule.straighten(pass);
     }
     ++result.rounds;
-    if (density && round == 0) // not before: what is squeezed between surface and grid is gone now
+    if (density && round == 0) { // not before: what is squeezed between surface and grid is gone now
       settle(heals ? 1 : no_worse);
+      schedule.find_crowded(0.5); // triangles stay within a quarter of a spacing from here on (Guard::distance)
+    }
     if (density) {
       if (size_t(round) + 1 == refresh_offset)
         isosurface->set_offset(isosurface->offset() + chord_offset(m, *isosurface, options.threads));
@@ -170,7 +172,8 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     pass.goal = goal;
     pass.effort = efforts[idle];
     pass.worst_first = repeat % 2 == 0;
-    pass.cell = many && repeat < recoveries_of_many ? 0.35 : narrow ? 0.5 : 1; // what goes wrong is taken back
+    // What goes wrong is taken back: parts are small.
+    pass.cell = many && repeat < recoveries_of_many ? 0.35 : narrow ? 0.5 : 1;
     pass.guard = narrow ? released : widened;
     const Counts c = schedule.recover(pass);
     idle = c.total() > 0 ? std::min(idle, 1) : idle + 1;

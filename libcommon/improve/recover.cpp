@@ -25,7 +25,8 @@ struct Daring {
   bool bend;        ///< triangles may bend, while mending
 };
 constexpr Daring careful{0.01f, false, 0, false, false}, bold{1e-5f, true, 2, false, false},
-    in_necks{1e-5f, true, 2, true, false}, bending{1e-5f, true, 8, true, true};
+    in_necks{1e-5f, true, 2, true, false}, bending{1e-5f, true, 8, true, true},
+    yielding{1e-5f, true, 8, true, false};
 
 class Recovery {
 public:
@@ -44,7 +45,9 @@ public:
     }
     // Where the mesh ends in it, a surface that bends freely could turn inside out unseen.
     const bool bends = pass_.effort > 3 && editor_.alone();
-    for (const Daring& daring : {careful, bends ? bending : bold}) {
+    const bool yields = pass_.guard.angle > Guard::widest_unbent;
+    const Daring& second = bends ? bending : yields ? yielding : bold;
+    for (const Daring& daring : {careful, second}) {
       if (pass_.effort > 1 && !daring.loose)
         continue; // in vain the time before
       dare(daring);
@@ -61,7 +64,7 @@ public:
     if (pass_.effort > 1)
       try_harder();
     if (pass_.effort > 2)
-      try_necks(bends ? bending : in_necks);
+      try_necks(bends || yields ? second : in_necks);
   }
 
 private:

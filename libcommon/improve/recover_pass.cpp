@@ -27,6 +27,7 @@ Counts Schedule::recover(const Pass& pass) {
   });
   if (points.empty() || is_hopeless(points.size()))
     return {};
+  find_crowded(everywhere); // they leave it meanwhile
   set_parts_around(points, passes_++, pass.cell * cell_);
   const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
     const Element& e = m_.element[size_t(t)];

@@ -13,7 +13,8 @@ Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int thr
   const auto with_room = [&](auto& v, size_t n) { par::reserve_pages(v, n, n / 4, threads_); };
   with_room(stamp_, m_.element.size());
   with_room(parts_.owner, m_.point.size());
-  find_crowded(false);
+  // Points settle later, and with the chords of large triangles either sheet may be off by half of this.
+  find_crowded(1);
 }
 
 int64_t Schedule::parts_at_surface(double cell) {
@@ -52,10 +53,10 @@ bool reaches_before(const std::vector<Vec3d>& point, const SheetTriangle& a, con
 
 } // namespace
 
-void Schedule::find_crowded(bool everywhere) {
+void Schedule::find_crowded(double apart) {
   if (!target_ || watching_)
     return;
-  watching_ = everywhere;
+  watching_ = apart == everywhere;
   std::vector<SheetTriangle> triangle;
   m_.for_labelled([&](int64_t e) {
     const Element& el = m_.element[size_t(e)];
@@ -63,16 +64,17 @@ void Schedule::find_crowded(bool everywhere) {
       if (el.alive() && el.n[f] < 0 && m_.labels[el.label[f]].curved())
         triangle.push_back(sheet_triangle(m_.point, outward_triangle(el.v, f), 4 * e + int64_t(f)));
   });
+  ends_in_surface_ = !triangle.empty();
   const double cell = cell_for(triangle);
-  std::vector<uint8_t> crowded(triangle.size(), everywhere);
-  if (!everywhere) {
+  std::vector<uint8_t> crowded(triangle.size(), watching_);
+  if (!watching_) {
     Sheets all(cell);
     all.reserve(triangle.size());
     for (const SheetTriangle& t : triangle)
       all.insert(t);
-    // Until points may leave the isosurface, triangles stay within a quarter of a spacing of it (Guard::distance).
-    const double apart = target_->spacing() / 2, hardly = target_->spacing() / 4;
-    const Vec3f beyond{float(apart), float(apart), float(apart)};
+    const auto reach = static_cast<float>(apart * target_->spacing());
+    const double hardly = target_->spacing() / 4;
+    const Vec3f beyond{reach, reach, reach};
     par::for_n(static_cast<int64_t>(triangle.size()), threads_, [&](int64_t t) {
       SheetTriangle wide = triangle[size_t(t)];
       wide.low = wide.low - beyond;
@@ -90,6 +92,8 @@ void Schedule::find_crowded(bool everywhere) {
       for (const int32_t v : triangle[t].v)
         m_.vertex[size_t(v)].crowded = true;
   sheets_ = Sheets(cell);
+  if (watching_)
+    sheets_.reserve(triangle.size());
   for (const SheetTriangle& t : triangle)
     if (m_.crowded(t.v))
       sheets_.insert(t);
@@ -265,7 +269,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
       if (j >= jobs.size())
         break;
       Job& job = *largest_first[j];
-      Editor editor(m_, target_, sheets_.alive() > 0 ? &sheets_ : nullptr, parts_, stamp_, job.room, guard,
+      Editor editor(m_, target_, ends_in_surface_ ? &sheets_ : nullptr, parts_, stamp_, job.room, guard,
                     last_stamp_);
       work(editor, job.items);
       job.counts = editor.counts;

@@ -33,10 +33,11 @@ public:
   /// Puts surface vertices on the target where no element falls under `floor`; floor ≥ 1: to less than half its
   /// quality.
   Counts settle(float floor, const Guard& guard);
-  /// Where the mesh ends in a surface, it is kept from crossing itself; at first only near opposed sheets. This
-  /// looks anew, or everywhere from now on.
-  void find_crowded(bool everywhere);
-  bool ends_in_surface() const { return sheets_.alive() > 0; } ///< as far as find_crowded() has looked
+  /// Where the mesh ends in a curved surface it is kept from crossing itself: near sheets that face each other
+  /// within that many spacings, as they are now; or everywhere, from now on.
+  void find_crowded(double apart);
+  static constexpr double everywhere = 1e300;
+  bool ends_in_surface() const { return ends_in_surface_; }
   float worst();
   /// How many parts of that size, in the schedule's cells, hold a point of the surface.
   int64_t parts_at_surface(double cell);
@@ -73,7 +74,8 @@ private:
   const Target* target_;
   double cell_;
   int threads_;
-  bool watching_ = false;
+  bool watching_ = false; ///< find_crowded(everywhere)
+  bool ends_in_surface_ = false;
   int passes_ = 0, settles_ = 0;
   int32_t time_ = 0, since_ = 0; ///< sweeps so far; when this kind of pass began
   Pass last_;

@@ -46,11 +46,11 @@ bool Sheets::move(int32_t id, const SheetTriangle& t) {
   if (cell_level(before.low, before.high, cell_) != level || cells(before, level) != cells(t, level))
     return false;
   before = t;
-  for_cells(t, [&](uint64_t key, uint8_t) {
+  for_cells(t, [&](uint64_t key, uint8_t begins) {
     for (int32_t c = chain_[key]; c >= 0; c = eight_[size_t(c)].next)
       for (size_t n = 0; n < 8; ++n)
         if (EightBoxes& e = eight_[size_t(c)]; e.triangle[n] == id) {
-          e.set(n, id, t);
+          e.set(n, id, t, begins);
           return;
         }
   });
@@ -72,8 +72,7 @@ void Sheets::put(int32_t& chain, int32_t id, uint8_t begins) {
     eight_.emplace_back();
     n = 0;
   }
-  eight_[here].set(n, id, triangle_[size_t(id)]);
-  eight_[here].begins[n] = begins;
+  eight_[here].set(n, id, triangle_[size_t(id)], begins);
 }
 
 void Sheets::take_out(int32_t chain, int32_t id) {

@@ -44,8 +44,9 @@ struct EightBoxes {
     for (size_t n = 0; n < 8; ++n)
       set(n, -1, {});
   }
-  void set(size_t n, int32_t id, const SheetTriangle& t) {
+  void set(size_t n, int32_t id, const SheetTriangle& t, uint8_t first_on = 0) {
     triangle[n] = id;
+    begins[n] = first_on;
     for (size_t a = 0; a < 3; ++a) {
       low[a][n] = t.low[int(a)];
       high[a][n] = t.high[int(a)];
@@ -60,7 +61,7 @@ struct EightBoxes {
         gap[n] = std::max(gap[n], std::max(t.low[int(a)] - high[a][n], low[a][n] - t.high[int(a)]));
     uint32_t bits = 0;
     for (size_t n = 0; n < 8; ++n)
-      bits |= uint32_t{gap[n] <= 0} << n;
+      bits |= uint32_t{gap[n] <= 0 && triangle[n] >= 0} << n; // coordinates may be infinite
     return bits;
   }
 };

@@ -60,7 +60,7 @@ TEST_CASE("the surface follows a passage of hundredths of a spacing") {
   const int64_t shape = surface_shape(mesh).euler();
   REQUIRE(improve::measure_fidelity(m, surface, 1).points_off > 3);
   improve::Schedule schedule(m, &surface, 32 * h, 1);
-  schedule.find_crowded(true);
+  schedule.find_crowded(improve::Schedule::everywhere);
   improve::Pass pass = recovery_pass(1);
   improve::Counts counts;
   for (pass.effort = 1; pass.effort <= 3; ++pass.effort)

@@ -32,7 +32,7 @@ TEST_CASE("sheets know the triangles that are there, and only those") {
       const Vec3d p{u(generator), u(generator), u(generator)};
       const std::vector<Vec3d> corners{p, p + Vec3d{1, 0.2, 0}, p + Vec3d{0, 0.5, 1}};
       const improve::SheetTriangle probe = improve::sheet_triangle(corners, {0, 1, 2}, -1);
-      std::set<int64_t> expected, found;
+      std::multiset<int64_t> expected, found; // each once
       for (const auto& [face, t] : there)
         if (probe.box_meets(t))
           expected.insert(face);
@@ -47,10 +47,19 @@ TEST_CASE("sheets know the triangles that are there, and only those") {
     put(sheets, face);
   for (int64_t face = 0; face < 300; face += 7) // moved
     put(sheets, face);
+  for (int64_t face = 0; face < 300; face += 3) { // a little, mostly in the same cells
+    for (const int32_t v : there[face].v)
+      point[size_t(v)] += Vec3d{1e-3 * size(generator), 1e-3 * size(generator), 0};
+    there[face] = improve::sheet_triangle(point, there[face].v, face);
+    sheets.insert(there[face]);
+  }
+  check(sheets);
   for (int64_t face = 0; face < 300; face += 11) {
     sheets.erase(face);
     there.erase(face);
   }
+  for (int64_t face = 0; face < 300; face += 22) // in what these left
+    put(sheets, face);
   CHECK(sheets.knows(11));
   CHECK_FALSE(sheets.knows(300));
   check(sheets);
@@ -87,7 +96,7 @@ TEST_CASE("sheets of any size take few cells and are found") {
   }
   CHECK(sheets.boxes() <= 27 * all.size());
   for (const improve::SheetTriangle& t : all) {
-    std::set<int64_t> expected, found;
+    std::multiset<int64_t> expected, found;
     for (const improve::SheetTriangle& o : all)
       if (t.box_meets(o))
         expected.insert(o.face);
@@ -122,6 +131,38 @@ struct Overlapping : improve::Target {
 };
 
 } // namespace
+
+TEST_CASE("sheets that face each other nearby are crowded, those with elements between them are not") {
+  struct Case {
+    double inner, outer; // radii of a ball and of the room that it is in
+    double apart;        // that is looked within, in spacings
+    bool shell, crowded; // what is meshed: between the two, or the ball and what is around the room
+  };
+  const Case c = GENERATE(Case{2, 2.2, 0.5, false, true}, Case{2, 3.6, 0.5, false, false},
+                          Case{2, 3.6, 3.5, false, true}, Case{3.3, 4.3, 2.3, true, false});
+  CAPTURE(c.inner, c.outer, c.apart, c.shell);
+  const Vec3d middle{5.03, 5.01, 4.98};
+  const Field field = [&](Vec3d p) {
+    const double r = norm(p - middle), in = c.inner - r, out = r - c.outer;
+    return std::exp(c.shell ? -std::max(in, out) : std::max(in, out));
+  };
+  const TetMesh mesh = lattice_mesh(field, {0, 0, 0}, 0.5, 20, 1);
+  improve::DynamicMesh m = improve::build(mesh, 180, 1);
+  const improve::Isosurface surface(lattice_grid(field, {0, 0, 0}, 0.5, 20), 1);
+  improve::Schedule schedule(m, &surface, 100, 1);
+  CHECK(schedule.ends_in_surface());
+  schedule.find_crowded(c.apart);
+  int64_t crowded = 0, on_surface = 0;
+  for (const improve::Vertex& v : m.vertex) {
+    crowded += v.crowded;
+    on_surface += v.kind == improve::Kind::surface;
+  }
+  REQUIRE(on_surface > 100);
+  CHECK((c.crowded ? 2 * crowded > on_surface : crowded == 0));
+  schedule.find_crowded(improve::Schedule::everywhere);
+  CHECK(std::count_if(m.vertex.begin(), m.vertex.end(), [](const improve::Vertex& v) { return v.crowded; }) >=
+        on_surface);
+}
 
 TEST_CASE("two sheets that are drawn through each other stop before they cross") {
   const Field balls = [](Vec3d p) {
