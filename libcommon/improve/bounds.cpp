@@ -182,6 +182,7 @@ struct Apart {
           of_first &= ~(1u << i), of_second &= ~(1u << j);
   }
   bool beside() const { return of_first != 7; }
+  /// std::has_single_bit is a call, as std::popcount (geom/bits.hpp).
   bool share_edge() const { return of_first == 1 || of_first == 2 || of_first == 4; }
 };
 
@@ -251,8 +252,8 @@ bool Editor::rim_crosses(bool stamped_go) {
         const SheetTriangle& other = n.triangle;
         const Apart apart(now.v, other.v);
         const bool one_sheet = now.of_one_sheet(other, apart.beside());
-        if ((one_sheet && !apart.share_edge()) ||
-            !stays_near(n, stamped_go)) // the latter is further away in memory
+        // Whether it stays is further away in memory.
+        if ((one_sheet && !apart.share_edge()) || !stays_near(n, stamped_go))
           continue;
         note(apart, other.v);
         if (!one_sheet && triangles_cross(m_.point, now.v, other.v))
@@ -278,7 +279,7 @@ void Editor::list_rim(const std::vector<int32_t>& elements, int32_t v, int32_t w
   }
 }
 
-// After the move that list_rim(elements, …) was for.
+// After what list_rim(elements, …) was for: sheets know those triangles as they are now.
 void Editor::move_rim() {
   for (size_t i = 0; i < rim_face_.size(); ++i)
     changed_sheets_.insert(sheet_triangle(m_.point, rim_[i], rim_face_[i]));

@@ -2,7 +2,6 @@
 #include "improve/editor.hpp"
 #include "par/par.hpp"
 #include <algorithm>
-#include <utility>
 
 namespace molmesh::improve {
 
@@ -123,7 +122,6 @@ bool Editor::contract(int32_t e, int i, int j) {
     if (!sails_fit(pb, fit) || !borders_allow(e, a, b) || !star(b, star2_) || !surface_link_holds(a, b, ring_))
       return false;
   }
-  rim_.clear();
   return finish_contraction(a, b, false);
 }
 
@@ -220,18 +218,10 @@ bool Editor::join(int32_t e, int i, int j) {
     m_.point[size_t(b)] = pb;
     return false;
   }
-  rim_.clear();
-  rim_face_.clear();
-  const bool was_crowded = std::exchange(m_.vertex[size_t(b)].crowded, kb.crowded || ka.crowded);
-  if (sheets_)
-    list_rim(star2_, b, a);
-  // star2_ but the ring, which goes, has the same elements before and after.
   if (!finish_contraction(a, b, kb.kind == Kind::surface)) {
     m_.point[size_t(b)] = pb;
-    m_.vertex[size_t(b)].crowded = was_crowded;
     return false;
   }
-  move_rim();
   for (size_t t = 0; t < kept.size(); ++t) {
     m_.element[size_t(kept[t])].q = q[t];
     touch(kept[t]);
@@ -241,26 +231,28 @@ bool Editor::join(int32_t e, int i, int j) {
   return true;
 }
 
-// star_ gives way to now_. moved: b has, and is on the surface.
+// star_ gives way to now_. moved: b has, and is on the surface; its elements are star2_, and stay but for the ring.
 bool Editor::finish_contraction(int32_t a, int32_t b, bool moved) {
   old_ = star_;
-  const bool was_crowded = m_.vertex[size_t(b)].crowded;
-  m_.vertex[size_t(b)].crowded |= m_.vertex[size_t(a)].crowded;
-  const bool more_crowded = m_.vertex[size_t(b)].crowded && !was_crowded;
+  bool& crowded = m_.vertex[size_t(b)].crowded;
+  const bool was_crowded = crowded;
+  crowded |= m_.vertex[size_t(a)].crowded;
+  clear_rim();
+  if (sheets_ && moved)
+    list_rim(star2_, b, a);
   if (!replace(old_, now_, m_.vertex[size_t(a)].kind != Kind::interior, moved)) {
-    m_.vertex[size_t(b)].crowded = was_crowded;
+    crowded = was_crowded;
     return false;
   }
   m_.incident[size_t(a)] = -1;
   m_.touched[size_t(b)] = time;
   room_.vertex.push_back(a);
   ++counts.contractions;
-  if (sheets_ && more_crowded && star(b, star2_)) { // its other triangles may be now, too
-    rim_.clear();
-    rim_face_.clear();
+  if (sheets_ && !moved && crowded && !was_crowded && star(b, star2_)) { // its other triangles may be now, too
+    clear_rim();
     list_rim(star2_, b, -1);
-    move_rim();
   }
+  move_rim();
   return true;
 }
 

@@ -176,6 +176,7 @@ private:
   bool rim_crosses(bool stamped_go);
   bool turns_over(const std::array<int32_t, 3>& t) const;
   void move_rim();
+  void clear_rim() { rim_.clear(), rim_face_.clear(); }
   bool has_room(size_t old, size_t now) const { return now <= old + room_.element.size(); }
   double misfit(Vec3d a, Vec3d b, Vec3d c, double most_tilt) const;
   double misfit(Vec3d a, Vec3d b, Vec3d c) const { return misfit(a, b, c, most_tilt_); }

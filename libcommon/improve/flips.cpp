@@ -162,7 +162,7 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
   if (!has_room(ring_.element.size(), now_.size()) || lack(now_) > lack(ring_.element))
     return false;
   old_ = ring_.element;
-  rim_.clear();
+  clear_rim();
   if (!replace(old_, now_, surface))
     return false;
   ++(surface ? counts.surface_flips : counts.edge_removals);
@@ -192,7 +192,7 @@ bool Editor::swap_face(int32_t e, int i) {
   old_ = {e, n};
   if (!has_room(2, 3) || lack(now_) > lack(old_))
     return false;
-  rim_.clear();
+  clear_rim();
   if (!replace(old_, now_, false))
     return false;
   ++counts.face_swaps;

@@ -25,7 +25,8 @@ std::vector<uint8_t> curved_triangles(const DynamicMesh& m, const TetMesh& mesh)
 // The goal rises by steps: what is far below it gets room before its neighbors ask for it. The guard is released
 // late, when few elements are left; where the surface has features far smaller than the grid, points may leave it
 // at the very end. Recovery brings them back to the isosurface; to a surface that came in nothing does.
-const Guard kept, released{44, 0.24, 1, 0}, lifted{180, 1e3, 1, 0.15}, hardly_lifted{80, 0.24, 1, 0.15, 0.02};
+const Guard kept, released{Guard::widest_unbent, 0.24, 1, 0}, lifted{180, 1e3, 1, 0.15},
+    hardly_lifted{80, 0.24, 1, 0.15, 0.02};
 struct Stage {
   double share; // of the goal's sine
   int effort;

@@ -150,8 +150,7 @@ bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, f
     m_.point[size_t(v)] = from;
     return false;
   }
-  rim_.clear();
-  rim_face_.clear();
+  clear_rim();
   if (sheets_ && m_.vertex[size_t(v)].kind == Kind::surface)
     list_rim(elements, v, -1);
   if (lack(now_) > allowed || rim_crosses(false)) {

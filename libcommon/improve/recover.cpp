@@ -45,6 +45,7 @@ public:
     }
     // Where the mesh ends in it, a surface that bends freely could turn inside out unseen.
     const bool bends = pass_.effort > 3 && editor_.alone();
+    // A guard wider than that lets it bend so far.
     const bool yields = pass_.guard.angle > Guard::widest_unbent;
     const Daring& second = bends ? bending : yields ? yielding : bold;
     for (const Daring& daring : {careful, second}) {

@@ -80,7 +80,7 @@ void Schedule::find_crowded(double apart) {
       wide.low = wide.low - beyond;
       wide.high = wide.high + beyond;
       crowded[size_t(t)] = all.any(wide, [&](const SheetTriangle& other) {
-        return dot(wide.normal, other.normal) < 0.3f && reaches_before(m_.point, wide, other, hardly) &&
+        return !wide.of_one_sheet(other, false) && reaches_before(m_.point, wide, other, hardly) &&
                reaches_before(m_.point, other, wide, hardly);
       });
     });

@@ -158,7 +158,7 @@ bool Editor::shrink(const Piece& piece, Vec3d c, double scale, double ratio) {
           now_.back().v[i] = image(s.v[corner[i] % 3], corner[i] < 3 ? layer - 1 : layer);
       }
   old_ = piece.element;
-  rim_.clear();
+  clear_rim();
   if (out || !std::all_of(now_.begin(), now_.end(), [&](Candidate& e) { return judge(e, 0); }) ||
       !replace(old_, now_, piece.through, true)) {
     for (size_t i = 0; i < inner.size(); ++i)

@@ -81,7 +81,7 @@ bool Editor::halve(int32_t e, int i, int j) {
   if (lack(now_) > lack(ring_.element))
     return false;
   old_ = ring_.element;
-  rim_.clear();
+  clear_rim();
   if (!replace(old_, now_, !ring_.border.empty()))
     return false;
   room_.vertex.pop_back();
