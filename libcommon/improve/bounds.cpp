@@ -170,24 +170,6 @@ bool Editor::turns_over(const std::array<int32_t, 3>& t) const {
   });
 }
 
-namespace {
-
-// Of two triangles: which vertices of either the other has not, a bit each.
-struct Apart {
-  unsigned of_first = 7, of_second = 7;
-  Apart(const std::array<int32_t, 3>& a, const std::array<int32_t, 3>& b) {
-    for (unsigned i = 0; i < 3; ++i)
-      for (unsigned j = 0; j < 3; ++j)
-        if (a[i] == b[j])
-          of_first &= ~(1u << i), of_second &= ~(1u << j);
-  }
-  bool beside() const { return of_first != 7; }
-  /// std::has_single_bit is a call, as std::popcount (geom/bits.hpp).
-  bool share_edge() const { return of_first == 1 || of_first == 2 || of_first == 4; }
-};
-
-} // namespace
-
 // near_: what may stand in the way of any triangle of rim_. Triangles of other parts change meanwhile, each in its
 // own cell, so none of those is met; triangles of no part stay as they are.
 void Editor::gather_near(const Sheets& sheets, const SheetTriangle& around, bool may_be_stale) {
@@ -212,21 +194,40 @@ bool Editor::stays_near(Near& n, bool stamped_go) const {
   return stays;
 }
 
+// Triangles of a hole with four of them share edges, all with all: turned inside out none crosses another.
+void Editor::note_edge(const Apart& apart, const std::array<int32_t, 3>& other) {
+  if (apart.share_edge())
+    beyond_.push_back({std::countr_zero(apart.of_first), other[size_t(std::countr_zero(apart.of_second))]});
+}
+
+// Whether it crosses the near one, which may be itself and may not stay; their common edge is noted.
+bool Editor::crosses(const SheetTriangle& now, Near& near, bool stamped_go) {
+  const SheetTriangle& other = near.triangle;
+  const Apart apart(now.v, other.v);
+  const bool one_sheet = now.of_one_sheet(other, apart.beside());
+  // Whether it stays is further away in memory.
+  if ((one_sheet && !apart.share_edge()) || !stays_near(near, stamped_go))
+    return false;
+  note_edge(apart, other.v);
+  return !one_sheet && triangles_cross(m_.point, now.v, other.v);
+}
+
+// True when a triangle of rim_ leaves this part's cell.
+bool Editor::rim_leaves() const {
+  return std::any_of(rim_.begin(), rim_.end(), [&](const auto& t) {
+    return std::any_of(t.begin(), t.end(), [&](int32_t v) { return parts_.at(m_.point[size_t(v)]) != room_.part; });
+  });
+}
+
 // True when a triangle of rim_ crosses another one or another of rim_, or leaves this part's cell.
 bool Editor::rim_crosses(bool stamped_go) {
   elsewhere_ |= !rim_.empty();
+  if (rim_leaves())
+    return true;
   rim_sheet_.clear();
   SheetTriangle around; // the box of all
-  for (const auto& t : rim_) {
-    for (const int32_t v : t)
-      if (parts_.at(m_.point[size_t(v)]) != room_.part)
-        return true;
-    const SheetTriangle& now = rim_sheet_.emplace_back(sheet_triangle(m_.point, t, -1));
-    for (int a = 0; a < 3; ++a) {
-      around.low[a] = std::min(around.low[a], now.low[a]);
-      around.high[a] = std::max(around.high[a], now.high[a]);
-    }
-  }
+  for (const auto& t : rim_)
+    around.add_box(rim_sheet_.emplace_back(sheet_triangle(m_.point, t, -1)));
   if (rim_.empty())
     return false;
   near_.clear();
@@ -235,30 +236,16 @@ bool Editor::rim_crosses(bool stamped_go) {
   gather_near(*sheets_, around, true);
   for (size_t i = 0; i < rim_.size(); ++i) {
     const SheetTriangle& now = rim_sheet_[i];
-    // Triangles of a hole with four of them share edges, all with all: turned inside out none crosses another.
     beyond_.clear();
-    const auto note = [&](const Apart& apart, const std::array<int32_t, 3>& o) {
-      if (apart.share_edge())
-        beyond_.push_back({std::countr_zero(apart.of_first), o[size_t(std::countr_zero(apart.of_second))]});
-    };
     for (const auto& o : rim_)
-      note(Apart(now.v, o), o);
+      note_edge(Apart(now.v, o), o);
     for (size_t j = 0; j < i; ++j)
       if (!now.of_one_sheet(rim_sheet_[j], true) && triangles_cross(m_.point, now.v, rim_[j]))
         return true;
     for (const EightBoxes& eight : near_box_)
-      for (uint32_t met = eight.met(now); met; met &= met - 1) {
-        Near& n = near_[size_t(eight.triangle[size_t(std::countr_zero(met))])];
-        const SheetTriangle& other = n.triangle;
-        const Apart apart(now.v, other.v);
-        const bool one_sheet = now.of_one_sheet(other, apart.beside());
-        // Whether it stays is further away in memory.
-        if ((one_sheet && !apart.share_edge()) || !stays_near(n, stamped_go))
-          continue;
-        note(apart, other.v);
-        if (!one_sheet && triangles_cross(m_.point, now.v, other.v))
+      for (uint32_t met = eight.met(now); met; met &= met - 1)
+        if (crosses(now, near_[size_t(eight.triangle[size_t(std::countr_zero(met))])], stamped_go))
           return true;
-      }
     if (turns_over(now.v))
       return true;
   }
@@ -279,8 +266,12 @@ void Editor::list_rim(const std::vector<int32_t>& elements, int32_t v, int32_t w
   }
 }
 
-// After what list_rim(elements, …) was for: sheets know those triangles as they are now.
+// After what list_rim(elements, …) was for: sheets know those triangles as they are now, or will.
 void Editor::move_rim() {
+  if (unlooked_) {
+    unlooked_->face.insert(unlooked_->face.end(), rim_face_.begin(), rim_face_.end());
+    return;
+  }
   for (size_t i = 0; i < rim_face_.size(); ++i)
     changed_sheets_.insert(sheet_triangle(m_.point, rim_[i], rim_face_[i]));
 }

@@ -103,13 +103,6 @@ struct DynamicMesh {
     for (int64_t e = s * stretch, end = std::min(static_cast<int64_t>(element.size()), e + stretch); e < end; ++e)
       f(e);
   }
-  /// f(e) for the slots of all stretches that may hold labelled faces, ascending.
-  template <class F>
-  void for_labelled(F&& f) const {
-    for (size_t s = 0; s < labelled.size(); ++s)
-      if (labelled[s])
-        for_stretch(static_cast<int64_t>(s), f);
-  }
 
   /// Whether the face is labelled and this side's to count: the lower region's.
   bool counts_here(const Element& e, size_t face) const {

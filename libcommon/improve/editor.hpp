@@ -99,6 +99,9 @@ public:
   /// Moves a surface vertex onto the target, all the way or part of it; no element falls under `floor`;
   /// floor ≥ 1: to less than half its quality.
   bool settle(int32_t v, float floor);
+  /// All of them, in order; the part has not been changed before. Triangles are not asked one move at a time
+  /// whether they cross others, which few do: where one does in the end, all goes back and they are.
+  void settle(const std::vector<int32_t>& vertices, float floor);
   /// Moves a surface vertex towards the nearest place on the target that it finds, as far as no element falls
   /// under `floor`.
   bool approach(int32_t v, float floor);
@@ -123,7 +126,7 @@ public:
   /// Elements made or changed by operations since the caller last cleared it.
   std::vector<int32_t> changed;
   /// How sheets differs now; to be called last.
-  Sheets take_changed_sheets() { return std::move(changed_sheets_); }
+  SheetChanges take_sheet_changes();
   Counts counts;
   float goal = 1; ///< elements of less quality count in the deficit
   bool worst_first = true;
@@ -171,8 +174,11 @@ private:
     SheetTriangle triangle;
     Stays stays;
   };
+  void note_edge(const Apart& apart, const std::array<int32_t, 3>& other);
+  bool crosses(const SheetTriangle& now, Near& near, bool stamped_go);
   void gather_near(const Sheets& sheets, const SheetTriangle& around, bool may_be_stale);
   bool stays_near(Near& n, bool stamped_go) const;
+  bool rim_leaves() const;
   bool rim_crosses(bool stamped_go);
   bool turns_over(const std::array<int32_t, 3>& t) const;
   void move_rim();
@@ -236,6 +242,14 @@ private:
   /// Moves v, star_ being its elements, as far as they stay above: all the way, or steps shorter each time.
   bool step_to(int32_t v, Vec3d to, double shorter, double least, float above);
   bool take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above, float allowed);
+  /// What has moved, in order, and was before, while nobody asks for crossings: settle().
+  struct Unlooked {
+    std::vector<std::pair<int32_t, Vec3d>> vertex;
+    std::vector<std::pair<int32_t, float>> element; ///< and its quality
+    std::vector<int64_t> face;                      ///< of triangles
+  };
+  bool any_crosses(Unlooked& moved);
+  void put_back(const Unlooked& moved);
   bool may_contract(const Vertex& a, const Vertex& b) const;
   bool finish_contraction(int32_t a, int32_t b, bool moved);
   bool borders_allow(int32_t e, int32_t a, int32_t b);
@@ -268,12 +282,14 @@ private:
   std::vector<SheetTriangle> rim_sheet_;
   std::vector<Near> near_;
   std::vector<EightBoxes> near_box_; ///< of these; EightBoxes::triangle: index into near_
-  /// A triangle across the edge opposite a triangle's vertex.
+  /// A triangle across the edge opposite one's vertex.
   struct Beyond {
     int edge;
     int32_t apex;
   };
   std::vector<Beyond> beyond_;
+  Unlooked* unlooked_ = nullptr;
+  std::vector<SheetTriangle> settled_; ///< and known to cross none: as changed_sheets_
   std::vector<int32_t> star_, star2_, old_, made_;
   std::vector<Candidate> now_;
   Ring ring_;

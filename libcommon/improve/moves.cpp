@@ -1,4 +1,4 @@
-// moves.cpp — vertices move: search for the worst element, places on the target, settling there.
+// moves.cpp — vertices move: search for the worst element, places on the target.
 #include "improve/editor.hpp"
 #include "improve/quality_kernel.hpp"
 #include <algorithm>
@@ -153,13 +153,17 @@ bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, f
   clear_rim();
   if (sheets_ && m_.vertex[size_t(v)].kind == Kind::surface)
     list_rim(elements, v, -1);
-  if (lack(now_) > allowed || rim_crosses(false)) {
+  if (lack(now_) > allowed || (unlooked_ ? rim_leaves() : rim_crosses(false))) {
     m_.point[size_t(v)] = from;
     return false;
   }
+  if (unlooked_)
+    unlooked_->vertex.emplace_back(v, from);
   move_rim();
   for (size_t i = 0; i < elements.size(); ++i) {
     Element& e = m_.element[size_t(elements[i])];
+    if (unlooked_)
+      unlooked_->element.emplace_back(elements[i], e.q);
     e.q = now_[i].q;
     note_change(elements[i]);
     touch(elements[i]);
@@ -194,23 +198,6 @@ bool Editor::move_to_best(int32_t v) {
     return false;
   m_.point[size_t(v)] = x;
   return take(star_, v, from, above, lack(star_));
-}
-
-bool Editor::settle(int32_t v, float floor) {
-  if (m_.vertex[size_t(v)].kind != Kind::surface || !target_)
-    return false;
-  const Vec3d from = m_.point[size_t(v)];
-  double distance;
-  Vec3d normal;
-  if (!target_->probe(from, distance, normal) || std::abs(distance) < 2e-3 * target_->spacing())
-    return false;
-  if (!star(v, star_))
-    return false;
-  Vec3d to = from;
-  if (!target_->project(to, guard_.reach * mean_edge(star_, v)))
-    return false;
-  const float now = worst(star_), above = floor >= 1 ? 0.5f * now : std::min(floor, now) * 0.999999f;
-  return step_to(v, to, 0.5, 0.1, above);
 }
 
 bool Editor::step_to(int32_t v, Vec3d to, double shorter, double least, float above) {

@@ -2,6 +2,7 @@
 #pragma once
 #include "density/large_array.hpp"
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -18,6 +19,10 @@ public:
       clock_ = 1;
     }
   }
+  void reserve(size_t keys) {
+    if (2 * keys > slot_.size())
+      resize(std::bit_ceil(2 * keys));
+  }
   /// The key's number; null when it was never asked for with [].
   const int32_t* find(uint64_t key) const {
     if (slot_.empty())
@@ -27,13 +32,8 @@ public:
   }
   /// -1 at first. Valid until the next call.
   int32_t& operator[](uint64_t key) {
-    if (2 * (used_ + 1) > slot_.size()) {
-      Slots old(std::max<size_t>(64, 4 * slot_.size()));
-      old.swap(slot_);
-      for (const Slot& s : old)
-        if (is_used(s))
-          slot_[place(s.key)] = s;
-    }
+    if (2 * (used_ + 1) > slot_.size())
+      resize(std::max<size_t>(64, 4 * slot_.size()));
     Slot& s = slot_[place(key)];
     if (!is_used(s)) {
       s = {key, -1, clock_};
@@ -56,6 +56,13 @@ private:
     uint32_t clock = 0; ///< when it was filled
   };
   using Slots = std::vector<Slot, LargeAllocator<Slot>>;
+  void resize(size_t slots) {
+    Slots old(slots);
+    old.swap(slot_);
+    for (const Slot& s : old)
+      if (is_used(s))
+        slot_[place(s.key)] = s;
+  }
   bool is_used(const Slot& s) const { return s.clock == clock_; }
   /// Where the key is or would go. Keys next to each other are asked for together, and lie so.
   size_t place(uint64_t key) const {

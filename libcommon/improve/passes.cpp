@@ -235,8 +235,7 @@ Counts Schedule::settle(float floor, const Guard& guard) {
   return for_parts(items, part, guard,
                    [&](Editor& editor, std::vector<int32_t>& list) {
                      editor.time = time;
-                     for (const int32_t v : list)
-                       editor.settle(v, floor);
+                     editor.settle(list, floor);
                    },
                    {.slots_per_item = 0}); // nothing new comes
 }

@@ -1,5 +1,7 @@
 // schedule.cpp — parts, their reserved slots, and the sheets near them.
 #include "improve/schedule.hpp"
+#include "improve/box_tree.hpp"
+#include "improve/choose.hpp"
 #include "improve/element_pass.hpp"
 #include "par/pages.hpp"
 #include <algorithm>
@@ -57,21 +59,32 @@ void Schedule::find_crowded(double apart) {
   if (!target_ || watching_)
     return;
   watching_ = apart == everywhere;
-  std::vector<SheetTriangle> triangle;
-  m_.for_labelled([&](int64_t e) {
-    const Element& el = m_.element[size_t(e)];
+  const auto is_curved_end = [&](const Element& e, size_t f) {
+    return e.n[f] < 0 && m_.labels[e.label[f]].curved();
+  };
+  std::vector<int64_t> face;
+  for (const int32_t e : choose(
+           static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::stretch,
+           [&](int64_t s) { return m_.labelled[size_t(s)] != 0; },
+           [&](int64_t t) {
+             const Element& el = m_.element[size_t(t)];
+             return el.alive() &&
+                    (is_curved_end(el, 0) || is_curved_end(el, 1) || is_curved_end(el, 2) || is_curved_end(el, 3));
+           }))
     for (size_t f = 0; f < 4; ++f)
-      if (el.alive() && el.n[f] < 0 && m_.labels[el.label[f]].curved())
-        triangle.push_back(sheet_triangle(m_.point, outward_triangle(el.v, f), 4 * e + int64_t(f)));
+      if (is_curved_end(m_.element[size_t(e)], f))
+        face.push_back(4 * int64_t(e) + int64_t(f));
+  std::vector<SheetTriangle> triangle(face.size());
+  par::for_n(static_cast<int64_t>(face.size()), threads_, [&](int64_t t) {
+    const int64_t f = face[size_t(t)];
+    triangle[size_t(t)] = sheet_triangle(m_.point, outward_triangle(m_.element[size_t(f / 4)].v, size_t(f % 4)), f);
   });
   ends_in_surface_ = !triangle.empty();
   const double cell = cell_for(triangle);
   std::vector<uint8_t> crowded(triangle.size(), watching_);
   if (!watching_) {
-    Sheets all(cell);
-    all.reserve(triangle.size());
-    for (const SheetTriangle& t : triangle)
-      all.insert(t);
+    const BoxTree tree(
+        triangle.size(), [&](size_t n) { return triangle[n]; }, threads_);
     const auto reach = static_cast<float>(apart * target_->spacing());
     const double hardly = target_->spacing() / 4;
     const Vec3f beyond{reach, reach, reach};
@@ -79,7 +92,8 @@ void Schedule::find_crowded(double apart) {
       SheetTriangle wide = triangle[size_t(t)];
       wide.low = wide.low - beyond;
       wide.high = wide.high + beyond;
-      crowded[size_t(t)] = all.any(wide, [&](const SheetTriangle& other) {
+      crowded[size_t(t)] = tree.any(wide, [&](size_t n) {
+        const SheetTriangle& other = triangle[n];
         return !wide.of_one_sheet(other, false) && reaches_before(m_.point, wide, other, hardly) &&
                reaches_before(m_.point, other, wide, hardly);
       });
@@ -92,11 +106,10 @@ void Schedule::find_crowded(double apart) {
       for (const int32_t v : triangle[t].v)
         m_.vertex[size_t(v)].crowded = true;
   sheets_ = Sheets(cell);
-  if (watching_)
-    sheets_.reserve(triangle.size());
+  std::erase_if(triangle, [&](const SheetTriangle& t) { return !m_.crowded(t.v); });
+  sheets_.reserve(triangle.size(), threads_);
   for (const SheetTriangle& t : triangle)
-    if (m_.crowded(t.v))
-      sheets_.insert(t);
+    sheets_.insert(t);
 }
 
 void Schedule::find_worst() {
@@ -215,7 +228,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     std::vector<int32_t> items;
     size_t weight = 0;
     Counts counts;
-    Sheets sheets{1};
+    SheetChanges sheets;
     uint32_t clock = 0;
   };
   std::vector<int32_t> job_of(static_cast<size_t>(parts_.count()), -1);
@@ -273,11 +286,13 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
                     last_stamp_);
       work(editor, job.items);
       job.counts = editor.counts;
-      job.sheets = editor.take_changed_sheets();
+      job.sheets = editor.take_sheet_changes();
       job.clock = editor.clock();
     }
     helpers_.help();
   });
+  par::for_n(static_cast<int64_t>(jobs.size()), threads_, 1,
+             [&](int64_t j) { sheets_.move_along(jobs[size_t(j)].sheets); });
   Counts sum;
   for (Job& job : jobs) {
     sum += job.counts;

@@ -1,11 +1,42 @@
 // sheets.cpp — chains of boxes by cell, and where each face's triangle is.
 #include "improve/sheets.hpp"
 #include "error.hpp"
+#include "par/pages.hpp"
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 namespace molmesh::improve {
+namespace {
+
+// Vectors that any x86-64 has: left to itself g++ takes none here.
+typedef float Floats __attribute__((vector_size(16)));
+typedef int32_t Ints __attribute__((vector_size(16)));
+
+template <class V, class T>
+V load(const T* from) {
+  V v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+
+} // namespace
+
+uint32_t EightBoxes::met(const SheetTriangle& t) const {
+  uint32_t bits = 0;
+  for (size_t first = 0; first < 8; first += 4) {
+    Ints meet = load<Ints>(&triangle[first]) >= Ints{};
+    for (size_t a = 0; a < 3; ++a) {
+      const float from = t.low[int(a)], to = t.high[int(a)];
+      meet &= load<Floats>(&low[a][first]) <= Floats{to, to, to, to};
+      meet &= load<Floats>(&high[a][first]) >= Floats{from, from, from, from};
+    }
+    meet &= Ints{1, 2, 4, 8};
+    bits |= static_cast<uint32_t>(meet[0] | meet[1] | meet[2] | meet[3]) << first;
+  }
+  return bits;
+}
 
 SheetTriangle sheet_triangle(const std::vector<Vec3d>& point, std::array<int32_t, 3> v, int64_t face) {
   SheetTriangle t;
@@ -19,6 +50,12 @@ SheetTriangle sheet_triangle(const std::vector<Vec3d>& point, std::array<int32_t
   const Vec3d n = cross(b - a, c - a), unit = n / std::max(norm(n), 1e-300);
   t.normal = {static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)};
   return t;
+}
+
+void Sheets::reserve(size_t triangles, int threads) {
+  par::reserve_pages(triangle_, triangles, triangles / 4, threads);
+  par::reserve_pages(eight_, triangles / 2, triangles / 8, threads); // they lie in some two cells and a half each
+  face_.reserve(triangles);
 }
 
 void Sheets::insert(const SheetTriangle& t) {
@@ -47,10 +84,11 @@ bool Sheets::move(int32_t id, const SheetTriangle& t) {
     return false;
   before = t;
   for_cells(t, [&](uint64_t key, uint8_t begins) {
-    for (int32_t c = chain_[key]; c >= 0; c = eight_[size_t(c)].next)
+    const int32_t* const first = chain_.find(key);
+    for (int32_t c = first ? *first : -1; c >= 0; c = eight_[size_t(c)].next)
       for (size_t n = 0; n < 8; ++n)
         if (EightBoxes& e = eight_[size_t(c)]; e.triangle[n] == id) {
-          e.set(n, id, t, begins);
+          e.set_box(n, t, begins);
           return;
         }
   });
@@ -58,21 +96,21 @@ bool Sheets::move(int32_t id, const SheetTriangle& t) {
 }
 
 void Sheets::put(int32_t& chain, int32_t id, uint8_t begins) {
-  int32_t* at = &chain;
   size_t n = 0; // where there is room
-  for (; *at >= 0; at = &eight_[size_t(*at)].next) {
-    const auto& held = eight_[size_t(*at)].triangle;
+  int32_t at = chain;
+  for (; at >= 0; at = eight_[size_t(at)].next) {
+    const auto& held = eight_[size_t(at)].triangle;
     n = size_t(std::find(held.begin(), held.end(), -1) - held.begin());
     if (n < held.size())
       break;
   }
-  const size_t here = *at < 0 ? eight_.size() : size_t(*at);
-  if (*at < 0) {
-    *at = static_cast<int32_t>(here);
-    eight_.emplace_back();
+  if (at < 0) { // in front: what comes next finds room at once
+    at = static_cast<int32_t>(eight_.size());
+    eight_.emplace_back().next = chain;
+    chain = at;
     n = 0;
   }
-  eight_[here].set(n, id, triangle_[size_t(id)], begins);
+  eight_[size_t(at)].set(n, id, triangle_[size_t(id)], begins);
 }
 
 void Sheets::take_out(int32_t chain, int32_t id) {
@@ -102,13 +140,29 @@ size_t Sheets::boxes() const {
   return n;
 }
 
-void Sheets::merge(const Sheets& later) {
-  later.face_.for_each([&](uint64_t face, int32_t triangle) {
+SheetChanges Sheets::changes() const {
+  SheetChanges all;
+  face_.for_each([&](uint64_t face, int32_t triangle) {
     if (triangle < 0)
-      erase(int64_t(face));
+      all.gone.push_back(int64_t(face));
     else
-      insert(later.triangle_[size_t(triangle)]);
+      all.there.push_back(triangle_[size_t(triangle)]);
   });
+  return all;
+}
+
+void Sheets::move_along(SheetChanges& later) {
+  std::erase_if(later.there, [&](const SheetTriangle& t) {
+    const int32_t* const at = face_.find(uint64_t(t.face));
+    return at && *at >= 0 && move(*at, t);
+  });
+}
+
+void Sheets::merge(const SheetChanges& later) {
+  for (const int64_t face : later.gone)
+    erase(face);
+  for (const SheetTriangle& t : later.there)
+    insert(t);
 }
 
 } // namespace molmesh::improve

@@ -21,6 +21,12 @@ struct SheetTriangle {
   Vec3f low{HUGE_VALF, HUGE_VALF, HUGE_VALF}, high{-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
   Vec3f normal; ///< unit
 
+  void add_box(const SheetTriangle& o) {
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], o.low[a]);
+      high[a] = std::max(high[a], o.high[a]);
+    }
+  }
   bool box_meets(const SheetTriangle& o) const {
     for (int a = 0; a < 3; ++a)
       if (low[a] > o.high[a] || high[a] < o.low[a])
@@ -31,6 +37,20 @@ struct SheetTriangle {
   bool of_one_sheet(const SheetTriangle& o, bool beside) const {
     return dot(normal, o.normal) > (beside ? 0.7f : 0.3f);
   }
+};
+
+/// Of two triangles: which vertices of either the other has not, a bit each.
+struct Apart {
+  unsigned of_first = 7, of_second = 7;
+  Apart(const std::array<int32_t, 3>& a, const std::array<int32_t, 3>& b) {
+    for (unsigned i = 0; i < 3; ++i)
+      for (unsigned j = 0; j < 3; ++j)
+        if (a[i] == b[j])
+          of_first &= ~(1u << i), of_second &= ~(1u << j);
+  }
+  bool beside() const { return of_first != 7; }
+  /// std::has_single_bit is a call, as std::popcount (geom/bits.hpp).
+  bool share_edge() const { return of_first == 1 || of_first == 2 || of_first == 4; }
 };
 
 /// Boxes of triangles side by side: many are looked through, and few are met.
@@ -46,24 +66,33 @@ struct EightBoxes {
   }
   void set(size_t n, int32_t id, const SheetTriangle& t, uint8_t first_on = 0) {
     triangle[n] = id;
+    set_box(n, t, first_on);
+  }
+  void set_box(size_t n, const SheetTriangle& t, uint8_t first_on) {
     begins[n] = first_on;
     for (size_t a = 0; a < 3; ++a) {
       low[a][n] = t.low[int(a)];
       high[a][n] = t.high[int(a)];
     }
   }
-  /// Those that t's box meets, a bit each.
-  uint32_t met(const SheetTriangle& t) const {
-    std::array<float, 8> gap; // along the axis where that is most
-    gap.fill(-1);
+  /// Of all of them.
+  SheetTriangle bounds() const {
+    SheetTriangle all;
     for (size_t a = 0; a < 3; ++a)
-      for (size_t n = 0; n < 8; ++n)
-        gap[n] = std::max(gap[n], std::max(t.low[int(a)] - high[a][n], low[a][n] - t.high[int(a)]));
-    uint32_t bits = 0;
-    for (size_t n = 0; n < 8; ++n)
-      bits |= uint32_t{gap[n] <= 0 && triangle[n] >= 0} << n; // coordinates may be infinite
-    return bits;
+      for (size_t n = 0; n < 8; ++n) {
+        all.low[int(a)] = std::min(all.low[int(a)], low[a][n]);
+        all.high[int(a)] = std::max(all.high[int(a)], high[a][n]);
+      }
+    return all;
   }
+  /// Those that t's box meets, a bit each.
+  uint32_t met(const SheetTriangle& t) const;
+};
+
+/// What has become of some faces.
+struct SheetChanges {
+  std::vector<SheetTriangle> there;
+  std::vector<int64_t> gone;
 };
 
 SheetTriangle sheet_triangle(const std::vector<Vec3d>& point, std::array<int32_t, 3> v, int64_t face);
@@ -73,17 +102,18 @@ public:
   /// Cells of this size (Å), larger ones for larger triangles. A few of the triangles' edges is best.
   explicit Sheets(double cell) : cell_(cell) {}
   double cell() const { return cell_; }
-  void reserve(size_t triangles) {
-    triangle_.reserve(triangles);
-    eight_.reserve(triangles); // on a surface somewhat fewer
-  }
+  void reserve(size_t triangles, int threads); ///< of a surface
   /// In place of what was known of that face.
   void insert(const SheetTriangle& t);
   void erase(int64_t face);
   /// Whether that face was ever inserted or erased here.
   bool knows(int64_t face) const { return face_.find(uint64_t(face)) != nullptr; }
-  /// Takes over what `later` knows.
-  void merge(const Sheets& later);
+  /// All that was ever inserted or erased here, as it is now.
+  SheetChanges changes() const;
+  /// Moves triangles that are known and stay in their cells, and takes them out of `later`. At the same time as for
+  /// other faces, while nothing else changes.
+  void move_along(SheetChanges& later);
+  void merge(const SheetChanges& later);
   size_t alive() const { return triangle_.size() - free_.size(); }
   size_t boxes() const; ///< that cells hold: 27 for each triangle at most
   /// True as soon as f(triangle) is, over all whose boxes t's meets, each once.

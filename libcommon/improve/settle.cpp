@@ -1,0 +1,85 @@
+// settle.cpp — surface vertices of a part move onto the target; whether triangles cross is asked once all have.
+#include "improve/box_tree.hpp"
+#include "improve/editor.hpp"
+#include "par/par.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace molmesh::improve {
+
+void Editor::settle(const std::vector<int32_t>& vertices, float floor) {
+  Unlooked moved;
+  if (sheets_)
+    unlooked_ = &moved;
+  const Counts before = counts;
+  for (const int32_t v : vertices)
+    settle(v, floor);
+  unlooked_ = nullptr;
+  if (!sheets_ || !any_crosses(moved))
+    return;
+  put_back(moved);
+  counts = before;
+  for (const int32_t v : vertices)
+    settle(v, floor);
+}
+
+bool Editor::settle(int32_t v, float floor) {
+  if (m_.vertex[size_t(v)].kind != Kind::surface || !target_)
+    return false;
+  const Vec3d from = m_.point[size_t(v)];
+  double distance;
+  Vec3d normal;
+  if (!target_->probe(from, distance, normal) || std::abs(distance) < 2e-3 * target_->spacing())
+    return false;
+  if (!star(v, star_))
+    return false;
+  Vec3d to = from;
+  if (!target_->project(to, guard_.reach * mean_edge(star_, v)))
+    return false;
+  const float now = worst(star_), above = floor >= 1 ? 0.5f * now : std::min(floor, now) * 0.999999f;
+  return step_to(v, to, 0.5, 0.1, above);
+}
+
+// Whether one of the triangles that have moved crosses another. settled_: all of them.
+bool Editor::any_crosses(Unlooked& moved) {
+  par::sort_unique(moved.face, 1);
+  near_.clear();
+  settled_.clear();
+  SheetTriangle around; // the box of all
+  for (const int64_t face : moved.face) {
+    const auto v = outward_triangle(m_.element[size_t(face / 4)].v, size_t(face % 4));
+    settled_.push_back(sheet_triangle(m_.point, v, face));
+    near_.push_back({settled_.back(), Near::Stays::yes});
+    around.add_box(settled_.back());
+  }
+  sheets_->any(around, [&](const SheetTriangle& other) {
+    if (Near n{other, Near::Stays::not_asked};
+        !std::binary_search(moved.face.begin(), moved.face.end(), other.face) && stays_near(n, false))
+      near_.push_back(n);
+    return false;
+  });
+  const BoxTree tree(near_.size(), [&](size_t n) { return near_[n].triangle; });
+  return std::any_of(near_.begin(), near_.begin() + std::ptrdiff_t(moved.face.size()), [&](const Near& now) {
+    beyond_.clear();
+    return tree.any(now.triangle, [&](size_t n) { return crosses(now.triangle, near_[n], false); }) ||
+           turns_over(now.triangle.v);
+  });
+}
+
+// A part in which nothing else has changed, as it was.
+void Editor::put_back(const Unlooked& moved) {
+  for (auto i = moved.vertex.rbegin(); i != moved.vertex.rend(); ++i)
+    m_.point[size_t(i->first)] = i->second;
+  for (auto i = moved.element.rbegin(); i != moved.element.rend(); ++i)
+    m_.element[size_t(i->first)].q = i->second;
+  settled_.clear();
+  changed.clear();
+}
+
+SheetChanges Editor::take_sheet_changes() {
+  SheetChanges all = changed_sheets_.changes();
+  all.there.insert(all.there.end(), settled_.begin(), settled_.end());
+  return all;
+}
+
+} // namespace molmesh::improve
