@@ -1,6 +1,7 @@
 // mmcif.cpp — mmCIF and mmJSON through gemmi: only the categories that matter, missing columns filled in.
 #include "error.hpp"
 #include "formats/pdb/atom_site.hpp"
+#include "formats/pdb/chains.hpp"
 #include "formats/pdb/mmcif_assembly.hpp"
 #include "formats/pdb/mmjson.hpp"
 #include "formats/pdb/parse.hpp"
@@ -103,6 +104,8 @@ Parsed from_document(cif::Document& document, std::string_view text, const std::
   columns.complete("B_iso_or_equiv", {}, "0");
   columns.complete("auth_seq_id", {"label_seq_id"}, "1");
 
+  const bool divided = divide_long_chains(loop, columns);
+
   const std::vector<gemmi::Assembly> assemblies = read_assemblies(*block, assembly, file);
   // Other categories cost time and can only fail: _atom_site_anisotrop, _struct_conn, _pdbx_sifts_…
   cif::Block needed(block->name);
@@ -122,6 +125,8 @@ Parsed from_document(cif::Document& document, std::string_view text, const std::
   } catch (const std::exception& e) {
     fail_input(where + ": " + std::string(e.what()).substr(0, std::string_view(e.what()).find('\n')));
   }
+  if (divided)
+    join_divided_chains(parsed.structure);
   parsed.structure.assemblies = assemblies; // gemmi 0.5.7 reads no products of operators
   return parsed;
 }

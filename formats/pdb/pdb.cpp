@@ -4,6 +4,7 @@
 #include "formats/hier/hier.hpp"
 #include "formats/hier/text.hpp"
 #include "formats/pdb/arrangement.hpp"
+#include "formats/pdb/chains.hpp"
 #include "formats/pdb/gunzip.hpp"
 #include "formats/pdb/keep.hpp"
 #include "formats/pdb/notes.hpp"
@@ -85,7 +86,7 @@ PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbO
   }
   p.report.format = p.parsed.format;
   gemmi::Structure& st = p.parsed.structure;
-  st.merge_chain_parts();
+  merge_chain_parts(st);
   if (needs_entities(options))
     gemmi::setup_entities(st);
   keep(p.parsed, name, options, p.report);

@@ -228,6 +228,33 @@ TEST_CASE("mmCIF: missing columns are filled in, bad coordinates have their line
   CHECK(convert(single).hierarchy.atom.at(0).center == Vec3d{1, 2, 3});
 }
 
+TEST_CASE("mmCIF: chains of many residues, and many chains, are read whole") {
+  std::string rows, expected;
+  int id = 0;
+  const auto atom = [&](const std::string& name, const std::string& chain, int residue) {
+    const std::string number = std::to_string(residue), serial = std::to_string(++id);
+    rows += "HETATM " + serial + " O " + name + " . LIG W " + number + " " + serial + " 0 0 1 10 " + number + " " +
+            chain + "\n";
+  };
+  constexpr int many = 2600;
+  for (const char* name : {"O1", "O2"}) // a residue's atoms are far from each other in the file
+    for (int residue = 1; residue <= many; ++residue)
+      atom(name, "W", residue);
+  for (int k = 1; k <= many; ++k)
+    atom("O1", "'" + std::to_string(k) + "'", 1);
+  atom("O1", "W", many + 1); // another part of it
+  for (int residue = 1; residue <= many; ++residue)
+    for (const char* name : {"O1", "O2"})
+      expected += "W/LIG:" + std::to_string(residue) + "/" + name + " ";
+  expected += "W/LIG:" + std::to_string(many + 1) + "/O1";
+  for (int k = 1; k <= many; ++k)
+    expected += " " + std::to_string(k) + "/LIG:1/O1";
+  const Converted c = convert(cif_loop(rows), {}, "x.cif");
+  CHECK(c.report.chains == many + 1);
+  CHECK(c.report.residues == 2 * many + 1);
+  CHECK((listing(c.hierarchy) == expected)); // not to be printed
+}
+
 TEST_CASE("mmJSON is the same structure") {
   const std::string json =
       R"({"data_X": {"atom_site": {"type_symbol": ["N", "C"], "label_atom_id": ["N", "CA"], "label_comp_id": ["GLY", "GLY"],
