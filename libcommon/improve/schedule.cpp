@@ -55,57 +55,63 @@ bool reaches_before(const std::vector<Vec3d>& point, const SheetTriangle& a, con
 
 } // namespace
 
+std::vector<SheetTriangle> Schedule::end_triangles() const {
+  const auto ends = [&](const Element& e, size_t f) { return e.n[f] < 0 && m_.labels[e.label[f]].curved(); };
+  std::vector<int64_t> face;
+  for (const int32_t t : choose(
+           static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::stretch,
+           [&](int64_t s) { return m_.labelled[size_t(s)] != 0; },
+           [&](int64_t t) {
+             const Element& e = m_.element[size_t(t)];
+             return e.alive() && (ends(e, 0) || ends(e, 1) || ends(e, 2) || ends(e, 3));
+           }))
+    for (size_t f = 0; f < 4; ++f)
+      if (ends(m_.element[size_t(t)], f))
+        face.push_back(4 * int64_t(t) + int64_t(f));
+  std::vector<SheetTriangle> triangle(face.size());
+  par::for_n(static_cast<int64_t>(face.size()), threads_, [&](int64_t i) {
+    const int64_t f = face[size_t(i)];
+    triangle[size_t(i)] = sheet_triangle(m_.point, outward_triangle(m_.element[size_t(f / 4)].v, size_t(f % 4)), f);
+  });
+  return triangle;
+}
+
+// Which of the triangles face another one within that distance.
+std::vector<uint8_t> Schedule::facing(const std::vector<SheetTriangle>& triangle, double distance) const {
+  const BoxTree tree(
+      triangle.size(), [&](size_t n) { return triangle[n]; }, threads_);
+  const auto reach = static_cast<float>(distance);
+  const double hardly = target_->spacing() / 4;
+  const Vec3f beyond{reach, reach, reach};
+  std::vector<uint8_t> faces(triangle.size());
+  par::for_n(static_cast<int64_t>(triangle.size()), threads_, [&](int64_t t) {
+    SheetTriangle wide = triangle[size_t(t)];
+    wide.low = wide.low - beyond;
+    wide.high = wide.high + beyond;
+    faces[size_t(t)] = tree.any(wide, [&](size_t n) {
+      const SheetTriangle& other = triangle[n];
+      return !wide.of_one_sheet(other, false) && reaches_before(m_.point, wide, other, hardly) &&
+             reaches_before(m_.point, other, wide, hardly);
+    });
+  });
+  return faces;
+}
+
 void Schedule::find_crowded(double apart) {
   if (!target_ || watching_)
     return;
   watching_ = apart == everywhere;
-  const auto is_curved_end = [&](const Element& e, size_t f) {
-    return e.n[f] < 0 && m_.labels[e.label[f]].curved();
-  };
-  std::vector<int64_t> face;
-  for (const int32_t e : choose(
-           static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::stretch,
-           [&](int64_t s) { return m_.labelled[size_t(s)] != 0; },
-           [&](int64_t t) {
-             const Element& el = m_.element[size_t(t)];
-             return el.alive() &&
-                    (is_curved_end(el, 0) || is_curved_end(el, 1) || is_curved_end(el, 2) || is_curved_end(el, 3));
-           }))
-    for (size_t f = 0; f < 4; ++f)
-      if (is_curved_end(m_.element[size_t(e)], f))
-        face.push_back(4 * int64_t(e) + int64_t(f));
-  std::vector<SheetTriangle> triangle(face.size());
-  par::for_n(static_cast<int64_t>(face.size()), threads_, [&](int64_t t) {
-    const int64_t f = face[size_t(t)];
-    triangle[size_t(t)] = sheet_triangle(m_.point, outward_triangle(m_.element[size_t(f / 4)].v, size_t(f % 4)), f);
-  });
+  std::vector<SheetTriangle> triangle = end_triangles();
   ends_in_surface_ = !triangle.empty();
-  const double cell = cell_for(triangle);
-  std::vector<uint8_t> crowded(triangle.size(), watching_);
-  if (!watching_) {
-    const BoxTree tree(
-        triangle.size(), [&](size_t n) { return triangle[n]; }, threads_);
-    const auto reach = static_cast<float>(apart * target_->spacing());
-    const double hardly = target_->spacing() / 4;
-    const Vec3f beyond{reach, reach, reach};
-    par::for_n(static_cast<int64_t>(triangle.size()), threads_, [&](int64_t t) {
-      SheetTriangle wide = triangle[size_t(t)];
-      wide.low = wide.low - beyond;
-      wide.high = wide.high + beyond;
-      crowded[size_t(t)] = tree.any(wide, [&](size_t n) {
-        const SheetTriangle& other = triangle[n];
-        return !wide.of_one_sheet(other, false) && reaches_before(m_.point, wide, other, hardly) &&
-               reaches_before(m_.point, other, wide, hardly);
-      });
-    });
-  }
+  const std::vector<uint8_t> crowded =
+      watching_ ? std::vector<uint8_t>(triangle.size(), 1) : facing(triangle, apart * target_->spacing());
   for (Vertex& v : m_.vertex)
     v.crowded = false;
   for (size_t t = 0; t < triangle.size(); ++t)
     if (crowded[t])
       for (const int32_t v : triangle[t].v)
         m_.vertex[size_t(v)].crowded = true;
-  sheets_ = Sheets(cell);
+  sheets_ = Sheets(cell_for(triangle));
   std::erase_if(triangle, [&](const SheetTriangle& t) { return !m_.crowded(t.v); });
   sheets_.reserve(triangle.size(), threads_);
   for (const SheetTriangle& t : triangle)
