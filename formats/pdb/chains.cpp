@@ -1,5 +1,6 @@
 // chains.cpp — stretches of chains named and joined, residues and chains by hash.
 #include "formats/pdb/chains.hpp"
+#include "formats/pdb/atom_site.hpp"
 #include <gemmi/cifdoc.hpp>
 #include <string_view>
 #include <unordered_map>

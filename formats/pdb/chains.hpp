@@ -1,10 +1,15 @@
 // chains.hpp — very many residues in a chain, and very many chains, as boxes of water have them: gemmi searches
 // them from the start for every residue of mmCIF and for every chain. Here each is looked up.
 #pragma once
-#include "formats/pdb/atom_site.hpp"
 #include <gemmi/model.hpp>
 
+namespace gemmi::cif {
+struct Loop;
+}
+
 namespace molmesh::formats {
+
+class AtomColumns;
 
 /// Before gemmi reads the table: further stretches of chains of many residues get names of their own. False: there
 /// is none.
