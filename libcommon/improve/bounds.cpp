@@ -204,12 +204,12 @@ void Editor::note_edge(const Apart& apart, const std::array<int32_t, 3>& other) 
 bool Editor::crosses(const SheetTriangle& now, Near& near, bool stamped_go) {
   const SheetTriangle& other = near.triangle;
   const Apart apart(now.v, other.v);
-  const bool one_sheet = now.of_one_sheet(other, apart.beside());
+  const bool beside = now.of_one_sheet(other, apart.beside()) && side_by_side(m_.point, now, other, apart);
   // Whether it stays is further away in memory.
-  if ((one_sheet && !apart.share_edge()) || !stays_near(near, stamped_go))
+  if ((beside && !apart.share_edge()) || !stays_near(near, stamped_go))
     return false;
   note_edge(apart, other.v);
-  return !one_sheet && triangles_cross(m_.point, now.v, other.v);
+  return !beside && triangles_cross(m_.point, now.v, other.v);
 }
 
 // True when a triangle of rim_ leaves this part's cell.
@@ -240,7 +240,9 @@ bool Editor::rim_crosses(bool stamped_go) {
     for (const auto& o : rim_)
       note_edge(Apart(now.v, o), o);
     for (size_t j = 0; j < i; ++j)
-      if (!now.of_one_sheet(rim_sheet_[j], true) && triangles_cross(m_.point, now.v, rim_[j]))
+      if (!(now.of_one_sheet(rim_sheet_[j], true) &&
+            side_by_side(m_.point, now, rim_sheet_[j], Apart(now.v, rim_[j]))) &&
+          triangles_cross(m_.point, now.v, rim_[j]))
         return true;
     for (const EightBoxes& eight : near_box_)
       for (uint32_t met = eight.met(now); met; met &= met - 1)

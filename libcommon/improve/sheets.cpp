@@ -21,7 +21,29 @@ V load(const T* from) {
   return v;
 }
 
+// Whether such a plane of a has all of b on its other side, but for a corner that both have on the edge.
+bool edge_parts(const std::vector<Vec3d>& point, const SheetTriangle& a, const SheetTriangle& b) {
+  const auto at = [&](int32_t v) { return point[size_t(v)]; };
+  const Vec3d normal{double(a.normal.x), double(a.normal.y), double(a.normal.z)};
+  for (size_t i = 0; i < 3; ++i) {
+    const int32_t from = a.v[i], to = a.v[(i + 1) % 3], third = a.v[(i + 2) % 3];
+    const Vec3d edge = at(to) - at(from), out = cross(edge, normal);
+    const double rounding = 1e-10 * norm2(edge);
+    const auto beyond = [&](int32_t v) { return dot(out, at(v) - at(from)); };
+    if (beyond(third) < -rounding && std::all_of(b.v.begin(), b.v.end(), [&](int32_t v) {
+          return v == from || v == to || beyond(v) > rounding;
+        }))
+      return true;
+  }
+  return false;
+}
+
 } // namespace
+
+bool side_by_side(const std::vector<Vec3d>& point, const SheetTriangle& a, const SheetTriangle& b,
+                  const Apart& apart) {
+  return apart.of_first == 0 || apart.share_edge() || edge_parts(point, a, b) || edge_parts(point, b, a);
+}
 
 uint32_t EightBoxes::met(const SheetTriangle& t) const {
   uint32_t bits = 0;

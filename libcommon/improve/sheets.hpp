@@ -33,7 +33,7 @@ struct SheetTriangle {
         return false;
     return true;
   }
-  /// Triangles of one sheet run much the same way where they are close: there is no crossing to look for.
+  /// Triangles of one sheet run much the same way where they are close.
   bool of_one_sheet(const SheetTriangle& o, bool beside) const {
     return dot(normal, o.normal) > (beside ? 0.7f : 0.3f);
   }
@@ -52,6 +52,11 @@ struct Apart {
   /// std::has_single_bit is a call, as std::popcount (geom/bits.hpp).
   bool share_edge() const { return of_first == 1 || of_first == 2 || of_first == 4; }
 };
+
+/// Whether triangles that run much the same way are one, share an edge, or are clearly parted by a plane along the
+/// normal of either through one of its edges: they do not cross then.
+bool side_by_side(const std::vector<Vec3d>& point, const SheetTriangle& a, const SheetTriangle& b,
+                  const Apart& apart);
 
 /// Boxes of triangles side by side: many are looked through, and few are met.
 struct EightBoxes {

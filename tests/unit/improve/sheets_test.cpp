@@ -1,4 +1,5 @@
 // sheets_test.cpp — where a mesh ends: the triangles known, and surfaces that must not cross themselves.
+#include "geom/intersect.hpp"
 #include "geom/tet_measures.hpp"
 #include "improve/box_tree.hpp"
 #include "improve/improve.hpp"
@@ -147,6 +148,38 @@ TEST_CASE("a tree of boxes finds the triangles that a box meets, each once") {
     }
     CHECK(met >= n);
   }
+}
+
+TEST_CASE("triangles that run the same way and lie side by side do not cross") {
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<double> u(0, 2), height(-0.2, 0.2);
+  int parted = 0, crossing = 0;
+  for (int n = 0; n < 20000; ++n) {
+    std::vector<Vec3d> point;
+    for (int k = 0; k < 6; ++k)
+      point.push_back({u(generator), u(generator), height(generator)});
+    std::array<int32_t, 3> v{0, 1, 2}, w{3, 4, 5};
+    if (n % 2)
+      w[0] = v[size_t(n / 2 % 3)];
+    const auto a = improve::sheet_triangle(point, v, 0), b = improve::sheet_triangle(point, w, 1);
+    if (!a.of_one_sheet(b, n % 2))
+      continue;
+    const bool beside = improve::side_by_side(point, a, b, improve::Apart(v, w));
+    const bool cross = triangles_cross(point, v, w);
+    CHECK_FALSE((beside && cross));
+    parted += beside;
+    crossing += cross;
+  }
+  CHECK(parted > 1000);
+  CHECK(crossing > 1000);
+  // As they came out of 4V6X inside: normals 32 degrees from each other.
+  const std::vector<Vec3d> point{{32.7405, 1.3404, -30.2465}, {32.6452, 1.3946, -30.2737},
+                                 {32.6660, 1.2442, -30.2188}, {32.6788, 1.3481, -30.2564},
+                                 {32.5362, 1.4793, -30.2835}, {32.6264, 1.3770, -30.2697}};
+  const auto a = improve::sheet_triangle(point, {0, 1, 2}, 0), b = improve::sheet_triangle(point, {3, 4, 5}, 1);
+  CHECK(a.of_one_sheet(b, false));
+  CHECK(triangles_cross(point, a.v, b.v));
+  CHECK_FALSE(improve::side_by_side(point, a, b, improve::Apart(a.v, b.v)));
 }
 
 namespace {
