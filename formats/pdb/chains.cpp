@@ -11,8 +11,9 @@ namespace {
 constexpr char mark = '\x1f'; // mmCIF's characters are printable
 constexpr size_t most_residues = 1024;
 
+/// Equal where gemmi's ResidueId::matches() says so.
 std::string key(const gemmi::ResidueId& r) {
-  return r.seqid.str() + mark + r.name;
+  return r.seqid.num.str() + mark + static_cast<char>(r.seqid.icode | 0x20) + mark + r.name;
 }
 
 } // namespace
@@ -29,8 +30,10 @@ bool divide_long_chains(gemmi::cif::Loop& loop, AtomColumns& columns) {
     return !name.empty() && std::string_view("'\";").find(name.front()) == std::string_view::npos;
   };
   for (size_t row = 0; row < loop.length(); ++row)
-    if (loop.val(row, chain).find(mark) != std::string::npos)
-      return false;
+    if (loop.val(row, chain).find(mark) != std::string::npos ||
+        (other[0] >= 0 &&
+         gemmi::cif::as_string(loop.val(row, size_t(other[0]))) != loop.val(row, size_t(other[0]))))
+      return false; // gemmi takes every atom of a model without a plain name for a chain
   bool divided = false;
   std::string before; // the chain's name in the row before
   size_t residues = 0;
@@ -65,8 +68,8 @@ void join_divided_chains(gemmi::Structure& structure) {
       }
       std::vector<gemmi::Residue>& residues = whole.back().residues; // of the stretch before
       if (at.empty())
-        for (const gemmi::Residue& r : residues)
-          at.emplace(key(r), at.size());
+        for (size_t r = 0; r < residues.size(); ++r)
+          at.emplace(key(residues[r]), r);
       for (gemmi::Residue& r : chain.residues)
         if (const auto [known, fresh] = at.emplace(key(r), residues.size()); fresh)
           residues.push_back(std::move(r));

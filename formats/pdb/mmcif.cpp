@@ -125,8 +125,10 @@ Parsed from_document(cif::Document& document, std::string_view text, const std::
   } catch (const std::exception& e) {
     fail_input(where + ": " + std::string(e.what()).substr(0, std::string_view(e.what()).find('\n')));
   }
-  if (divided)
+  if (divided) {
     join_divided_chains(parsed.structure);
+    gemmi::impl::fill_residue_entity_type(parsed.structure); // it looks at whole chains
+  }
   parsed.structure.assemblies = assemblies; // gemmi 0.5.7 reads no products of operators
   return parsed;
 }
