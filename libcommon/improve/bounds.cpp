@@ -172,7 +172,7 @@ bool Editor::turns_over(const std::array<int32_t, 3>& t) const {
 
 // near_: what may stand in the way of any triangle of rim_. Triangles of other parts change meanwhile, each in its
 // own cell, so none of those is met; triangles of no part stay as they are.
-void Editor::gather_near(const Sheets& sheets, const SheetTriangle& around, bool may_be_stale) {
+void Editor::gather_near(const Sheets& sheets, const Boxf& around, bool may_be_stale) {
   sheets.any(around, [&](const SheetTriangle& other) {
     const size_t n = near_.size();
     near_.push_back({other, may_be_stale ? Near::Stays::may_be_stale : Near::Stays::not_asked});
@@ -225,9 +225,9 @@ bool Editor::rim_crosses(bool stamped_go) {
   if (rim_leaves())
     return true;
   rim_sheet_.clear();
-  SheetTriangle around; // the box of all
+  Boxf around; // all of them
   for (const auto& t : rim_)
-    around.add_box(rim_sheet_.emplace_back(sheet_triangle(m_.point, t, -1)));
+    around.add(rim_sheet_.emplace_back(sheet_triangle(m_.point, t, -1)));
   if (rim_.empty())
     return false;
   near_.clear();
@@ -246,7 +246,7 @@ bool Editor::rim_crosses(bool stamped_go) {
         return true;
     for (const EightBoxes& eight : near_box_)
       for (uint32_t met = eight.met(now); met; met &= met - 1)
-        if (crosses(now, near_[size_t(eight.triangle[size_t(std::countr_zero(met))])], stamped_go))
+        if (crosses(now, near_[size_t(eight.id[size_t(std::countr_zero(met))])], stamped_go))
           return true;
     if (turns_over(now.v))
       return true;

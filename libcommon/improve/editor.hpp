@@ -176,7 +176,7 @@ private:
   };
   void note_edge(const Apart& apart, const std::array<int32_t, 3>& other);
   bool crosses(const SheetTriangle& now, Near& near, bool stamped_go);
-  void gather_near(const Sheets& sheets, const SheetTriangle& around, bool may_be_stale);
+  void gather_near(const Sheets& sheets, const Boxf& around, bool may_be_stale);
   bool stays_near(Near& n, bool stamped_go) const;
   bool rim_leaves() const;
   bool rim_crosses(bool stamped_go);
@@ -281,7 +281,7 @@ private:
   std::vector<int64_t> rim_face_;
   std::vector<SheetTriangle> rim_sheet_;
   std::vector<Near> near_;
-  std::vector<EightBoxes> near_box_; ///< of these; EightBoxes::triangle: index into near_
+  std::vector<EightBoxes> near_box_; ///< of these; EightBoxes::id: index into near_
   /// A triangle across the edge opposite one's vertex.
   struct Beyond {
     int edge;

@@ -65,10 +65,18 @@ const Guard straight{40, 0.24, 0.5, 0};
 // Of many points the first ones bring most back, in smaller parts: more of these at once, and less to put by for
 // each.
 constexpr int recoveries = 32, recoveries_of_many = 4;
-// Efforts, one after the other while nothing comes back. Where the mesh ends in the surface, which then must not
-// bend as it likes, four more have a wider guard and larger parts instead, either order of the worst for both.
-constexpr int efforts[] = {1, 2, 3, 4, 5, 3, 5, 5, 3}, narrow_efforts = 5;
+// What is tried, one after the other while nothing comes back.
+struct Attempt {
+  int effort; // Pass::effort
+  const Guard& guard = released;
+  double cell = 0.5;
+};
 const Guard widened{70, 0.24, 1, 0};
+const std::vector<Attempt> attempts{{1}, {2}, {3}, {4}, {4, widened}, {5}};
+// Where the mesh ends in the surface, which then must not bend as it likes, a wider guard comes last, in larger
+// parts, either order of the worst for both efforts.
+const std::vector<Attempt> attempts_at_end{
+    {1}, {2}, {3}, {4}, {5}, {3, widened, 1}, {5, widened, 1}, {5, widened, 1}, {3, widened, 1}};
 
 } // namespace
 
@@ -166,18 +174,19 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   }
   if (density && result.rounds == 0) // good enough as it came, and to stay so
     settle(std::min(goal, at_first));
-  const int most_idle = schedule.ends_in_surface() ? static_cast<int>(std::size(efforts)) : narrow_efforts;
-  for (int repeat = 0, idle = 0; density && repeat < recoveries && idle < most_idle; ++repeat) {
-    const bool narrow = idle < narrow_efforts;
+  const std::vector<Attempt>& all = schedule.ends_in_surface() ? attempts_at_end : attempts;
+  size_t idle = 0;
+  for (int repeat = 0; density && repeat < recoveries && idle < all.size(); ++repeat) {
+    const Attempt& attempt = all[idle];
     Pass pass;
     pass.goal = goal;
-    pass.effort = efforts[idle];
+    pass.effort = attempt.effort;
     pass.worst_first = repeat % 2 == 0;
     // What goes wrong is taken back: parts are small.
-    pass.cell = many && repeat < recoveries_of_many ? 0.35 : narrow ? 0.5 : 1;
-    pass.guard = narrow ? released : widened;
+    pass.cell = many && repeat < recoveries_of_many ? 0.35 : attempt.cell;
+    pass.guard = attempt.guard;
     const Counts c = schedule.recover(pass);
-    idle = c.total() > 0 ? std::min(idle, 1) : idle + 1;
+    idle = c.total() > 0 ? std::min<size_t>(idle, 1) : idle + 1;
     result.counts += c;
   }
   if (result.counts.total() == 0 || schedule.worst() < at_first) { // the file that came in, in its own order

@@ -1,8 +1,8 @@
 // schedule.cpp — parts, their reserved slots, and the sheets near them.
 #include "improve/schedule.hpp"
-#include "improve/box_tree.hpp"
 #include "improve/choose.hpp"
 #include "improve/element_pass.hpp"
+#include "mesh/box_tree.hpp"
 #include "par/pages.hpp"
 #include <algorithm>
 #include <atomic>

@@ -1,6 +1,6 @@
 // settle.cpp — surface vertices of a part move onto the target; whether triangles cross is asked once all have.
-#include "improve/box_tree.hpp"
 #include "improve/editor.hpp"
+#include "mesh/box_tree.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
@@ -45,25 +45,32 @@ bool Editor::any_crosses(Unlooked& moved) {
   par::sort_unique(moved.face, 1);
   near_.clear();
   settled_.clear();
-  SheetTriangle around; // the box of all
+  OpenTable has_moved;
+  has_moved.reserve(moved.face.size());
+  Boxf around; // all of them
   for (const int64_t face : moved.face) {
     const auto v = outward_triangle(m_.element[size_t(face / 4)].v, size_t(face % 4));
+    has_moved[uint64_t(face)] = 1;
     settled_.push_back(sheet_triangle(m_.point, v, face));
     near_.push_back({settled_.back(), Near::Stays::yes});
-    around.add_box(settled_.back());
+    around.add(settled_.back());
   }
   sheets_->any(around, [&](const SheetTriangle& other) {
-    if (Near n{other, Near::Stays::not_asked};
-        !std::binary_search(moved.face.begin(), moved.face.end(), other.face) && stays_near(n, false))
+    if (Near n{other, Near::Stays::not_asked}; !has_moved.find(uint64_t(other.face)) && stays_near(n, false))
       near_.push_back(n);
     return false;
   });
   const BoxTree tree(near_.size(), [&](size_t n) { return near_[n].triangle; });
-  return std::any_of(near_.begin(), near_.begin() + std::ptrdiff_t(moved.face.size()), [&](const Near& now) {
+  // Each with those after it: the first of a hole's four has the others at its edges.
+  for (size_t i = 0; i < moved.face.size(); ++i) {
+    const SheetTriangle& now = near_[i].triangle;
     beyond_.clear();
-    return tree.any(now.triangle, [&](size_t n) { return crosses(now.triangle, near_[n], false); }) ||
-           turns_over(now.triangle.v);
-  });
+    if (tree.any(
+            now, [&](size_t n) { return crosses(now, near_[n], false); }, i + 1) ||
+        turns_over(now.v))
+      return true;
+  }
+  return false;
 }
 
 // A part in which nothing else has changed, as it was.

@@ -3,23 +3,10 @@
 #include "error.hpp"
 #include "par/pages.hpp"
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <utility>
 
 namespace molmesh::improve {
 namespace {
-
-// Vectors that any x86-64 has: left to itself g++ takes none here.
-typedef float Floats __attribute__((vector_size(16)));
-typedef int32_t Ints __attribute__((vector_size(16)));
-
-template <class V, class T>
-V load(const T* from) {
-  V v;
-  std::memcpy(&v, from, sizeof v);
-  return v;
-}
 
 // Whether such a plane of a has all of b on its other side, but for a corner that both have on the edge.
 bool edge_parts(const std::vector<Vec3d>& point, const SheetTriangle& a, const SheetTriangle& b) {
@@ -45,30 +32,9 @@ bool side_by_side(const std::vector<Vec3d>& point, const SheetTriangle& a, const
   return apart.of_first == 0 || apart.share_edge() || edge_parts(point, a, b) || edge_parts(point, b, a);
 }
 
-uint32_t EightBoxes::met(const SheetTriangle& t) const {
-  uint32_t bits = 0;
-  for (size_t first = 0; first < 8; first += 4) {
-    Ints meet = load<Ints>(&triangle[first]) >= Ints{};
-    for (size_t a = 0; a < 3; ++a) {
-      const float from = t.low[int(a)], to = t.high[int(a)];
-      meet &= load<Floats>(&low[a][first]) <= Floats{to, to, to, to};
-      meet &= load<Floats>(&high[a][first]) >= Floats{from, from, from, from};
-    }
-    meet &= Ints{1, 2, 4, 8};
-    bits |= static_cast<uint32_t>(meet[0] | meet[1] | meet[2] | meet[3]) << first;
-  }
-  return bits;
-}
-
 SheetTriangle sheet_triangle(const std::vector<Vec3d>& point, std::array<int32_t, 3> v, int64_t face) {
-  SheetTriangle t;
-  t.v = v;
-  t.face = face;
   const Vec3d a = point[size_t(v[0])], b = point[size_t(v[1])], c = point[size_t(v[2])];
-  for (int k = 0; k < 3; ++k) {
-    t.low[k] = std::nextafter(static_cast<float>(std::min({a[k], b[k], c[k]})), -HUGE_VALF);
-    t.high[k] = std::nextafter(static_cast<float>(std::max({a[k], b[k], c[k]})), HUGE_VALF);
-  }
+  SheetTriangle t{box_around(a, b, c), v, face, {}};
   const Vec3d n = cross(b - a, c - a), unit = n / std::max(norm(n), 1e-300);
   t.normal = {static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)};
   return t;
@@ -109,8 +75,9 @@ bool Sheets::move(int32_t id, const SheetTriangle& t) {
     const int32_t* const first = chain_.find(key);
     for (int32_t c = first ? *first : -1; c >= 0; c = eight_[size_t(c)].next)
       for (size_t n = 0; n < 8; ++n)
-        if (EightBoxes& e = eight_[size_t(c)]; e.triangle[n] == id) {
-          e.set_box(n, t, begins);
+        if (Eight& e = eight_[size_t(c)]; e.id[n] == id) {
+          e.set_box(n, t);
+          e.begins[n] = begins;
           return;
         }
   });
@@ -121,7 +88,7 @@ void Sheets::put(int32_t& chain, int32_t id, uint8_t begins) {
   size_t n = 0; // where there is room
   int32_t at = chain;
   for (; at >= 0; at = eight_[size_t(at)].next) {
-    const auto& held = eight_[size_t(at)].triangle;
+    const auto& held = eight_[size_t(at)].id;
     n = size_t(std::find(held.begin(), held.end(), -1) - held.begin());
     if (n < held.size())
       break;
@@ -132,13 +99,14 @@ void Sheets::put(int32_t& chain, int32_t id, uint8_t begins) {
     chain = at;
     n = 0;
   }
-  eight_[size_t(at)].set(n, id, triangle_[size_t(id)], begins);
+  eight_[size_t(at)].set(n, id, triangle_[size_t(id)]);
+  eight_[size_t(at)].begins[n] = begins;
 }
 
 void Sheets::take_out(int32_t chain, int32_t id) {
   for (; chain >= 0; chain = eight_[size_t(chain)].next)
     for (size_t n = 0; n < 8; ++n)
-      if (EightBoxes& e = eight_[size_t(chain)]; e.triangle[n] == id) {
+      if (Eight& e = eight_[size_t(chain)]; e.id[n] == id) {
         e.set(n, -1, {});
         return;
       }
@@ -157,8 +125,8 @@ void Sheets::erase(int64_t face) {
 
 size_t Sheets::boxes() const {
   size_t n = 0;
-  for (const EightBoxes& e : eight_)
-    n += e.triangle.size() - size_t(std::count(e.triangle.begin(), e.triangle.end(), -1));
+  for (const Eight& e : eight_)
+    n += e.id.size() - size_t(std::count(e.id.begin(), e.id.end(), -1));
   return n;
 }
 

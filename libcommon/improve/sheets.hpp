@@ -2,37 +2,22 @@
 // Nothing on the other side keeps such a triangle from crossing another sheet of the surface.
 #pragma once
 #include "density/large_array.hpp"
-#include "geom/vec.hpp"
+#include "geom/boxes.hpp"
 #include "improve/cell_levels.hpp"
 #include "improve/open_table.hpp"
-#include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
 namespace molmesh::improve {
 
-struct SheetTriangle {
+/// With its box when it was put down.
+struct SheetTriangle : Boxf {
   std::array<int32_t, 3> v{-1, -1, -1}; ///< seen from outside
   int64_t face = -1;                    ///< 4 element + face; -1: no longer there
-  /// Box, rounded outwards, when it was put down; at first it meets none.
-  Vec3f low{HUGE_VALF, HUGE_VALF, HUGE_VALF}, high{-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
-  Vec3f normal; ///< unit
+  Vec3f normal;                         ///< unit
 
-  void add_box(const SheetTriangle& o) {
-    for (int a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], o.low[a]);
-      high[a] = std::max(high[a], o.high[a]);
-    }
-  }
-  bool box_meets(const SheetTriangle& o) const {
-    for (int a = 0; a < 3; ++a)
-      if (low[a] > o.high[a] || high[a] < o.low[a])
-        return false;
-    return true;
-  }
   /// Triangles of one sheet run much the same way where they are close.
   bool of_one_sheet(const SheetTriangle& o, bool beside) const {
     return dot(normal, o.normal) > (beside ? 0.7f : 0.3f);
@@ -57,42 +42,6 @@ struct Apart {
 /// normal of either through one of its edges: they do not cross then.
 bool side_by_side(const std::vector<Vec3d>& point, const SheetTriangle& a, const SheetTriangle& b,
                   const Apart& apart);
-
-/// Boxes of triangles side by side: many are looked through, and few are met.
-struct EightBoxes {
-  std::array<std::array<float, 8>, 3> low, high;
-  std::array<int32_t, 8> triangle; ///< -1: none, and nothing meets it
-  std::array<uint8_t, 8> begins{}; ///< axes, a bit each, on which this is the first of the box's cells
-  int32_t next = -1;
-
-  EightBoxes() {
-    for (size_t n = 0; n < 8; ++n)
-      set(n, -1, {});
-  }
-  void set(size_t n, int32_t id, const SheetTriangle& t, uint8_t first_on = 0) {
-    triangle[n] = id;
-    set_box(n, t, first_on);
-  }
-  void set_box(size_t n, const SheetTriangle& t, uint8_t first_on) {
-    begins[n] = first_on;
-    for (size_t a = 0; a < 3; ++a) {
-      low[a][n] = t.low[int(a)];
-      high[a][n] = t.high[int(a)];
-    }
-  }
-  /// Of all of them.
-  SheetTriangle bounds() const {
-    SheetTriangle all;
-    for (size_t a = 0; a < 3; ++a)
-      for (size_t n = 0; n < 8; ++n) {
-        all.low[int(a)] = std::min(all.low[int(a)], low[a][n]);
-        all.high[int(a)] = std::max(all.high[int(a)], high[a][n]);
-      }
-    return all;
-  }
-  /// Those that t's box meets, a bit each.
-  uint32_t met(const SheetTriangle& t) const;
-};
 
 /// What has become of some faces.
 struct SheetChanges {
@@ -123,19 +72,22 @@ public:
   size_t boxes() const; ///< that cells hold: 27 for each triangle at most
   /// True as soon as f(triangle) is, over all whose boxes t's meets, each once.
   template <class F>
-  bool any(const SheetTriangle& t, F&& f) const;
+  bool any(const Boxf& t, F&& f) const;
 
 private:
-  CellRange cells(const SheetTriangle& t, int level) const {
-    return cell_range(t.low, t.high, cell_size(cell_, level));
-  }
+  CellRange cells(const Boxf& t, int level) const { return cell_range(t.low, t.high, cell_size(cell_, level)); }
   /// f(key of the cell, axes on which it is the first), over the cells that hold t.
   template <class F>
-  void for_cells(const SheetTriangle& t, F&& f) const {
+  void for_cells(const Boxf& t, F&& f) const {
     const int level = cell_level(t.low, t.high, cell_);
     const CellRange range = cells(t, level);
     range.for_each([&](int64_t i, int64_t j, int64_t k) { f(cell_key(i, j, k, level), range.begins(i, j, k)); });
   }
+  /// Of triangles: their places in triangle_.
+  struct Eight : EightBoxes {
+    std::array<uint8_t, 8> begins{}; ///< axes, a bit each, on which this is the first of the box's cells
+    int32_t next = -1;
+  };
   bool move(int32_t id, const SheetTriangle& t);
   void put(int32_t& chain, int32_t id, uint8_t begins);
   void take_out(int32_t chain, int32_t id);
@@ -146,11 +98,11 @@ private:
   uint64_t levels_ = 0;       ///< a bit each where there are or were triangles
   OpenTable chain_;           ///< of a cell: its first eight, -1: none; cells of one key share a chain
   OpenTable face_;            ///< of a face: its triangle, -1: gone
-  std::vector<EightBoxes, LargeAllocator<EightBoxes>> eight_;
+  std::vector<Eight, LargeAllocator<Eight>> eight_;
 };
 
 template <class F>
-bool Sheets::any(const SheetTriangle& t, F&& f) const {
+bool Sheets::any(const Boxf& t, F&& f) const {
   bool found = false, all = false;
   if (alive() > 0)
     for_levels(levels_, [&](int level) {
@@ -161,16 +113,16 @@ bool Sheets::any(const SheetTriangle& t, F&& f) const {
           const int32_t* first = found ? nullptr : chain_.find(cell_key(i, j, k, level));
           const uint8_t begun = range.begins(i, j, k); // each box in the first of the cells that t shares with it
           for (int32_t c = first ? *first : -1; c >= 0 && !found; c = eight_[size_t(c)].next) {
-            const EightBoxes& e = eight_[size_t(c)];
+            const Eight& e = eight_[size_t(c)];
             for (uint32_t met = e.met(t); met && !found; met &= met - 1) {
               const auto n = size_t(std::countr_zero(met));
-              found = (begun | e.begins[n]) == 7 && f(triangle_[size_t(e.triangle[n])]);
+              found = (begun | e.begins[n]) == 7 && f(triangle_[size_t(e.id[n])]);
             }
           }
         });
     });
   for (size_t n = 0; all && n < triangle_.size() && !found; ++n)
-    found = triangle_[n].face >= 0 && t.box_meets(triangle_[n]) && f(triangle_[n]);
+    found = triangle_[n].face >= 0 && t.meets(triangle_[n]) && f(triangle_[n]);
   return found;
 }
 

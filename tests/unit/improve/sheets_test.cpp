@@ -1,7 +1,6 @@
 // sheets_test.cpp — where a mesh ends: the triangles known, and surfaces that must not cross themselves.
 #include "geom/intersect.hpp"
 #include "geom/tet_measures.hpp"
-#include "improve/box_tree.hpp"
 #include "improve/improve.hpp"
 #include "improve/schedule.hpp"
 #include "improve/sheets.hpp"
@@ -36,7 +35,7 @@ TEST_CASE("sheets know the triangles that are there, and only those") {
       const improve::SheetTriangle probe = improve::sheet_triangle(corners, {0, 1, 2}, -1);
       std::multiset<int64_t> expected, found; // each once
       for (const auto& [face, t] : there)
-        if (probe.box_meets(t))
+        if (probe.meets(t))
           expected.insert(face);
       s.any(probe, [&](const improve::SheetTriangle& t) {
         found.insert(t.face);
@@ -102,51 +101,13 @@ TEST_CASE("sheets of any size take few cells and are found") {
   for (const improve::SheetTriangle& t : all) {
     std::multiset<int64_t> expected, found;
     for (const improve::SheetTriangle& o : all)
-      if (t.box_meets(o))
+      if (t.meets(o))
         expected.insert(o.face);
     sheets.any(t, [&](const improve::SheetTriangle& o) {
       found.insert(o.face);
       return false;
     });
     CHECK(found == expected);
-  }
-}
-
-TEST_CASE("a tree of boxes finds the triangles that a box meets, each once") {
-  std::mt19937 generator(8);
-  std::uniform_real_distribution<double> u(0, 10), size(-1, 1);
-  for (const size_t n : {size_t{0}, size_t{1}, size_t{8}, size_t{9}, size_t{64}, size_t{65}, size_t{700}}) {
-    CAPTURE(n);
-    std::vector<Vec3d> point;
-    std::vector<improve::SheetTriangle> all;
-    const auto triangle = [&] {
-      const Vec3d p{u(generator), u(generator), u(generator)};
-      const auto v = static_cast<int32_t>(point.size());
-      for (int i = 0; i < 3; ++i)
-        point.push_back(p + Vec3d{size(generator), size(generator), size(generator)});
-      return improve::sheet_triangle(point, {v, v + 1, v + 2}, v);
-    };
-    for (size_t i = 0; i < n; ++i)
-      all.push_back(triangle());
-    const improve::BoxTree tree(
-        n, [&](size_t i) { return all[i]; }, 3);
-    size_t met = 0;
-    for (int k = 0; k < 60; ++k) {
-      improve::SheetTriangle t = triangle();
-      if (k == 0) // of everything
-        t.low = {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF}, t.high = {HUGE_VALF, HUGE_VALF, HUGE_VALF};
-      std::multiset<size_t> expected, found;
-      for (size_t i = 0; i < n; ++i)
-        if (t.box_meets(all[i]))
-          expected.insert(i);
-      CHECK_FALSE(tree.any(t, [&](size_t i) {
-        found.insert(i);
-        return false;
-      }));
-      CHECK(found == expected);
-      met += found.size();
-    }
-    CHECK(met >= n);
   }
 }
 

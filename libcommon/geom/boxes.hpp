@@ -1,0 +1,98 @@
+// boxes.hpp — boxes in single precision, rounded outwards, and eight of them side by side: many are looked through,
+// and few are met.
+#pragma once
+#include "geom/vec.hpp"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace molmesh {
+
+struct Boxf {
+  /// At first it meets none.
+  Vec3f low{HUGE_VALF, HUGE_VALF, HUGE_VALF}, high{-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
+
+  void add(const Boxf& o) {
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], o.low[k]);
+      high[k] = std::max(high[k], o.high[k]);
+    }
+  }
+  bool meets(const Boxf& o) const {
+    for (int k = 0; k < 3; ++k)
+      if (low[k] > o.high[k] || high[k] < o.low[k])
+        return false;
+    return true;
+  }
+};
+
+/// Of a triangle.
+inline Boxf box_around(Vec3d a, Vec3d b, Vec3d c) {
+  Boxf box;
+  for (int k = 0; k < 3; ++k) {
+    box.low[k] = std::nextafter(static_cast<float>(std::min({a[k], b[k], c[k]})), -HUGE_VALF);
+    box.high[k] = std::nextafter(static_cast<float>(std::max({a[k], b[k], c[k]})), HUGE_VALF);
+  }
+  return box;
+}
+
+struct EightBoxes {
+  std::array<std::array<float, 8>, 3> low, high;
+  std::array<int32_t, 8> id; ///< the caller's; -1: none, and nothing meets it
+
+  EightBoxes() {
+    id.fill(-1);
+    for (size_t n = 0; n < 8; ++n)
+      set_box(n, {});
+  }
+  void set(size_t n, int32_t its, const Boxf& box) {
+    id[n] = its;
+    set_box(n, box);
+  }
+  void set_box(size_t n, const Boxf& box) {
+    for (size_t k = 0; k < 3; ++k) {
+      low[k][n] = box.low[int(k)];
+      high[k][n] = box.high[int(k)];
+    }
+  }
+  /// Of all of them.
+  Boxf bounds() const {
+    Boxf all;
+    for (size_t k = 0; k < 3; ++k)
+      for (size_t n = 0; n < 8; ++n) {
+        all.low[int(k)] = std::min(all.low[int(k)], low[k][n]);
+        all.high[int(k)] = std::max(all.high[int(k)], high[k][n]);
+      }
+    return all;
+  }
+  /// Those that meet the box, a bit each.
+  uint32_t met(const Boxf& box) const;
+};
+
+inline uint32_t EightBoxes::met(const Boxf& box) const {
+  // Vectors that any x86-64 has: left to itself g++ takes none here.
+  typedef float Floats __attribute__((vector_size(16)));
+  typedef int32_t Ints __attribute__((vector_size(16)));
+  const auto load = [](auto& into, const auto* from) { std::memcpy(&into, from, sizeof into); };
+  uint32_t bits = 0;
+  for (size_t first = 0; first < 8; first += 4) {
+    Ints taken;
+    load(taken, &id[first]);
+    Ints meet = taken >= Ints{};
+    for (size_t k = 0; k < 3; ++k) {
+      const float from = box.low[int(k)], to = box.high[int(k)];
+      Floats lows, highs;
+      load(lows, &low[k][first]);
+      load(highs, &high[k][first]);
+      meet &= lows <= Floats{to, to, to, to};
+      meet &= highs >= Floats{from, from, from, from};
+    }
+    meet &= Ints{1, 2, 4, 8};
+    bits |= static_cast<uint32_t>(meet[0] | meet[1] | meet[2] | meet[3]) << first;
+  }
+  return bits;
+}
+
+} // namespace molmesh

@@ -1,0 +1,54 @@
+// box_tree.hpp — the boxes that meet one: a tree of eights over boxes in the order that they come in.
+#pragma once
+#include "geom/boxes.hpp"
+#include "par/par.hpp"
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace molmesh {
+
+/// Of boxes that stay as they are. What is near in their order should be near in space.
+class BoxTree {
+public:
+  /// box(i): of n of them.
+  template <class Box>
+  BoxTree(size_t n, Box&& box, int threads = 1) {
+    const auto add_level = [&](size_t boxes, auto&& box_of) {
+      std::vector<EightBoxes> level((boxes + 7) / 8);
+      par::for_n(static_cast<int64_t>(level.size()), threads, 64, [&](int64_t e) {
+        for (size_t i = 8 * size_t(e); i < boxes && i < 8 * size_t(e) + 8; ++i)
+          level[size_t(e)].set(i % 8, static_cast<int32_t>(i), box_of(i));
+      });
+      level_.push_back(std::move(level));
+    };
+    add_level(n, box);
+    while (level_.back().size() > 1) {
+      const size_t below = level_.size() - 1;
+      add_level(level_[below].size(), [&](size_t i) { return level_[below][i].bounds(); });
+    }
+  }
+  /// True as soon as f(i) is, over all i from `first` on whose boxes meet that one, in order.
+  template <class F>
+  bool any(const Boxf& box, F&& f, size_t first = 0) const {
+    return !level_.back().empty() && descend(level_.size() - 1, 0, box, first, f);
+  }
+
+private:
+  template <class F>
+  bool descend(size_t level, size_t e, const Boxf& box, size_t first, F& f) const {
+    const EightBoxes& eight = level_[level][e];
+    const size_t from = first >> (3 * level);
+    for (uint32_t met = eight.met(box); met; met &= met - 1) {
+      const auto below = size_t(eight.id[size_t(std::countr_zero(met))]);
+      if (below >= from && (level == 0 ? f(below) : descend(level - 1, below, box, first, f)))
+        return true;
+    }
+    return false;
+  }
+
+  std::vector<std::vector<EightBoxes>> level_; ///< the first of boxes, each further one of eights below
+};
+
+} // namespace molmesh
