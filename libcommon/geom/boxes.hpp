@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 namespace molmesh {
 
@@ -30,10 +31,14 @@ struct Boxf {
 
 /// Of a triangle.
 inline Boxf box_around(Vec3d a, Vec3d b, Vec3d c) {
+  constexpr auto most = std::numeric_limits<float>::max();
+  const auto nearest = [](double x) { return static_cast<float>(std::clamp<double>(x, -most, most)); };
+  const auto margin = [](float x) { return std::abs(x) * 0x1p-23f + 0x1p-126f; }; // the next float or the one after
   Boxf box;
   for (int k = 0; k < 3; ++k) {
-    box.low[k] = std::nextafter(static_cast<float>(std::min({a[k], b[k], c[k]})), -HUGE_VALF);
-    box.high[k] = std::nextafter(static_cast<float>(std::max({a[k], b[k], c[k]})), HUGE_VALF);
+    const float low = nearest(std::min({a[k], b[k], c[k]})), high = nearest(std::max({a[k], b[k], c[k]}));
+    box.low[k] = low - margin(low);
+    box.high[k] = high + margin(high);
   }
   return box;
 }

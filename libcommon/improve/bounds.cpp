@@ -81,7 +81,7 @@ int Editor::constrain_all(const Vertex& k, Vec3d from, Vec3d* x, int n, double r
       target_->probe_eight(eight, count, probes);
       for (uint32_t bits = probes.known; bits; bits &= bits - 1)
         if (const auto i = size_t(std::countr_zero(bits));
-            off_by(probes.distance[i]) <= most_loose && norm(eight[i] - from) <= reach)
+            target_->off_by(probes.distance[i]) <= most_loose && norm(eight[i] - from) <= reach)
           left |= 1u << i;
     } else {
       left = target_->project_eight(eight, count, reach);
@@ -148,7 +148,7 @@ std::optional<double> Editor::off_at(Vec3d x) const {
   Vec3d normal;
   if (!target_ || !target_->probe(x, distance, normal))
     return std::nullopt;
-  return off_by(distance);
+  return target_->off_by(distance);
 }
 
 double Editor::off(int32_t v) const {

@@ -40,7 +40,7 @@ struct CellRange {
 };
 
 inline double cell_size(double cell, int level) {
-  return std::ldexp(cell, 2 * level);
+  return level == 0 ? cell : std::ldexp(cell, 2 * level); // nearly always
 }
 
 template <class T>

@@ -93,14 +93,11 @@ public:
   /// Whether the face is a surface triangle, counted from this side, that does not keep the guard, or is turned by
   /// more than Guard::widest_unbent.
   bool bent(int32_t e, size_t face) const;
-  /// Of a surface vertex: how far off the target, in units of a fiftieth of a spacing (what I8 allows);
-  /// two spacings where the target is not known.
+  /// Of a surface vertex: Target::off_by, or two spacings where the target is not known.
   double off(int32_t v) const;
-  /// Moves a surface vertex onto the target, all the way or part of it; no element falls under `floor`;
-  /// floor ≥ 1: to less than half its quality.
-  bool settle(int32_t v, float floor);
-  /// All of them, in order; the part has not been changed before. Triangles are not asked one move at a time
-  /// whether they cross others, which few do: where one does in the end, all goes back and they are.
+  /// Moves surface vertices onto the target, in order, all the way or part of it; no element falls under `floor`;
+  /// floor ≥ 1: to less than half its quality. The part has not been changed before. Triangles are not asked one
+  /// move at a time whether they cross others, which few do: where one does in the end, all goes back and they are.
   void settle(const std::vector<int32_t>& vertices, float floor);
   /// Moves a surface vertex towards the nearest place on the target that it finds, as far as no element falls
   /// under `floor`.
@@ -195,9 +192,6 @@ private:
   float lack(const std::vector<int32_t>& elements) const;
   float lack(const std::vector<Candidate>& elements) const;
   bool outward(const Element& e, size_t face) const;
-  double off_by(double distance) const { ///< the target's to a place
-    return std::abs(distance + target_->offset()) / (0.02 * target_->spacing());
-  }
   std::optional<double> off_at(Vec3d x) const; ///< off() of a place; none where the target is not known
   bool stays(Vec3d x) const;
   bool constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const;
@@ -248,6 +242,8 @@ private:
     std::vector<std::pair<int32_t, float>> element; ///< and its quality
     std::vector<int64_t> face;                      ///< of triangles
   };
+  void settle_each(const std::vector<int32_t>& vertices, float floor);
+  void settle(int32_t v, float floor);
   bool any_crosses(Unlooked& moved);
   void put_back(const Unlooked& moved);
   bool may_contract(const Vertex& a, const Vertex& b) const;

@@ -2,6 +2,8 @@
 #include "improve/editor.hpp"
 #include "improve/quality_kernel.hpp"
 #include <algorithm>
+#include <array>
+#include <bit>
 
 namespace molmesh::improve {
 namespace {
@@ -72,18 +74,27 @@ bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double le
 bool Editor::place_on_target(Vec3d& x, double length, const Fit& before, float above) {
   const Vec3d from = x;
   float best = above;
-  const auto bind = [&](Vec3d& y) { return target_->project(y, guard_.reach * length) && inside_walls(from, y); };
+  const double reach = guard_.reach * length;
+  const auto bind = [&](Vec3d& y) { return target_->project(y, reach) && inside_walls(from, y); };
   const auto accept = [&](Vec3d y) { return sails_fit(y, before); };
-  for (int k = 0; k < 27; ++k) {
-    const Vec3d d{k / 9 - 1., k / 3 % 3 - 1., k % 3 - 1.};
-    for (double r = 0.15; r < 0.7; r *= 2) {
-      Vec3d y = from + r * length / std::max(norm(d), 1.) * d;
-      if (!bind(y) || norm(y - from) >= length)
-        continue;
-      const float q = spokes_.worst(y, best);
-      if (q > best && accept(y))
-        best = q, x = y;
+  constexpr int all = 27 * 3; // directions, each at three lengths
+  for (int first = 0; first < all; first += 8) {
+    const int n = std::min(8, all - first);
+    EightPlaces eight;
+    for (int i = 0; i < n; ++i) {
+      const int k = (first + i) / 3;
+      const Vec3d d{k / 9 - 1., k / 3 % 3 - 1., k % 3 - 1.};
+      eight.set(size_t(i), from + 0.15 * (1 << (first + i) % 3) * length / std::max(norm(d), 1.) * d);
     }
+    std::array<Vec3d, 8> place;
+    int places = 0;
+    for (uint32_t put = target_->project_eight(eight, n, reach); put; put &= put - 1)
+      if (const Vec3d y = eight[size_t(std::countr_zero(put))]; inside_walls(from, y) && norm(y - from) < length)
+        place[size_t(places++)] = y;
+    float q;
+    for (int k = 0; (k = spokes_.first_above(place.data(), k, places, best, q)) < places; ++k)
+      if (accept(place[size_t(k)]))
+        best = q, x = place[size_t(k)];
   }
   if (!(best > above))
     return false;

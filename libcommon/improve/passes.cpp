@@ -198,9 +198,7 @@ Counts Schedule::straighten(const Pass& pass) {
           bent = e.label[i] != 0 && look.bent(static_cast<int32_t>(t), i);
         return bent;
       });
-  for (const int32_t v : choose(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t i) {
-         return m_.incident[size_t(i)] >= 0 && look.off(static_cast<int32_t>(i)) > 1;
-       }))
+  for (const int32_t v : points_off())
     add_star(m_, v, items);
   par::sort_unique(items, threads_);
   return for_parts(items, parts_of(items), pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
@@ -223,6 +221,26 @@ std::vector<int32_t> Schedule::surface_points() const {
   return choose(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
     return m_.incident[size_t(v)] >= 0 && m_.vertex[size_t(v)].kind == Kind::surface;
   });
+}
+
+std::vector<int32_t> Schedule::points_off() const {
+  if (!target_)
+    return {};
+  std::vector<int32_t> points = surface_points();
+  par::for_n((static_cast<int64_t>(points.size()) + 7) / 8, threads_, 256, [&](int64_t group) {
+    int32_t* const v = points.data() + 8 * group;
+    const size_t n = std::min<size_t>(8, points.size() - 8 * size_t(group));
+    EightPlaces eight;
+    EightProbes probes;
+    for (size_t i = 0; i < n; ++i)
+      eight.set(i, m_.point[size_t(v[i])]);
+    target_->probe_eight(eight, static_cast<int>(n), probes);
+    for (size_t i = 0; i < n; ++i)
+      if (probes.is_known(i) && target_->off_by(probes.distance[i]) <= 1)
+        v[i] = -1;
+  });
+  std::erase(points, -1);
+  return points;
 }
 
 Counts Schedule::settle(float floor, const Guard& guard) {

@@ -20,11 +20,7 @@ bool Schedule::is_hopeless(size_t points_off) const {
 
 Counts Schedule::recover(const Pass& pass) {
   const int32_t time = ++time_;
-  PartRoom none;
-  const Editor look(m_, target_, nullptr, parts_, stamp_, none, pass.guard);
-  const std::vector<int32_t> points = choose(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
-    return m_.incident[size_t(v)] >= 0 && look.off(static_cast<int32_t>(v)) > 1;
-  });
+  const std::vector<int32_t> points = points_off();
   if (points.empty() || is_hopeless(points.size()))
     return {};
   find_crowded(everywhere); // they leave it meanwhile

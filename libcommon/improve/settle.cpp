@@ -8,36 +8,45 @@
 namespace molmesh::improve {
 
 void Editor::settle(const std::vector<int32_t>& vertices, float floor) {
+  if (!target_)
+    return;
   Unlooked moved;
   if (sheets_)
     unlooked_ = &moved;
   const Counts before = counts;
-  for (const int32_t v : vertices)
-    settle(v, floor);
+  settle_each(vertices, floor);
   unlooked_ = nullptr;
   if (!sheets_ || !any_crosses(moved))
     return;
   put_back(moved);
   counts = before;
-  for (const int32_t v : vertices)
-    settle(v, floor);
+  settle_each(vertices, floor);
 }
 
-bool Editor::settle(int32_t v, float floor) {
-  if (m_.vertex[size_t(v)].kind != Kind::surface || !target_)
-    return false;
-  const Vec3d from = m_.point[size_t(v)];
-  double distance;
-  Vec3d normal;
-  if (!target_->probe(from, distance, normal) || std::abs(distance) < 2e-3 * target_->spacing())
-    return false;
+// Those that are not there yet: a vertex stays where it is until its turn.
+void Editor::settle_each(const std::vector<int32_t>& vertices, float floor) {
+  const double there = 2e-3 * target_->spacing();
+  EightPlaces eight;
+  EightProbes probes;
+  for (size_t first = 0; first < vertices.size(); first += 8) {
+    const size_t n = std::min<size_t>(8, vertices.size() - first);
+    for (size_t i = 0; i < n; ++i)
+      eight.set(i, m_.point[size_t(vertices[first + i])]);
+    target_->probe_eight(eight, static_cast<int>(n), probes);
+    for (size_t i = 0; i < n; ++i)
+      if (probes.is_known(i) && std::abs(probes.distance[i]) >= there)
+        settle(vertices[first + i], floor);
+  }
+}
+
+void Editor::settle(int32_t v, float floor) {
   if (!star(v, star_))
-    return false;
-  Vec3d to = from;
+    return;
+  Vec3d to = m_.point[size_t(v)];
   if (!target_->project(to, guard_.reach * mean_edge(star_, v)))
-    return false;
+    return;
   const float now = worst(star_), above = floor >= 1 ? 0.5f * now : std::min(floor, now) * 0.999999f;
-  return step_to(v, to, 0.5, 0.1, above);
+  step_to(v, to, 0.5, 0.1, above);
 }
 
 // Whether one of the triangles that have moved crosses another. settled_: all of them.

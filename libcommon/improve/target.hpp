@@ -1,6 +1,7 @@
 // target.hpp — what surface points are kept on: the isosurface of the density, or the surface that came in.
 #pragma once
 #include "improve/probe_kernel.hpp"
+#include <cmath>
 
 namespace molmesh::improve {
 
@@ -32,6 +33,9 @@ public:
   virtual bool neck(Vec3d /*p*/, Neck& /*neck*/) const { return false; }
   /// How far outside the surface that is meant points are put (Å).
   virtual double offset() const { return 0; }
+  /// How far off where points are put a place is, from its distance: in units of a fiftieth of a spacing (what I8
+  /// allows).
+  double off_by(double distance) const { return std::abs(distance + offset()) / (0.02 * spacing()); }
   /// Length that distances are measured against: the grid spacing, or the mean edge of the surface (Å).
   virtual double spacing() const = 0;
 };
