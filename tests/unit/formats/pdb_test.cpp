@@ -255,6 +255,27 @@ TEST_CASE("mmCIF: chains of many residues, and many chains, are read whole") {
   CHECK((listing(c.hierarchy) == expected)); // not to be printed
 }
 
+TEST_CASE("mmCIF: what a chain of many residues has of each kind is told from all of it") {
+  std::string rows;
+  int id = 0;
+  const auto residues = [&](const std::string& atom, const char* name, const char* label, int n) {
+    for (int k = 0; k < n; ++k) {
+      const std::string serial = std::to_string(++id);
+      rows += "ATOM " + serial + " " + atom + " . " + name + " " + label + " . " + serial + " 0 0 1 10 " + serial + " A\n";
+    }
+  };
+  residues("C CA", "GLY", "A", 1025); // the last of these alone would be no polymer
+  residues("O O", "HOH", "B", 2000);
+  const auto count = [&](const char* kind) {
+    formats::PdbOptions o;
+    o.select = kind;
+    o.waters = true;
+    return convert(cif_loop(rows), o, "x.cif").report.residues;
+  };
+  CHECK(count("*;polymer") == 1025);
+  CHECK(count("*;solvent") == 2000);
+}
+
 TEST_CASE("mmJSON is the same structure") {
   const std::string json =
       R"({"data_X": {"atom_site": {"type_symbol": ["N", "C"], "label_atom_id": ["N", "CA"], "label_comp_id": ["GLY", "GLY"],
