@@ -39,6 +39,12 @@ bool Editor::stays(Vec3d x) const {
          (target_->probe(x, distance, normal) && std::fabs(distance) <= guard_.leave * target_->spacing());
 }
 
+// Moves x, of a vertex of that kind, onto the target.
+bool Editor::project(const Vertex& k, Vec3d& x, double reach) const {
+  return target_ &&
+         (k.kind == Kind::trace ? target_->project_in_plane(x, k.axis(), reach) : target_->project(x, reach));
+}
+
 // Moves a trial x of a vertex at `from` onto what it is bound to.
 bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const {
   switch (k.kind) {
@@ -50,12 +56,17 @@ bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) cons
       return norm(x - from) <= guard_.lift * target_->spacing() && stays(x) && inside_walls(from, x);
     if (target_ && loose)
       return norm(x - from) <= reach && off_at(x).value_or(1) <= most_loose && inside_walls(from, x);
-    return target_ && target_->project(x, reach) && inside_walls(from, x);
+    return project(k, x, reach) && inside_walls(from, x);
   case Kind::sliding:
     for (int a = 0; a < 3; ++a)
       if (k.frozen >> a & 1)
         x[a] = from[a];
     return true;
+  case Kind::trace:
+    x[k.axis()] = from[k.axis()];
+    if (target_ && guard_.lift > 0)
+      return norm(x - from) <= guard_.lift * target_->spacing() && stays(x) && inside_walls(from, x);
+    return project(k, x, reach) && inside_walls(from, x);
   case Kind::fixed:
     break;
   }

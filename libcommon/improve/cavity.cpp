@@ -80,7 +80,8 @@ bool Editor::match(const std::vector<int32_t>& old, const std::vector<Candidate>
   return gained == 0 || lost > 0;
 }
 
-// Of the triangles that go where the mesh ends; 0 when none does.
+// Of the triangles that go where the mesh ends; 0 when none does. Where several labels' go, elements say which new
+// triangle has which (Candidate::outside).
 uint8_t Editor::lost_label() const {
   uint8_t label = 0;
   for (const int32_t i : used_) {
@@ -93,16 +94,23 @@ uint8_t Editor::lost_label() const {
 
 // Whether a triangle that comes to lie where the mesh ends is on a curved label and in a wall: the walls' points
 // are all there for it, and nothing on its other side is in its way.
-bool Editor::rim_in_wall() const {
+bool Editor::rim_in_wall(const std::vector<Candidate>& now) const {
   const uint8_t lost = lost_label();
-  if (lost == 0 || !m_.labels[lost].curved())
+  if (lost == 0)
     return false;
   return std::any_of(used_.begin(), used_.end(), [&](int32_t i) {
     const FaceEntry& x = table_[size_t(i)];
     const bool fresh = !x.outer && x.second < 0, bared = x.outer && x.element >= 0 && x.first < 0;
     const auto p = [&](size_t k) { return m_.point[size_t(x.v[k])]; };
-    return (fresh || bared) && m_.walls.hold(p(0), p(1), p(2));
+    return (fresh || bared) && m_.labels[fresh ? outer_label(x, now, lost) : lost].curved() &&
+           m_.walls.hold(p(0), p(1), p(2));
   });
+}
+
+// Of a new triangle where the mesh ends.
+uint8_t Editor::outer_label(const FaceEntry& x, const std::vector<Candidate>& now, uint8_t lost) {
+  const uint8_t own = now[size_t(x.first / 4)].outside[size_t(x.first & 3)];
+  return own != 0 ? own : lost;
 }
 
 // Whether a new face between surface points is one of elements that stay: where the mesh ends in the surface, the
@@ -140,7 +148,8 @@ void Editor::list_rim(const std::vector<Candidate>& now) {
     const FaceEntry& x = table_[size_t(i)];
     const bool kept = x.outer && x.element < 0 && x.first >= 0, fresh = !x.outer && x.second < 0;
     const bool bared = x.outer && x.element >= 0 && x.first < 0;
-    if (!(kept || fresh || bared) || !m_.labels[kept ? x.label : outside].curved() || !m_.crowded(x.v))
+    if (!(kept || fresh || bared) || !m_.crowded(x.v) ||
+        !m_.labels[kept ? x.label : fresh ? outer_label(x, now, outside) : outside].curved())
       continue;
     if (bared)
       rim_.push_back(outward_triangle(m_.element[size_t(x.element)].v, x.face));
@@ -151,7 +160,7 @@ void Editor::list_rim(const std::vector<Candidate>& now) {
 
 bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface,
                      bool rim_moved) {
-  if (!match(old, now, surface) || (surface && rim_in_wall()))
+  if (!match(old, now, surface) || (surface && rim_in_wall(now)))
     return false;
   if ((surface || rim_moved) && sheets_) {
     list_rim(now);

@@ -59,22 +59,33 @@ bool Editor::surface_link_holds(int32_t a, int32_t b, const Ring& r) {
   std::vector<int32_t> common;
   std::set_intersection(surface_a.begin(), surface_a.end(), surface_b.begin(), surface_b.end(),
                         std::back_inserter(common));
-  return common.size() == 2 && surface_a.size() > 3;
+  return common.size() == r.border.size() && surface_a.size() > 3;
 }
 
 bool Editor::may_contract(const Vertex& a, const Vertex& b) const {
   if (a.kind == Kind::fixed || (a.kind != Kind::interior && b.kind == Kind::interior))
     return false;
+  if (a.kind == Kind::trace)
+    return b.kind == Kind::fixed || (b.kind == Kind::trace && a.frozen == b.frozen);
   return a.kind != Kind::sliding || b.kind != Kind::sliding || (a.frozen & ~b.frozen) == 0;
 }
 
 // For a on a labelled face: the edge a b runs in all its labels, and its elements may go. Sets ring_.
 bool Editor::borders_allow(int32_t e, int32_t a, int32_t b) {
   const Vertex& ka = m_.vertex[size_t(a)];
-  if (!ring(e, a, b, ring_) || ring_.border.size() != 2)
+  if (!ring(e, a, b, ring_))
     return false;
-  const bool crease = ka.kind == Kind::sliding && (ka.frozen & (ka.frozen - 1)) != 0;
-  if ((ring_.label[0] != ring_.label[1]) != crease)
+  const bool trace = ka.kind == Kind::trace;
+  const bool crease = trace || (ka.kind == Kind::sliding && (ka.frozen & (ka.frozen - 1)) != 0);
+  const auto& label = ring_.label;
+  // On a plane that the surface meets with elements on both sides its triangle is between two of the plane's.
+  if (label.size() == 3 ? !trace || label[1] == label[0] || label[1] == label[2]
+                        : label.size() != 2 || (label[0] != label[1]) != crease)
+    return false;
+  if (trace && std::any_of(ring_.border.begin(), ring_.border.end(), [&](int k) { // a loop of three may lie there
+        const Kind kind = m_.vertex[size_t(ring_.vertex[size_t(k)])].kind;
+        return kind == Kind::trace || kind == Kind::fixed;
+      }))
     return false;
   for (const int32_t t : ring_.element) { // they go: the faces beyond them take their labels
     const Element& el = m_.element[size_t(t)];
@@ -137,7 +148,7 @@ bool Editor::join(int32_t e, int i, int j) {
   if (!may_contract(m_.vertex[size_t(a)], m_.vertex[size_t(b)]))
     std::swap(a, b);
   const Vertex &ka = m_.vertex[size_t(a)], &kb = m_.vertex[size_t(b)];
-  if (!may_contract(ka, kb) || kb.kind == Kind::fixed || !star(a, star_) || !star(b, star2_))
+  if (!may_contract(ka, kb) || ka.kind == Kind::trace || kb.kind == Kind::trace || kb.kind == Kind::fixed || !star(a, star_) || !star(b, star2_))
     return false;
   const float before = std::min(worst(star_), worst(star2_)), above = demand(before);
   const Vec3d pa = m_.point[size_t(a)], pb = m_.point[size_t(b)];

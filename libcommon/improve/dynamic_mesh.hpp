@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -16,14 +17,21 @@ enum class Kind : uint8_t {
   interior, ///< on no labelled face: anything
   surface,  ///< on one curved label: stays on the target
   sliding,  ///< on axis planes alone (box walls): keeps the frozen coordinates
-  fixed,    ///< where labels or sharp edges meet: never moves, is never removed
+  trace,    ///< where one curved label meets one axis plane: stays on the target and in the plane
+  fixed,    ///< where other labels or sharp edges meet: never moves, is never removed
 };
+/// On a curved label, and free to move on it.
+inline constexpr bool follows_target(Kind k) {
+  return k == Kind::surface || k == Kind::trace;
+}
 
 struct Vertex {
   Kind kind = Kind::interior;
-  uint8_t frozen = 0;   ///< sliding: bit a set when coordinate a is kept
+  uint8_t frozen = 0;   ///< sliding, trace: bit a set when coordinate a is kept
   uint8_t label = 0;    ///< of a labelled face at the vertex (0 inside)
   bool crowded = false; ///< another sheet of the surface is near, with no elements between
+
+  int axis() const { return std::countr_zero(frozen); } ///< trace: of the coordinate that is kept
 };
 
 /// Face i is opposite v[i]; (v1 v2 v3), (v0 v3 v2), (v0 v1 v3), (v0 v2 v1) point out.

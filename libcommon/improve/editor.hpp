@@ -161,7 +161,9 @@ private:
   void list_rim(const std::vector<Candidate>& now);
   void list_rim(const std::vector<int32_t>& elements, int32_t v, int32_t without);
   uint8_t lost_label() const;
-  bool rim_in_wall() const;
+  bool rim_in_wall(const std::vector<Candidate>& now) const;
+  struct FaceEntry;
+  static uint8_t outer_label(const FaceEntry& x, const std::vector<Candidate>& now, uint8_t lost);
   bool face_is_taken(const std::vector<int32_t>& old);
   /// Of a surface vertex that goes from one place to another.
   bool inside_walls(Vec3d from, Vec3d to) const { return m_.walls.allow(from, to, apart_from_walls * spacing()); }
@@ -194,6 +196,7 @@ private:
   bool outward(const Element& e, size_t face) const;
   std::optional<double> off_at(Vec3d x) const; ///< off() of a place; none where the target is not known
   bool stays(Vec3d x) const;
+  bool project(const Vertex& k, Vec3d& x, double reach) const;
   bool constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const;
   /// Those of n trials that constrain() allows, in front and in order; how many.
   int constrain_all(const Vertex& k, Vec3d from, Vec3d* x, int n, double reach) const;

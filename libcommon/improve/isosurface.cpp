@@ -16,6 +16,25 @@ Isosurface::Isosurface(const BlockGrid& grid, int threads)
   });
 }
 
+bool Isosurface::project_in_plane(Vec3d& p, int axis, double reach) const {
+  constexpr double flattest = 0.2; // share of the normal in the plane: below it steps lead far away
+  const Vec3d from = p;
+  double distance;
+  Vec3d normal;
+  for (int step = 0; step < 8; ++step) {
+    if (!probe(p, distance, normal))
+      return false;
+    if (std::abs(distance) < 1e-3 * spacing())
+      return norm2(p - from) <= reach * reach;
+    normal[axis] = 0;
+    const double share = norm(normal);
+    if (share < flattest || std::abs(distance) > reach * share)
+      return false;
+    p -= distance / (share * share) * normal;
+  }
+  return false;
+}
+
 bool Isosurface::pocket(Vec3d p, bool hole, Vec3d& inside) const {
   constexpr size_t most = 4;
   Vec3d u;

@@ -12,6 +12,7 @@ class Isosurface final : public Target {
 public:
   Isosurface(const BlockGrid& grid, int threads);
   bool project(Vec3d& p, double reach) const override { return view().project(p, reach); }
+  bool project_in_plane(Vec3d& p, int axis, double reach) const override;
   bool probe(Vec3d p, double& distance, Vec3d& normal) const override { return view().probe(p, distance, normal); }
   void probe_eight(const EightPlaces& p, int n, EightProbes& out) const override {
     improve::probe_eight(view(), p, n, out);

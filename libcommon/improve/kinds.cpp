@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace molmesh::improve {
 namespace {
@@ -80,6 +81,43 @@ private:
   std::vector<size_t> root_;
 };
 
+/// What meets at the vertices of one curved and one flat label: the surface's trace on the plane passes through
+/// where two edges are of both labels, with one sheet of the surface and no other edge that is kept.
+class Traces {
+public:
+  explicit Traces(size_t vertices) : edges_(vertices, no_candidate) {}
+  void add_candidate(size_t v) { edges_[v] = 0; }
+  /// A kept edge of n triangles.
+  void note_edge(int32_t a, int32_t b, bool of_both_labels, size_t n) {
+    for (const int32_t v : {a, b})
+      if (uint8_t& edges = edges_[size_t(v)]; edges != no_candidate)
+        edges =
+            !of_both_labels || (edges & 3) == 2 ? no_candidate : uint8_t((edges + 1) | (n == 3 ? one_of_three : 0));
+  }
+  void note_fan(size_t v, size_t fan) {
+    if (edges_[v] != no_candidate)
+      fan_.emplace_back(v, fan);
+  }
+  /// f(v) where it does, after all the others.
+  template <class F>
+  void for_each(F&& f) {
+    par::sort_unique(fan_, 1);
+    for (size_t i = 0, j; i < fan_.size(); i = j) {
+      const size_t v = fan_[i].first;
+      for (j = i; j < fan_.size() && fan_[j].first == v;)
+        ++j;
+      // With elements on both sides the sheet and the plane to either side of it are fans; else all are one.
+      if ((edges_[v] & 3) == 2 && j - i == (edges_[v] & one_of_three ? 3 : 1))
+        f(v);
+    }
+  }
+
+private:
+  static constexpr uint8_t no_candidate = 255, one_of_three = 4;
+  std::vector<uint8_t> edges_;
+  std::vector<std::pair<size_t, size_t>> fan_;
+};
+
 } // namespace
 
 void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, double sharp, int threads) {
@@ -108,6 +146,7 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& 
       edges.push_back({std::min(v, w), std::max(v, w), l, static_cast<int32_t>(t)});
     }
   }
+  Traces traces(m.point.size());
   for (size_t v = 0; v < m.point.size(); ++v) {
     Vertex& x = m.vertex[v];
     const auto& s = seen[v];
@@ -130,6 +169,8 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& 
     const int bits = (frozen & 1) + (frozen >> 1 & 1) + (frozen >> 2 & 1);
     if (flat && bits == planes && bits < 3)
       x.kind = Kind::sliding, x.frozen = static_cast<uint8_t>(frozen);
+    if (s[1] != 0 && s[2] == 0 && m.labels[s[0]].curved() != m.labels[s[1]].curved())
+      traces.add_candidate(v);
   }
   const auto normal = [&](int32_t t) {
     const Tri& f = mesh.tri[size_t(t)];
@@ -151,8 +192,13 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& 
         fans.join(edges[i].tri, edges[i + 1].tri, v);
     if (!keep && edges[i].label == edges[i + 1].label && m.labels[edges[i].label].curved())
       keep = dot(normal(edges[i].tri), normal(edges[i + 1].tri)) < limit;
+    const auto curved = [&](const Edge& e) { return m.labels[e.label].curved(); };
+    const auto first = edges.begin() + std::ptrdiff_t(i), last = edges.begin() + std::ptrdiff_t(j);
+    const bool of_both = std::count_if(first, last, curved) == 1 && j - i <= 3;
     if (keep)
       m.vertex[size_t(edges[i].a)].kind = m.vertex[size_t(edges[i].b)].kind = Kind::fixed;
+    if (keep || of_both)
+      traces.note_edge(edges[i].a, edges[i].b, of_both && j - i > 1, j - i);
   }
   constexpr size_t none = SIZE_MAX;
   std::vector<size_t> fan; // where sheets touch, elements may know but one of them
@@ -163,7 +209,14 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& 
     if (fan[v] != none && fan[v] != here)
       m.vertex[v].kind = Kind::fixed;
     fan[v] = here;
+    traces.note_fan(v, here);
   }
+  traces.for_each([&](size_t v) {
+    const auto& s = seen[v];
+    const bool flat_first = !m.labels[s[0]].curved();
+    m.vertex[v] = {Kind::trace, static_cast<uint8_t>(1 << m.labels[s[flat_first ? 0 : 1]].axis),
+                   s[flat_first ? 1 : 0]};
+  });
 }
 
 } // namespace molmesh::improve

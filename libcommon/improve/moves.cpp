@@ -8,12 +8,12 @@
 namespace molmesh::improve {
 namespace {
 
-// Directions a vertex may take: all, the free axes, or the plane across the normal.
+// Directions a vertex may take: all, the free axes, the plane across the normal, or that plane's line in another.
 int basis_of(const Vertex& k, const Target* target, bool lifted, Vec3d x, Vec3d basis[3]) {
   int n = 0;
   if (k.kind == Kind::fixed)
     return 0;
-  if (k.kind != Kind::surface || (lifted && target)) {
+  if (!follows_target(k.kind) || (lifted && target)) {
     for (int a = 0; a < 3; ++a)
       if (!(k.frozen >> a & 1))
         basis[n] = {}, basis[n++][a] = 1;
@@ -23,6 +23,14 @@ int basis_of(const Vertex& k, const Target* target, bool lifted, Vec3d x, Vec3d 
   Vec3d normal;
   if (!target || !target->probe(x, distance, normal))
     return 0;
+  if (k.kind == Kind::trace) {
+    Vec3d across;
+    across[k.axis()] = 1;
+    basis[0] = cross(across, normal);
+    const double length = norm(basis[0]);
+    basis[0] = basis[0] / length;
+    return length > 0;
+  }
   Vec3d other{1, 0, 0};
   if (std::abs(normal.x) > 0.6)
     other = {0, 1, 0};
@@ -107,7 +115,7 @@ bool Editor::place_on_target(Vec3d& x, double length, const Fit& before, float a
 // Sails of v's star, and how they fit now.
 Fit Editor::gather_sails(const std::vector<int32_t>& star, int32_t v) {
   sails_.clear();
-  if (m_.vertex[size_t(v)].kind == Kind::surface)
+  if (follows_target(m_.vertex[size_t(v)].kind))
     for (const int32_t t : star) {
       const Element& e = m_.element[size_t(t)];
       for (size_t f = 0; f < 4 && e.any_labelled(); ++f)
@@ -146,7 +154,7 @@ void Editor::gather(const std::vector<int32_t>& star, int32_t v, double& length,
 
 // v is at its new place: takes it when every element of the star is above.
 bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above, float allowed) {
-  if (m_.vertex[size_t(v)].kind == Kind::surface && !inside_walls(from, m_.point[size_t(v)])) {
+  if (follows_target(m_.vertex[size_t(v)].kind) && !inside_walls(from, m_.point[size_t(v)])) {
     m_.point[size_t(v)] = from;
     return false;
   }
@@ -162,7 +170,7 @@ bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, f
     return false;
   }
   clear_rim();
-  if (sheets_ && m_.vertex[size_t(v)].kind == Kind::surface)
+  if (sheets_ && follows_target(m_.vertex[size_t(v)].kind))
     list_rim(elements, v, -1);
   if (lack(now_) > allowed || (unlooked_ ? rim_leaves() : rim_crosses(false))) {
     m_.point[size_t(v)] = from;

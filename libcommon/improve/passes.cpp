@@ -245,7 +245,9 @@ std::vector<int32_t> Schedule::points_off() const {
 
 Counts Schedule::settle(float floor, const Guard& guard) {
   set_parts(settles_++, cell_);
-  const std::vector<int32_t> items = surface_points();
+  const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
+    return m_.incident[size_t(v)] >= 0 && follows_target(m_.vertex[size_t(v)].kind);
+  });
   std::vector<int32_t> part;
   for (const int32_t v : items)
     part.push_back(parts_.owner[size_t(v)]);

@@ -43,7 +43,7 @@ void Editor::settle(int32_t v, float floor) {
   if (!star(v, star_))
     return;
   Vec3d to = m_.point[size_t(v)];
-  if (!target_->project(to, guard_.reach * mean_edge(star_, v)))
+  if (!project(m_.vertex[size_t(v)], to, guard_.reach * mean_edge(star_, v)))
     return;
   const float now = worst(star_), above = floor >= 1 ? 0.5f * now : std::min(floor, now) * 0.999999f;
   step_to(v, to, 0.5, 0.1, above);

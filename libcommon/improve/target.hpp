@@ -17,6 +17,8 @@ public:
   /// Moves p onto the surface. False (p undefined) when that takes more than `reach` (Å) or the surface is not
   /// known there.
   virtual bool project(Vec3d& p, double reach) const = 0;
+  /// Along the plane that p is in, normal to that axis. False too where the surface is nearly parallel to it.
+  virtual bool project_in_plane(Vec3d& /*p*/, int /*axis*/, double /*reach*/) const { return false; }
   /// Signed distance of p (Å, positive outside) to first order and the unit normal, pointing out. False when not
   /// known.
   virtual bool probe(Vec3d p, double& distance, Vec3d& normal) const = 0;

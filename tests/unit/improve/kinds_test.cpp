@@ -21,8 +21,8 @@ TetMesh ball_in_a_box() {
       {0, 0, 0}, 0.5, 10);
 }
 
-std::array<int64_t, 4> kinds(const improve::DynamicMesh& m) {
-  std::array<int64_t, 4> count{};
+std::array<int64_t, 5> kinds(const improve::DynamicMesh& m) {
+  std::array<int64_t, 5> count{};
   for (const improve::Vertex& v : m.vertex)
     ++count[size_t(v.kind)];
   return count;

@@ -248,7 +248,7 @@ TEST_CASE("a mesh that is built and extracted is the same mesh") {
     return all;
   };
   CHECK(sorted(back) == sorted(mesh)); // orientation included
-  int64_t kinds[4] = {};
+  int64_t kinds[5] = {};
   for (const improve::Vertex& v : m.vertex)
     ++kinds[size_t(v.kind)];
   CHECK(kinds[size_t(improve::Kind::surface)] > 0);

@@ -1,44 +1,12 @@
 // walls_test.cpp — a surface that walls cut stays in the box, and none of its triangles comes to lie in a wall.
 #include "cuda/improve/flow.hpp"
 #include "cuda/par/host.hpp"
+#include "cut_clusters.hpp"
 #include "improve/improve.hpp"
-#include "unit/contour/checked.hpp"
-#include "unit/contour/sample_grid.hpp"
 #include <catch2/catch.hpp>
-#include <random>
 
 using namespace molmesh;
 using namespace molmesh::test;
-
-namespace {
-
-// 40 atoms of 1.7 Å in a ball.
-BlockGrid cluster(uint32_t seed, double h) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> u(-4, 4);
-  std::vector<Vec3d> centre;
-  while (centre.size() < 40)
-    if (const Vec3d c{u(random), u(random), u(random)}; norm(c) < 4)
-      centre.push_back(c);
-  return cube_grid(8, h, [centre](Vec3d x) {
-    double sum = 1e-30;
-    for (const Vec3d& c : centre)
-      sum += std::exp(-0.8 * (norm2(x - c) - 1.7 * 1.7));
-    return sum;
-  });
-}
-
-// Cut by walls at x = at and y = -at.
-TetMesh cut(const BlockGrid& grid, contour::Options::Meshed meshed, double at) {
-  contour::Options options;
-  options.meshed = meshed;
-  options.box.kind = contour::BoxRequest::corners;
-  options.box.lower = {-9, -at, -9};
-  options.box.upper = {at, 9, 9};
-  return mesh_of(grid, options);
-}
-
-} // namespace
 
 TEST_CASE("improvement keeps a cut surface in the box and out of its walls") {
   const auto meshed = GENERATE(contour::Options::interior, contour::Options::exterior);
