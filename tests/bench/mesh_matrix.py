@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Every structure through the whole chain, a line each: is the mesh valid, how bad are its elements, where is its surface.
 
-    mesh_matrix.py BIN FILE... [--region both,interior] [--adapt 0.1,0] [--grid 513 | --spacing 0.5] [--threads N] [--log X]
+    mesh_matrix.py BIN FILE... [--region both,interior] [--adapt 0.1,0] [--grid 513 | --spacing 0.5] [--threads N] [--cuts N]
+                           [--log X]
 
 Before: the mesh of density2tet. After: that of tetsmooth --density. Outside: elements in 10,000 with a dihedral angle
 under 10 or over 160 degrees before (an upper limit: angles are counted), angles under 25 or over 140 after. Off: surface
@@ -9,10 +10,13 @@ points further than a fiftieth of a spacing from the isosurface, of them on clos
 centroids in 1,000 further than a quarter; turned: surface triangles in 1,000 by more than 45 degrees; missing: volume
 that the isosurface encloses beyond the mesh, per cent. Rate: elements a second of all phases of tetsmooth but reading and
 writing. !: not valid, other pieces or Euler number than before, or a promise of the README not kept; exit status 1 then.
+--cuts: that many boxes each, the same ones every time, that cut the surface somewhere.
 --log: every line as JSON too, appended."""
 import argparse
+import itertools
 import json
 import pathlib
+import random
 import subprocess
 import sys
 import tempfile
@@ -28,6 +32,7 @@ def main():
     size.add_argument("--grid")
     size.add_argument("--spacing", default="0.5")
     parser.add_argument("--threads", default="1")
+    parser.add_argument("--cuts", type=int, default=0)
     parser.add_argument("--log", type=pathlib.Path)
     arguments = parser.parse_args()
     spacing = ["--grid", arguments.grid] if arguments.grid else ["--spacing", arguments.spacing]
@@ -43,23 +48,23 @@ def main():
                 print(f"! {file.name}: {error.stderr.strip()}", flush=True)
                 bad = True
                 continue
-            for region in arguments.region.split(","):
-                for adapt in arguments.adapt.split(","):
-                    try:
-                        row = chain(arguments.bin, folder, arguments.threads, region, adapt)
-                    except subprocess.CalledProcessError as error:
-                        print(f"! {file.name} {region} {adapt}: {error.stderr.strip()}", flush=True)
-                        bad = True
-                        continue
-                    bad |= not row["kept"]
-                    print(f"{'' if row['kept'] else '! '}{file.name:28} {region:8} {adapt:>5} {row['elements']:10} "
-                          f"{row['before'][0]:7.2f} {row['before'][1]:7.2f} {row['outside_before']:7.2f} "
-                          f"{row['after'][0]:7.2f} {row['after'][1]:7.2f} {row['outside_after']:7} {row['q']:5.3f} "
-                          f"{row['ratio']:5.2f} {row['off']:4} {'(%d)' % row['off_cavity']:>4} {row['far']:6.3f} "
-                          f"{row['turned']:6.3f} {row['missing']:7.3f} {row['rate']:8.0f}", flush=True)
-                    if arguments.log:
-                        with arguments.log.open("a") as log:
-                            print(json.dumps({"file": file.name, "region": region, "adapt": adapt, **row}), file=log)
+            boxes = cuts(arguments.bin, folder, arguments.cuts) if arguments.cuts else ["auto"]
+            for region, adapt, box in itertools.product(arguments.region.split(","), arguments.adapt.split(","), boxes):
+                try:
+                    row = chain(arguments.bin, folder, arguments.threads, region, adapt, box)
+                except subprocess.CalledProcessError as error:
+                    print(f"! {file.name} {region} {adapt} {box}: {error.stderr.strip()}", flush=True)
+                    bad = True
+                    continue
+                bad |= not row["kept"]
+                print(f"{'' if row['kept'] else '! '}{file.name:28} {region:8} {adapt:>5} {row['elements']:10} "
+                      f"{row['before'][0]:7.2f} {row['before'][1]:7.2f} {row['outside_before']:7.2f} "
+                      f"{row['after'][0]:7.2f} {row['after'][1]:7.2f} {row['outside_after']:7} {row['q']:5.3f} "
+                      f"{row['ratio']:5.2f} {row['off']:4} {'(%d)' % row['off_cavity']:>4} {row['far']:6.3f} "
+                      f"{row['turned']:6.3f} {row['missing']:7.3f} {row['rate']:8.0f}", flush=True)
+                if arguments.log:
+                    with arguments.log.open("a") as log:
+                        print(json.dumps({"file": file.name, "region": region, "adapt": adapt, "box": box, **row}), file=log)
     return bad
 
 
@@ -73,8 +78,26 @@ def stat(folder, binary, mesh):
     return json.loads(done.stdout)
 
 
-def chain(binary, folder, threads, region, adapt):
-    tool(binary / "density2tet", "-t", threads, "--region", region, "--adapt", adapt, f"{folder}/vdb", "-o", f"{folder}/in.vtu")
+def cuts(binary, folder, count):
+    """Boxes of a fifth to the whole of the surface's extents, their middles in it."""
+    tool(binary / "density2tet", "--region", "interior", f"{folder}/vdb", "-o", f"{folder}/in.vtu")
+    box = stat(folder, binary, "in.vtu")["box"]
+    numbers = random.Random(count)
+    boxes = []
+    for _ in range(count):
+        ends = [[], []]
+        for low, high in zip(box["low"], box["high"]):
+            middle = numbers.uniform(low, high)
+            half = numbers.uniform(0.1, 0.5) * (high - low)
+            ends[0].append(f"{middle - half:.4f}")
+            ends[1].append(f"{middle + half:.4f}")
+        boxes.append(",".join(ends[0] + ends[1]))
+    return boxes
+
+
+def chain(binary, folder, threads, region, adapt, box):
+    tool(binary / "density2tet", "-t", threads, "--region", region, "--adapt", adapt, f"--box={box}", f"{folder}/vdb",
+         "-o", f"{folder}/in.vtu")
     tool(binary / "tetsmooth", "-t", threads, "--density", f"{folder}/vdb", f"{folder}/in.vtu", "-o", f"{folder}/out.vtu",
          "--report", f"{folder}/report")
     report = json.load(open(f"{folder}/report"))
