@@ -52,6 +52,7 @@ nlohmann::ordered_json json(const improve::Fidelity& f) {
   return {{"points", f.points},
           {"points_off", f.points_off},
           {"points_off_cavity", f.points_off_cavity},
+          {"points_off_wall", f.points_off_wall},
           {"triangles", f.triangles},
           {"centroids_off", f.centroids_off},
           {"turned_45", f.turned},

@@ -89,7 +89,8 @@ struct WantsToMove {
     for (int64_t i = m.elements.begin[v]; i < m.elements.begin[v + 1]; ++i)
       bad = bad || q[m.elements.item[i]] < m.goal;
     const improve::Kind kind = m.vertex[v].kind;
-    wanted[n] = bad && kind != improve::Kind::fixed && kind != improve::Kind::trace && (kind != improve::Kind::surface || m.has_surface);
+    wanted[n] = bad && kind != improve::Kind::fixed && kind != improve::Kind::trace &&
+                (kind != improve::Kind::surface || m.has_surface);
   }
 };
 

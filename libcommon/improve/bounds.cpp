@@ -50,11 +50,14 @@ bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) cons
   switch (k.kind) {
   case Kind::interior:
     return true;
+  case Kind::trace:
+    x[k.axis()] = from[k.axis()];
+    [[fallthrough]];
   case Kind::surface:
     // The distance to first order means nothing where the gradient vanishes, and that is where points must leave.
     if (target_ && guard_.lift > 0)
       return norm(x - from) <= guard_.lift * target_->spacing() && stays(x) && inside_walls(from, x);
-    if (target_ && loose)
+    if (target_ && loose && k.kind == Kind::surface)
       return norm(x - from) <= reach && off_at(x).value_or(1) <= most_loose && inside_walls(from, x);
     return project(k, x, reach) && inside_walls(from, x);
   case Kind::sliding:
@@ -62,11 +65,6 @@ bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) cons
       if (k.frozen >> a & 1)
         x[a] = from[a];
     return true;
-  case Kind::trace:
-    x[k.axis()] = from[k.axis()];
-    if (target_ && guard_.lift > 0)
-      return norm(x - from) <= guard_.lift * target_->spacing() && stays(x) && inside_walls(from, x);
-    return project(k, x, reach) && inside_walls(from, x);
   case Kind::fixed:
     break;
   }

@@ -81,7 +81,7 @@ bool Editor::match(const std::vector<int32_t>& old, const std::vector<Candidate>
 }
 
 // Of the triangles that go where the mesh ends; 0 when none does. Where several labels' go, elements say which new
-// triangle has which (Candidate::outside).
+// triangle has which (Candidate::label).
 uint8_t Editor::lost_label() const {
   uint8_t label = 0;
   for (const int32_t i : used_) {
@@ -109,7 +109,7 @@ bool Editor::rim_in_wall(const std::vector<Candidate>& now) const {
 
 // Of a new triangle where the mesh ends.
 uint8_t Editor::outer_label(const FaceEntry& x, const std::vector<Candidate>& now, uint8_t lost) {
-  const uint8_t own = now[size_t(x.first / 4)].outside[size_t(x.first & 3)];
+  const uint8_t own = now[size_t(x.first / 4)].label[size_t(x.first & 3)];
   return own != 0 ? own : lost;
 }
 
@@ -124,7 +124,7 @@ bool Editor::face_is_taken(const std::vector<int32_t>& old) {
     const FaceEntry& x = table_[size_t(i)];
     const int32_t first = m_.incident[size_t(x.v[0])];
     if (x.outer || first < 0 ||
-        std::any_of(x.v.begin(), x.v.end(), [&](int32_t v) { return m_.vertex[size_t(v)].kind != Kind::surface; }))
+        std::any_of(x.v.begin(), x.v.end(), [&](int32_t v) { return !follows_target(m_.vertex[size_t(v)].kind); }))
       continue;
     around.assign(1, first);
     for (size_t k = 0; k < around.size(); ++k) {
@@ -149,7 +149,10 @@ void Editor::list_rim(const std::vector<Candidate>& now) {
     const bool kept = x.outer && x.element < 0 && x.first >= 0, fresh = !x.outer && x.second < 0;
     const bool bared = x.outer && x.element >= 0 && x.first < 0;
     if (!(kept || fresh || bared) || !m_.crowded(x.v) ||
-        !m_.labels[kept ? x.label : fresh ? outer_label(x, now, outside) : outside].curved())
+        !m_.labels[kept    ? x.label
+                   : fresh ? outer_label(x, now, outside)
+                           : outside]
+             .curved())
       continue;
     if (bared)
       rim_.push_back(outward_triangle(m_.element[size_t(x.element)].v, x.face));
@@ -202,7 +205,7 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
     e.v = now[k].v;
     e.region = now[k].region;
     e.q = now[k].q;
-    e.label = now[k].outside;
+    e.label = now[k].label;
     for (const int32_t v : now[k].v)
       m_.incident[size_t(v)] = id;
     touch(id);
@@ -246,7 +249,8 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
         bare(id, face);
       }
     } else if (x.second >= 0) {
-      join(id, face, made_[size_t(x.second / 4)], size_t(x.second & 3), inner);
+      const uint8_t own = now[size_t(x.first / 4)].label[face];
+      join(id, face, made_[size_t(x.second / 4)], size_t(x.second & 3), own != 0 ? own : inner);
     } else {
       bare(id, face);
     }

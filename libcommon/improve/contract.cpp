@@ -78,7 +78,7 @@ bool Editor::borders_allow(int32_t e, int32_t a, int32_t b) {
   const bool trace = ka.kind == Kind::trace;
   const bool crease = trace || (ka.kind == Kind::sliding && (ka.frozen & (ka.frozen - 1)) != 0);
   const auto& label = ring_.label;
-  // On a plane that the surface meets with elements on both sides its triangle is between two of the plane's.
+  // Where a wall meets a surface with elements on both sides its triangle is between two of the wall's.
   if (label.size() == 3 ? !trace || label[1] == label[0] || label[1] == label[2]
                         : label.size() != 2 || (label[0] != label[1]) != crease)
     return false;
@@ -116,9 +116,7 @@ bool Editor::contract(int32_t e, int i, int j) {
     if (el.find(b) >= 0)
       continue;
     Candidate c{el.v, el.region, 0, {}};
-    for (size_t f = 0; f < 4; ++f)
-      if (el.n[f] < 0)
-        c.outside[f] = el.label[f];
+    c.label = el.label;
     c.v[size_t(el.find(a))] = b;
     if (!judge(c, above))
       return false;
@@ -148,7 +146,8 @@ bool Editor::join(int32_t e, int i, int j) {
   if (!may_contract(m_.vertex[size_t(a)], m_.vertex[size_t(b)]))
     std::swap(a, b);
   const Vertex &ka = m_.vertex[size_t(a)], &kb = m_.vertex[size_t(b)];
-  if (!may_contract(ka, kb) || ka.kind == Kind::trace || kb.kind == Kind::trace || kb.kind == Kind::fixed || !star(a, star_) || !star(b, star2_))
+  if (!may_contract(ka, kb) || ka.kind == Kind::trace || kb.kind == Kind::trace || kb.kind == Kind::fixed ||
+      !star(a, star_) || !star(b, star2_))
     return false;
   const float before = std::min(worst(star_), worst(star2_)), above = demand(before);
   const Vec3d pa = m_.point[size_t(a)], pb = m_.point[size_t(b)];
@@ -176,11 +175,10 @@ bool Editor::join(int32_t e, int i, int j) {
         continue;
       Candidate c{el.v, el.region, 0, {}};
       std::array<Vec3d, 4> p;
-      for (size_t n = 0; n < 4; ++n) {
+      for (size_t n = 0; n < 4; ++n)
         p[n] = m_.point[size_t(c.v[n])];
-        if (from == a && el.n[n] < 0)
-          c.outside[n] = el.label[n];
-      }
+      if (from == a)
+        c.label = el.label;
       const int k = el.find(from);
       c.v[size_t(k)] = b;
       spokes_.add(p, k);

@@ -17,7 +17,7 @@ enum class Kind : uint8_t {
   interior, ///< on no labelled face: anything
   surface,  ///< on one curved label: stays on the target
   sliding,  ///< on axis planes alone (box walls): keeps the frozen coordinates
-  trace,    ///< where one curved label meets one axis plane: stays on the target and in the plane
+  trace,    ///< where one curved label meets one wall: stays on the target and in the wall
   fixed,    ///< where other labels or sharp edges meet: never moves, is never removed
 };
 /// On a curved label, and free to move on it.
@@ -74,6 +74,7 @@ namespace molmesh::improve {
 struct Label {
   int32_t name = 0;      ///< TetMesh::boundary
   int axis = -1;         ///< all its triangles lie in one plane normal to this axis; -1: curved
+  bool wall = false;     ///< and the mesh ends there
   bool reversed = false; ///< its triangles point into the lower of the two regions, or into the mesh
   bool curved() const { return axis < 0; }
 };

@@ -33,7 +33,7 @@ struct Candidate {
   std::array<int32_t, 4> v;
   int32_t region;
   float q;
-  std::array<uint8_t, 4> outside{}; ///< labels of faces that may come to lie on the outside, where they differ
+  std::array<uint8_t, 4> label{}; ///< of its faces, where faces of several labels may go
 };
 
 /// How badly triangles fit the target.

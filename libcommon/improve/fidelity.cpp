@@ -36,6 +36,7 @@ Fidelity add(Fidelity a, const Fidelity& b) {
   a.triangles += b.triangles;
   a.points_off += b.points_off;
   a.points_off_cavity += b.points_off_cavity;
+  a.points_off_wall += b.points_off_wall;
   a.centroids_off += b.centroids_off;
   a.turned += b.turned;
   a.volume += b.volume;
@@ -155,7 +156,7 @@ Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int t
                       static_cast<int64_t>(m.point.size()), threads, Fidelity{},
                       [&](int64_t v) {
                         Fidelity one;
-                        if (m.incident[size_t(v)] < 0 || m.vertex[size_t(v)].kind != Kind::surface)
+                        if (m.incident[size_t(v)] < 0 || !follows_target(m.vertex[size_t(v)].kind))
                           return one;
                         one.points = 1;
                         double distance;
@@ -163,6 +164,7 @@ Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int t
                         one.points_off = !surface.probe(m.point[size_t(v)], distance, normal) ||
                                          std::abs(distance + surface.offset()) > 0.02 * surface.spacing();
                         one.points_off_cavity = one.points_off && in_cavity[size_t(v)];
+                        one.points_off_wall = one.points_off && m.vertex[size_t(v)].kind == Kind::trace;
                         return one;
                       },
                       add));

@@ -11,6 +11,7 @@ struct Fidelity {
   int64_t triangles = 0;
   int64_t points_off = 0;        ///< further than 0.02 spacings from it, or where it is not known
   int64_t points_off_cavity = 0; ///< of these, on closed cavities: where one is smaller than the grid can show
+  int64_t points_off_wall = 0;   ///< and in walls that cut the surface
   int64_t centroids_off = 0;     ///< further than 0.25 spacings, or not known
   int64_t turned = 0;            ///< normals more than 45° from its own
   double volume = 0;  ///< Å³ of the lowest region at a curved surface: the inside, where that is meshed

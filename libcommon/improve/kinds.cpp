@@ -51,9 +51,11 @@ void find_flat_labels(DynamicMesh& m, const TetMesh& mesh, const std::vector<uin
       if (high[l][a] - low[l][a] > all.rounding)
         continue;
       m.labels[l].axis = a;
-      if (low[l][a] - all.low[a] <= all.rounding)
+      const bool at_low = low[l][a] - all.low[a] <= all.rounding;
+      m.labels[l].wall = at_low || all.high[a] - high[l][a] <= all.rounding;
+      if (at_low)
         m.walls.low[a] = all.low[a];
-      else if (all.high[a] - high[l][a] <= all.rounding)
+      else if (m.labels[l].wall)
         m.walls.high[a] = all.high[a];
     }
 }
@@ -81,7 +83,7 @@ private:
   std::vector<size_t> root_;
 };
 
-/// What meets at the vertices of one curved and one flat label: the surface's trace on the plane passes through
+/// What meets at the vertices of one curved label and one wall: the surface's trace on the wall passes through
 /// where two edges are of both labels, with one sheet of the surface and no other edge that is kept.
 class Traces {
 public:
@@ -106,7 +108,7 @@ public:
       const size_t v = fan_[i].first;
       for (j = i; j < fan_.size() && fan_[j].first == v;)
         ++j;
-      // With elements on both sides the sheet and the plane to either side of it are fans; else all are one.
+      // With elements on both sides the sheet and the wall to either side of it are fans; else all are one.
       if ((edges_[v] & 3) == 2 && j - i == (edges_[v] & one_of_three ? 3 : 1))
         f(v);
     }
@@ -169,7 +171,9 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& 
     const int bits = (frozen & 1) + (frozen >> 1 & 1) + (frozen >> 2 & 1);
     if (flat && bits == planes && bits < 3)
       x.kind = Kind::sliding, x.frozen = static_cast<uint8_t>(frozen);
-    if (s[1] != 0 && s[2] == 0 && m.labels[s[0]].curved() != m.labels[s[1]].curved())
+    // Of a surface that came in alone nothing says which corners of its outline to keep.
+    if (sharp >= 180 && s[1] != 0 && s[2] == 0 && m.labels[s[0]].curved() != m.labels[s[1]].curved() &&
+        (m.labels[s[0]].wall || m.labels[s[1]].wall))
       traces.add_candidate(v);
   }
   const auto normal = [&](int32_t t) {

@@ -28,8 +28,10 @@ int basis_of(const Vertex& k, const Target* target, bool lifted, Vec3d x, Vec3d 
     across[k.axis()] = 1;
     basis[0] = cross(across, normal);
     const double length = norm(basis[0]);
+    if (!(length > 0))
+      return 0;
     basis[0] = basis[0] / length;
-    return length > 0;
+    return 1;
   }
   Vec3d other{1, 0, 0};
   if (std::abs(normal.x) > 0.6)

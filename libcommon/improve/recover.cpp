@@ -124,9 +124,8 @@ private:
   // Where the isosurface grazes a wall the mesh has no room for it: long searches there are nearly always in vain.
   bool at_wall() {
     const std::vector<int32_t> points = faults_.points_off();
-    return std::any_of(points.begin(), points.end(), [&](int32_t v) {
-      return !m_.walls.clear(m_.point[size_t(v)], editor_.spacing());
-    });
+    return std::any_of(points.begin(), points.end(),
+                       [&](int32_t v) { return !m_.walls.clear(m_.point[size_t(v)], editor_.spacing()); });
   }
 
   // The states put by since the part last changed, best first.
@@ -135,9 +134,9 @@ private:
       return;
     const Snapshot snapshot = editor_.save(mending_.elements());
     const Faults before = faults_();
-    const bool far = !at_wall();
-    int trials = pass_.effort > 3 && far ? most_bent_trials : most_trials;
-    int steps = pass_.effort > 4 && far ? most_steps : 0;
+    const bool long_search = pass_.effort > 3 && !at_wall();
+    int trials = long_search ? most_bent_trials : most_trials,
+        steps = long_search && pass_.effort > 4 ? most_steps : 0;
     for (const auto& [lacks, state] : std::exchange(nearly_, {})) {
       editor_.restore(state);
       mending_.shake(faults_, before, daring_.for_bent, trials);

@@ -33,6 +33,8 @@ std::vector<Tri> along_curve(const std::vector<Vec3d>& point, const std::vector<
   });
   par::sort(order, threads);
   std::vector<Tri> sorted;
+  sorted.reserve(tri.size());
+  index.reserve(tri.size());
   for (const auto& [code, t] : order) {
     sorted.push_back(tri[size_t(t)]);
     index.push_back(t);

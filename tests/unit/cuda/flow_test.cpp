@@ -67,7 +67,7 @@ TEST_CASE("flow: the worst element rises, none is inverted, what is bound stays 
       continue;
     ++moved;
     const improve::Vertex& k = m.vertex[v];
-    wrong += k.kind == improve::Kind::fixed;
+    wrong += k.kind == improve::Kind::fixed || k.kind == improve::Kind::trace;
     for (int a = 0; a < 3; ++a)
       wrong += (k.frozen >> a & 1) && m.point[v][a] != before.point[v][a];
     if (k.kind != improve::Kind::surface)

@@ -261,7 +261,8 @@ TEST_CASE("mmCIF: what a chain of many residues has of each kind is told from al
   const auto residues = [&](const std::string& atom, const char* name, const char* label, int n) {
     for (int k = 0; k < n; ++k) {
       const std::string serial = std::to_string(++id);
-      rows += "ATOM " + serial + " " + atom + " . " + name + " " + label + " . " + serial + " 0 0 1 10 " + serial + " A\n";
+      rows += "ATOM " + serial + " " + atom + " . " + name + " " + label + " . " + serial + " 0 0 1 10 " + serial +
+              " A\n";
     }
   };
   residues("C CA", "GLY", "A", 1025); // the last of these alone would be no polymer

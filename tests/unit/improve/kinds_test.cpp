@@ -1,11 +1,13 @@
 // kinds_test.cpp — walls are known as planes wherever the mesh lies and whatever digits its coordinates carry.
 #include "geom/predicates.hpp"
-#include "improve/dynamic_mesh.hpp"
+#include "improve/editor.hpp"
 #include "improve/improve.hpp"
 #include "lattice_mesh.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/validity.hpp"
+#include "unit/mesh/meshes.hpp"
 #include "unit/refusal.hpp"
+#include <bit>
 #include <catch2/catch.hpp>
 
 using namespace molmesh;
@@ -175,4 +177,70 @@ TEST_CASE("a surface that runs against the isosurface is refused") {
   CHECK(improve::improve(mesh, &grid, {}).fidelity.turned == 0);
   CHECK(refusal(Status::bad_input, [&] { improve::improve(turned, &grid, {}); }).find("isosurface") !=
         std::string::npos);
+}
+
+TEST_CASE("labels stay in their planes where edges of a box within the mesh contract") {
+  constexpr int from = 2, to = 6;
+  TetMesh mesh = molmesh::testing::cubes(8, [](Vec3i c) -> int32_t {
+    return std::min({c.x, c.y, c.z}) >= from && std::max({c.x, c.y, c.z}) < to ? 2 : 1;
+  });
+  constexpr int32_t inner = 20; // and up: its sides, in the order of the box's
+  for (size_t t = 0; t < mesh.tri.size(); ++t)
+    for (int axis = 0; axis < 3 && mesh.boundary[t] == surface; ++axis)
+      for (const int at : {from, to})
+        if (std::all_of(mesh.tri[t].begin(), mesh.tri[t].end(),
+                        [&](int32_t v) { return mesh.point[size_t(v)][axis] == at; }))
+          mesh.boundary[t] = inner + 2 * axis + (at == to);
+  for (Vec3d& p : mesh.point) // every other point of an edge goes close to the next
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto on_side = [&](int a) { return p[(axis + a) % 3] == from || p[(axis + a) % 3] == to; };
+      if (on_side(1) && on_side(2) && p[axis] == from + 1)
+        p[axis] += 0.9;
+    }
+  improve::DynamicMesh m = improve::build(mesh, 180, 1);
+  improve::PartRoom room{0, {}, {}};
+  improve::Parts parts;
+  parts.owner.resize(m.point.size());
+  std::vector<uint32_t> stamp(m.element.size());
+  improve::Editor editor(m, nullptr, nullptr, parts, stamp, room, {});
+  const auto on_edge = [&](int32_t v) { return std::popcount(m.vertex[size_t(v)].frozen) == 2; };
+  for (size_t e = 0; e < m.element.size(); ++e)
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j)
+        if (const improve::Element& t = m.element[e];
+            i != j && t.alive() && on_edge(t.v[size_t(i)]) && on_edge(t.v[size_t(j)]))
+          editor.contract(static_cast<int32_t>(e), i, j);
+  CHECK(editor.counts.contractions >= 12);
+  mesh = improve::extract(m);
+  CHECK(check_validity(mesh, 1).faults.empty());
+  double area[6] = {};
+  for (size_t t = 0; t < mesh.tri.size(); ++t) {
+    const int32_t side = mesh.boundary[t] - inner;
+    if (side < 0)
+      continue;
+    std::array<Vec3d, 3> p;
+    for (size_t i = 0; i < 3; ++i) {
+      p[i] = mesh.point[size_t(mesh.tri[t][i])];
+      CHECK(p[i][side / 2] == (side % 2 ? to : from));
+    }
+    area[side] += norm(tri_normal(p[0], p[1], p[2])) / 2;
+  }
+  for (const double a : area)
+    CHECK(std::abs(a - 16) < 1e-9);
+}
+
+TEST_CASE("a surface that meets a plane within the mesh, or comes in alone, has no trace that moves") {
+  TetMesh mesh = molmesh::testing::cubes(8, [](Vec3i c) -> int32_t {
+    return norm2(to_double(c) - Vec3d{3.5, 3.5, 3.5}) < 9 && c.z >= 4 ? 2 : 1;
+  });
+  for (size_t t = 0; t < mesh.tri.size(); ++t)
+    if (mesh.boundary[t] == surface && std::all_of(mesh.tri[t].begin(), mesh.tri[t].end(),
+                                                   [&](int32_t v) { return mesh.point[size_t(v)].z == 4; }))
+      mesh.boundary[t] = 20;
+  CHECK(kinds(improve::build(mesh, 180, 1))[size_t(improve::Kind::trace)] == 0);
+  TetMesh half = molmesh::testing::cubes(8, [](Vec3i c) -> int32_t {
+    return norm2(to_double(c) - Vec3d{3.5, 3.5, 0}) < 9 ? 2 : 1;
+  });
+  CHECK(kinds(improve::build(half, 180, 1))[size_t(improve::Kind::trace)] > 8);
+  CHECK(kinds(improve::build(half, 50, 1))[size_t(improve::Kind::trace)] == 0);
 }

@@ -26,7 +26,7 @@ bool on_trace(const std::set<int32_t>& boundary) {
 
 } // namespace
 
-TEST_CASE("vertices of the surface and one wall are its trace, but where two sheets meet") {
+TEST_CASE("vertices of the surface and one wall are its trace") {
   const auto meshed = GENERATE(contour::Options::interior, contour::Options::exterior, contour::Options::both);
   for (uint32_t seed = 1; seed <= 4; ++seed) {
     const TetMesh mesh = cut(cluster(seed, 1), meshed, 0.6);
