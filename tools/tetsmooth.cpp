@@ -47,7 +47,6 @@ void describe(CLI::App& app, Options& o) {
 nlohmann::ordered_json json(const improve::Angles& a) {
   return {{"min_dihedral", a.min}, {"max_dihedral", a.max}, {"below_25", a.below_25}, {"above_140", a.above_140}};
 }
-
 nlohmann::ordered_json json(const improve::Fidelity& f) {
   return {{"points", f.points},
           {"points_off", f.points_off},

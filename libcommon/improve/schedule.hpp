@@ -48,7 +48,7 @@ public:
 
 private:
   std::vector<int32_t> surface_points() const;
-  std::vector<int32_t> points_off() const; ///< of these, off the target
+  std::vector<int32_t> points_off() const;          ///< of these, off the target
   std::vector<SheetTriangle> end_triangles() const; ///< where the mesh ends in curved surfaces, in its order
   std::vector<uint8_t> facing(const std::vector<SheetTriangle>& triangle, double distance) const;
   bool is_hopeless(size_t points_off) const; ///< recover()
