@@ -111,7 +111,7 @@ def chain(binary, folder, threads, region, adapt, box):
            "outside_before": 1e4 * (sum(bins[:2]) + sum(bins[32:])) / before["tets"],
            "outside_after": counts["quality_after"]["below_25"] + counts["quality_after"]["above_140"],
            "q": after["quality"]["joe_liu_q"]["min"], "ratio": after["quality"]["edge_ratio"]["max"],
-           "off": surface["points_off"], "off_cavity": surface["points_off_cavity"], "surface_points": surface["points"],
+           "off": surface["points_off"], "off_cavity": surface["points_off_cavity"], "off_wall": surface.get("points_off_wall", 0), "surface_points": surface["points"],
            "far": 1e3 * surface["centroids_off"] / surface["triangles"],
            "turned": 1e3 * surface["turned_45"] / surface["triangles"],
            "missing": 100 * surface["volume_missing"] / surface["volume"], "rate": before["tets"] / seconds,
