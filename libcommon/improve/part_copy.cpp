@@ -53,10 +53,12 @@ PartCopy copy_part(const DynamicMesh& m, const Parts& parts, const PartRoom& roo
   c.parts.n = parts.n;
   for (size_t k = 0; k < vertex.size(); ++k) {
     const auto v = size_t(vertex[k]);
+    c.parts.owner.push_back(parts.owner[v]);
+    if (parts.owner[v] != room.part)
+      continue; // another part's editor may be writing there, and no operation of this one asks
     c.mesh.point[k] = m.point[v];
     c.mesh.vertex[k] = m.vertex[v];
     c.mesh.incident[k] = element_number(m.incident[v]);
-    c.parts.owner.push_back(parts.owner[v]);
   }
   for (size_t k = 0; k < c.element.size(); ++k) {
     Element e = m.element[size_t(c.element[k])];
@@ -64,8 +66,7 @@ PartCopy copy_part(const DynamicMesh& m, const Parts& parts, const PartRoom& roo
       e.v[i] = vertex_number(e.v[i]);
       e.n[i] = element_number(e.n[i]);
       if (e.alive() && c.mesh.incident[size_t(e.v[i])] < 0)
-        c.mesh.incident[size_t(e.v[i])] =
-            static_cast<int32_t>(k); // of another part, and none of its elements is ours
+        c.mesh.incident[size_t(e.v[i])] = static_cast<int32_t>(k); // of another part
     }
     c.mesh.element[k] = e;
   }
