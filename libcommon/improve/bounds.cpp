@@ -209,11 +209,16 @@ void Editor::note_edge(const Apart& apart, const std::array<int32_t, 3>& other) 
     beyond_.push_back({std::countr_zero(apart.of_first), other[size_t(std::countr_zero(apart.of_second))]});
 }
 
+// Whether they are seen not to cross without the exact test.
+bool Editor::lie_beside(const SheetTriangle& a, const SheetTriangle& b, const Apart& apart) const {
+  return a.of_one_sheet(b, apart.beside()) && side_by_side(m_.point, a, b, apart);
+}
+
 // Whether it crosses the near one, which may be itself and may not stay; their common edge is noted.
 bool Editor::crosses(const SheetTriangle& now, Near& near, bool stamped_go) {
   const SheetTriangle& other = near.triangle;
   const Apart apart(now.v, other.v);
-  const bool beside = now.of_one_sheet(other, apart.beside()) && side_by_side(m_.point, now, other, apart);
+  const bool beside = lie_beside(now, other, apart);
   // Whether it stays is further away in memory.
   if ((beside && !apart.share_edge()) || !stays_near(near, stamped_go))
     return false;
@@ -249,9 +254,7 @@ bool Editor::rim_crosses(bool stamped_go) {
     for (const auto& o : rim_)
       note_edge(Apart(now.v, o), o);
     for (size_t j = 0; j < i; ++j)
-      if (!(now.of_one_sheet(rim_sheet_[j], true) &&
-            side_by_side(m_.point, now, rim_sheet_[j], Apart(now.v, rim_[j]))) &&
-          triangles_cross(m_.point, now.v, rim_[j]))
+      if (!lie_beside(now, rim_sheet_[j], Apart(now.v, rim_[j])) && triangles_cross(m_.point, now.v, rim_[j]))
         return true;
     for (const EightBoxes& eight : near_box_)
       for (uint32_t met = eight.met(now); met; met &= met - 1)

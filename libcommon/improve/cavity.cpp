@@ -102,15 +102,15 @@ bool Editor::rim_in_wall(const std::vector<Candidate>& now) const {
     const FaceEntry& x = table_[size_t(i)];
     const bool fresh = !x.outer && x.second < 0, bared = x.outer && x.element >= 0 && x.first < 0;
     const auto p = [&](size_t k) { return m_.point[size_t(x.v[k])]; };
-    return (fresh || bared) && m_.labels[fresh ? outer_label(x, now, lost) : lost].curved() &&
+    return (fresh || bared) && m_.labels[fresh ? label_of(x, now, lost) : lost].curved() &&
            m_.walls.hold(p(0), p(1), p(2));
   });
 }
 
-// Of a new triangle where the mesh ends.
-uint8_t Editor::outer_label(const FaceEntry& x, const std::vector<Candidate>& now, uint8_t lost) {
+// Of a new face: its first element's own, where that has one.
+uint8_t Editor::label_of(const FaceEntry& x, const std::vector<Candidate>& now, uint8_t otherwise) {
   const uint8_t own = now[size_t(x.first / 4)].label[size_t(x.first & 3)];
-  return own != 0 ? own : lost;
+  return own != 0 ? own : otherwise;
 }
 
 // Whether a new face between surface points is one of elements that stay: where the mesh ends in the surface, the
@@ -150,7 +150,7 @@ void Editor::list_rim(const std::vector<Candidate>& now) {
     const bool bared = x.outer && x.element >= 0 && x.first < 0;
     if (!(kept || fresh || bared) || !m_.crowded(x.v) ||
         !m_.labels[kept    ? x.label
-                   : fresh ? outer_label(x, now, outside)
+                   : fresh ? label_of(x, now, outside)
                            : outside]
              .curved())
       continue;
@@ -249,8 +249,7 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
         bare(id, face);
       }
     } else if (x.second >= 0) {
-      const uint8_t own = now[size_t(x.first / 4)].label[face];
-      join(id, face, made_[size_t(x.second / 4)], size_t(x.second & 3), own != 0 ? own : inner);
+      join(id, face, made_[size_t(x.second / 4)], size_t(x.second & 3), label_of(x, now, inner));
     } else {
       bare(id, face);
     }

@@ -115,8 +115,7 @@ bool Editor::contract(int32_t e, int i, int j) {
     const Element& el = m_.element[size_t(t)];
     if (el.find(b) >= 0)
       continue;
-    Candidate c{el.v, el.region, 0, {}};
-    c.label = el.label;
+    Candidate c{el.v, el.region, 0, el.label};
     c.v[size_t(el.find(a))] = b;
     if (!judge(c, above))
       return false;
@@ -173,12 +172,10 @@ bool Editor::join(int32_t e, int i, int j) {
       const Element& el = m_.element[size_t(t)];
       if (el.find(other) >= 0)
         continue;
-      Candidate c{el.v, el.region, 0, {}};
+      Candidate c{el.v, el.region, 0, el.label};
       std::array<Vec3d, 4> p;
       for (size_t n = 0; n < 4; ++n)
         p[n] = m_.point[size_t(c.v[n])];
-      if (from == a)
-        c.label = el.label;
       const int k = el.find(from);
       c.v[size_t(k)] = b;
       spokes_.add(p, k);

@@ -163,7 +163,7 @@ private:
   uint8_t lost_label() const;
   bool rim_in_wall(const std::vector<Candidate>& now) const;
   struct FaceEntry;
-  static uint8_t outer_label(const FaceEntry& x, const std::vector<Candidate>& now, uint8_t lost);
+  static uint8_t label_of(const FaceEntry& x, const std::vector<Candidate>& now, uint8_t otherwise);
   bool face_is_taken(const std::vector<int32_t>& old);
   /// Of a surface vertex that goes from one place to another.
   bool inside_walls(Vec3d from, Vec3d to) const { return m_.walls.allow(from, to, apart_from_walls * spacing()); }
@@ -174,6 +174,7 @@ private:
     Stays stays;
   };
   void note_edge(const Apart& apart, const std::array<int32_t, 3>& other);
+  bool lie_beside(const SheetTriangle& a, const SheetTriangle& b, const Apart& apart) const;
   bool crosses(const SheetTriangle& now, Near& near, bool stamped_go);
   void gather_near(const Sheets& sheets, const Boxf& around, bool may_be_stale);
   bool stays_near(Near& n, bool stamped_go) const;

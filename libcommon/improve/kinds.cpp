@@ -198,11 +198,12 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& 
       keep = dot(normal(edges[i].tri), normal(edges[i + 1].tri)) < limit;
     const auto curved = [&](const Edge& e) { return m.labels[e.label].curved(); };
     const auto first = edges.begin() + std::ptrdiff_t(i), last = edges.begin() + std::ptrdiff_t(j);
-    const bool of_both = std::count_if(first, last, curved) == 1 && j - i <= 3;
+    const bool of_both = (j - i == 3 || (j - i == 2 && edges[i].label != edges[i + 1].label)) &&
+                         std::count_if(first, last, curved) == 1;
     if (keep)
       m.vertex[size_t(edges[i].a)].kind = m.vertex[size_t(edges[i].b)].kind = Kind::fixed;
     if (keep || of_both)
-      traces.note_edge(edges[i].a, edges[i].b, of_both && j - i > 1, j - i);
+      traces.note_edge(edges[i].a, edges[i].b, of_both, j - i);
   }
   constexpr size_t none = SIZE_MAX;
   std::vector<size_t> fan; // where sheets touch, elements may know but one of them

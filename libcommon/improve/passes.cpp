@@ -217,10 +217,13 @@ Counts Schedule::straighten(const Pass& pass) {
   });
 }
 
+std::vector<int32_t> Schedule::vertices(bool (*of)(Kind)) const {
+  return choose(static_cast<int64_t>(m_.point.size()), threads_,
+                [&](int64_t v) { return m_.incident[size_t(v)] >= 0 && of(m_.vertex[size_t(v)].kind); });
+}
+
 std::vector<int32_t> Schedule::surface_points() const {
-  return choose(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
-    return m_.incident[size_t(v)] >= 0 && m_.vertex[size_t(v)].kind == Kind::surface;
-  });
+  return vertices([](Kind k) { return k == Kind::surface; });
 }
 
 std::vector<int32_t> Schedule::points_off() const {
@@ -230,11 +233,7 @@ std::vector<int32_t> Schedule::points_off() const {
   par::for_n((static_cast<int64_t>(points.size()) + 7) / 8, threads_, 256, [&](int64_t group) {
     int32_t* const v = points.data() + 8 * group;
     const size_t n = std::min<size_t>(8, points.size() - 8 * size_t(group));
-    EightPlaces eight;
-    EightProbes probes;
-    for (size_t i = 0; i < n; ++i)
-      eight.set(i, m_.point[size_t(v[i])]);
-    target_->probe_eight(eight, static_cast<int>(n), probes);
+    const EightProbes probes = probe_some(*target_, m_.point, v, n);
     for (size_t i = 0; i < n; ++i)
       if (probes.is_known(i) && target_->off_by(probes.distance[i]) <= 1)
         v[i] = -1;
@@ -245,9 +244,7 @@ std::vector<int32_t> Schedule::points_off() const {
 
 Counts Schedule::settle(float floor, const Guard& guard) {
   set_parts(settles_++, cell_);
-  const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
-    return m_.incident[size_t(v)] >= 0 && follows_target(m_.vertex[size_t(v)].kind);
-  });
+  const std::vector<int32_t> items = vertices(follows_target);
   std::vector<int32_t> part;
   for (const int32_t v : items)
     part.push_back(parts_.owner[size_t(v)]);

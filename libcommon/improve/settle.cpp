@@ -26,13 +26,9 @@ void Editor::settle(const std::vector<int32_t>& vertices, float floor) {
 // Those that are not there yet: a vertex stays where it is until its turn.
 void Editor::settle_each(const std::vector<int32_t>& vertices, float floor) {
   const double there = 2e-3 * target_->spacing();
-  EightPlaces eight;
-  EightProbes probes;
   for (size_t first = 0; first < vertices.size(); first += 8) {
     const size_t n = std::min<size_t>(8, vertices.size() - first);
-    for (size_t i = 0; i < n; ++i)
-      eight.set(i, m_.point[size_t(vertices[first + i])]);
-    target_->probe_eight(eight, static_cast<int>(n), probes);
+    const EightProbes probes = probe_some(*target_, m_.point, vertices.data() + first, n);
     for (size_t i = 0; i < n; ++i)
       if (probes.is_known(i) && std::abs(probes.distance[i]) >= there)
         settle(vertices[first + i], floor);

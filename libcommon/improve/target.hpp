@@ -2,6 +2,8 @@
 #pragma once
 #include "improve/probe_kernel.hpp"
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace molmesh::improve {
 
@@ -41,5 +43,15 @@ public:
   /// Length that distances are measured against: the grid spacing, or the mean edge of the surface (Å).
   virtual double spacing() const = 0;
 };
+
+/// Of the points v[0 … n - 1], eight at most.
+inline EightProbes probe_some(const Target& target, const std::vector<Vec3d>& point, const int32_t* v, size_t n) {
+  EightPlaces places;
+  EightProbes probes;
+  for (size_t i = 0; i < n; ++i)
+    places.set(i, point[size_t(v[i])]);
+  target.probe_eight(places, static_cast<int>(n), probes);
+  return probes;
+}
 
 } // namespace molmesh::improve
