@@ -250,4 +250,10 @@ HD_CALL inline CellTopology cell_topology(const double value[8]) {
   return t;
 }
 
+/// For each corner a label, as trilinear_components: of what the mesh joins within the cell.
+HD_CALL inline std::array<int, 8> joined_corners(const CellTopology& t) {
+  const std::array<int, 8> boundary = detail::boundary_components(t.mask, t.diagonal);
+  return t.split() ? detail::joined_through_centre(boundary, t.mask, t.centre_inside, t.chop) : boundary;
+}
+
 } // namespace molmesh::contour

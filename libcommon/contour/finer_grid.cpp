@@ -2,6 +2,7 @@
 #include "contour/finer_grid.hpp"
 #include "contour/detail/chord_items.hpp"
 #include "contour/halved_grid.hpp"
+#include "contour/halved_topology.hpp"
 #include "contour/leaves.hpp"
 #include "geom/bits.hpp"
 #include "improve/isosurface_view.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 constexpr int most_halvings = 2;
 constexpr double room_to_halve = (1 << 18) - 8; ///< spacings of a box: a lattice takes twice as many
-/// Of a uniform lattice, some 12 million elements: it is filled with the smaller cells.
+/// Of a uniform lattice after halving, some 12 million elements: it is filled with the smaller cells.
 constexpr double most_uniform_cells = 1 << 20;
 /// With the default band some 16,000 surface cells; a ball of as many, 29 spacings in radius, loses 0.05 %.
 constexpr int64_t most_active_points = 1 << 15;
@@ -32,43 +33,40 @@ int64_t active_points(const BlockGrid& grid) {
   return n;
 }
 
-/// The surface is one disc in each of its cells, whatever is interpolated.
-bool one_sheet_a_cell(const Surface& surface, float isovalue) {
-  const detail::OneDisc one_disc;
-  return std::all_of(surface.cells.begin(), surface.cells.end(),
-                     [&](const SurfaceCell& cell) { return one_disc(detail::inside_corners(cell, isovalue)); });
-}
+/// In the grid's spacings.
+struct Bodies {
+  int64_t cells = 0;        ///< that the surface crosses
+  detail::SurfaceSums sums; ///< area and volume
+  double cut = 0;           ///< volume that chords between samples cut off
 
-/// Volumes in cubed spacings. given_back: tetsmooth puts points so far outside the isosurface, spacings.
-bool chords_cut_too_much(const Surface& surface, float isovalue, double given_back) {
-  const auto n = static_cast<int64_t>(surface.cells.size());
-  std::vector<uint64_t> key;
-  for (const SurfaceCell& cell : surface.cells)
-    key.push_back(cell.key);
-  detail::SurfaceSums all;
-  double cut = 0;
-  for (int64_t i = 0; i < n; ++i) {
-    all += detail::of_sample(surface.samples[static_cast<size_t>(i)]);
-    cut += detail::CutByCells{surface.cells.data(), surface.samples.data(), key.data(), n, isovalue}.of_cell(i);
+  Bodies(const Surface& surface, float isovalue) : cells(static_cast<int64_t>(surface.cells.size())) {
+    std::vector<uint64_t> key;
+    for (const SurfaceCell& cell : surface.cells)
+      key.push_back(cell.key);
+    const detail::CutByCells chords{surface.cells.data(), surface.samples.data(), key.data(), cells, isovalue};
+    for (size_t i = 0; i < key.size(); ++i) {
+      sums += detail::sums_of_cell(surface.cells[i], surface.samples[i], isovalue);
+      cut += chords.of_cell(static_cast<int64_t>(i));
+    }
   }
-  return n < too_few_cells || smoothed * std::fabs(cut) > given_back * all.area + most_missing * all.volume();
-}
-
-struct Look {
-  bool one_sheet_a_cell = false, cells_too_large = false;
+  /// given_back: tetsmooth puts points so far outside the isosurface.
+  bool lose_too_much(double given_back) const {
+    return cells < too_few_cells ||
+           smoothed * std::fabs(cut) > given_back * sums.area + most_missing * sums.volume();
+  }
 };
+
 /// halvings: of the spacing so far.
-Look look_at(const BlockGrid& grid, const Options& options, int halvings) {
+bool cells_too_large(const BlockGrid& grid, const Options& options, int halvings) {
   const Lattice lattice(grid, options.box, options.meshed != Options::interior, options.threads);
   const Vec3d extent = (lattice.position(lattice.cells) - lattice.position({0, 0, 0})) / grid.frame.spacing;
   if (lattice.view().any_cut || std::max({extent.x, extent.y, extent.z}) >= room_to_halve)
-    return {};
-  if (options.adapt == 0 &&
-      double(lattice.cells.x) * double(lattice.cells.y) * double(lattice.cells.z) > most_uniform_cells)
-    return {};
-  const Surface surface = find_surface(lattice, options.threads);
-  return {one_sheet_a_cell(surface, lattice.isovalue),
-          chords_cut_too_much(surface, lattice.isovalue, improve::most_offset * (1 << halvings))};
+    return false;
+  const Vec3d cells = to_double(lattice.cells);
+  if (options.adapt == 0 && 8 * cells.x * cells.y * cells.z > most_uniform_cells)
+    return false;
+  const Bodies bodies(find_surface(lattice, options.threads), lattice.isovalue);
+  return bodies.lose_too_much(improve::most_offset * (1 << halvings));
 }
 
 } // namespace
@@ -77,11 +75,12 @@ FinerGrid finer_grid(const BlockGrid& grid, const Options& options) {
   FinerGrid finer;
   if (active_points(grid) > most_active_points)
     return finer;
-  Look look = look_at(grid, options, 0);
-  while (look.one_sheet_a_cell && look.cells_too_large && finer.halvings < most_halvings) {
-    BlockGrid half = halved(finer.grid ? *finer.grid : grid, options.threads);
-    look = look_at(half, options, finer.halvings + 1);
-    if (!look.one_sheet_a_cell)
+  while (finer.halvings < most_halvings) {
+    const BlockGrid& now = finer.grid ? *finer.grid : grid;
+    if (!cells_too_large(now, options, finer.halvings))
+      break;
+    BlockGrid half = halved(now, options.threads);
+    if (!halving_keeps_topology(now, half, options.threads))
       break;
     finer.grid = std::move(half);
     ++finer.halvings;

@@ -16,8 +16,8 @@ struct FinerGrid {
 /// - to more than a million cells where they are to be uniform,
 /// - on grids of many points, where the volume is that of large bodies,
 /// - where a wall cuts the grid, or the box would have too many of the halved spacings,
-/// - where a cell may hold more than one sheet, before or after: the trilinear functions of G, whose topology the
-///   mesh has (I7), and of log G, of which the points between are, may differ there.
+/// - where that would change the topology (halved_topology.hpp): the mesh has that of trilinear G (I7), and the values
+///   between are means of log G.
 FinerGrid finer_grid(const BlockGrid& grid, const Options& options);
 
 } // namespace molmesh::contour

@@ -92,36 +92,62 @@ private:
   }
 };
 
-/// Of samples: what the divergence theorem makes a volume of.
+/// What the surface's area and the volume within are made of, in fine spacings.
 struct SurfaceSums {
-  double area = 0, flux = 0; ///< flux: of the vector to the point through the surface, inwards
-  Vec3d moment, normal;      ///< sums of points and of normals
+  double area = 0;
+  // Of crossings with the lattice's lines along each axis: their number, the sum of their places, those outwards
+  // less those inwards, and the same of their places. On a line the places' difference is what lies within: bodies
+  // far apart do not blur each other.
+  Vec3d crossings, places, outwards, moment;
+
   HD SurfaceSums& operator+=(const SurfaceSums& o) {
     area += o.area;
-    flux += o.flux;
+    crossings += o.crossings;
+    places += o.places;
+    outwards += o.outwards;
     moment += o.moment;
-    normal += o.normal;
     return *this;
   }
-  /// Enclosed by a closed surface; of one that the box cuts, of the cones from its middle.
-  double volume() const { return area > 0 ? std::fabs(flux - dot(moment, normal) / area) / 3 : 0; }
+  /// Within the surface, by the axis whose lines see most of it: they all do where the box cuts nothing; lines that
+  /// end at a wall see what lies between crossings, or those from their mean place.
+  HD double volume() const {
+    double most = 0;
+    for (int a = 0; a < 3; ++a)
+      if (crossings[a] > 0)
+        most = std::fmax(most, std::fabs(moment[a] - outwards[a] * places[a] / crossings[a]));
+    return most;
+  }
 };
 
-HD inline SurfaceSums of_sample(const SurfaceSample& s) {
-  const double area = sample_area(s);
-  return {area, area * dot(s.point, s.normal), area * s.point, area * s.normal};
+/// Of one cell, for the lines through its lowest corner. A crossing is taken to be where the sample is: the mean of
+/// the cell's, so that what is too much on one side of a body is too little on the other.
+HD inline SurfaceSums sums_of_cell(const SurfaceCell& cell, const SurfaceSample& s, float isovalue) {
+  SurfaceSums sums;
+  sums.area = sample_area(s);
+  const bool inside = cell.value[0] > isovalue;
+  for (int a = 0; a < 3; ++a)
+    if ((cell.value[1 << a] > isovalue) != inside) {
+      const double sign = inside ? 1 : -1;
+      sums.crossings[a] = 1;
+      sums.places[a] = s.point[a];
+      sums.outwards[a] = sign;
+      sums.moment[a] = sign * s.point[a];
+    }
+  return sums;
 }
 
 /// In stretches, so that sums keep their order.
-struct SumSamples {
+struct SumCells {
   static constexpr int64_t stretch = 1024, grain = 1;
+  const SurfaceCell* cell;
   const SurfaceSample* sample;
-  int64_t samples;
+  int64_t cells;
+  float isovalue;
   SurfaceSums* out;
   HD void operator()(int64_t i) const {
     SurfaceSums sums;
-    for (int64_t s = stretch * i; s < stretch * (i + 1) && s < samples; ++s)
-      sums += of_sample(sample[s]);
+    for (int64_t c = stretch * i; c < stretch * (i + 1) && c < cells; ++c)
+      sums += sums_of_cell(cell[c], sample[c], isovalue);
     out[i] = sums;
   }
 };

@@ -109,9 +109,10 @@ private:
   /// Volume that chords may cut off on the whole, in cubed fine spacings. Of a halved grid tetsmooth gives back
   /// more: its spacing is the file's.
   double allowed_cut() {
-    const int64_t stretches = (surface_.n + SumSamples::stretch - 1) / SumSamples::stretch;
+    const int64_t stretches = (surface_.n + SumCells::stretch - 1) / SumCells::stretch;
     auto part = m_.template array<SurfaceSums>(stretches);
-    m_.for_n("sum samples", stretches, SumSamples{surface_.sample, surface_.n, part.data()});
+    m_.for_n("sum cells", stretches,
+             SumCells{surface_.cell, surface_.sample, surface_.n, l_.isovalue, part.data()});
     const SurfaceSums all = sum(part, stretches, SurfaceSums{});
     return improve::most_offset * all.area + most_cut * all.volume();
   }

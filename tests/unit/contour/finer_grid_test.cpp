@@ -2,6 +2,7 @@
 #include "contour/detail/chord_items.hpp"
 #include "contour/finer_grid.hpp"
 #include "contour/halved_grid.hpp"
+#include "contour/halved_topology.hpp"
 #include "contour/leaves.hpp"
 #include "improve/improve.hpp"
 #include "unit/contour/checked.hpp"
@@ -55,6 +56,16 @@ void check_point(const BlockGrid& grid, const BlockIndex& index, const BlockGrid
     CHECK(v > 1);
   if (inside == 0)
     CHECK(!(v > 1));
+}
+
+/// Whether the surface is a disc in each cell whatever is interpolated.
+bool all_plain(const BlockGrid& grid) {
+  const contour::Lattice lattice(grid, {}, false, 1);
+  const contour::Surface surface = contour::find_surface(lattice, 1);
+  const contour::detail::OneDisc one_disc;
+  return std::all_of(surface.cells.begin(), surface.cells.end(), [&](const contour::SurfaceCell& cell) {
+    return one_disc(contour::detail::inside_corners(cell, lattice.isovalue));
+  });
 }
 
 } // namespace
@@ -162,6 +173,71 @@ TEST_CASE("the grid's own cells: of large bodies, where a wall cuts the grid, an
     return std::exp(1 - norm2(from));
   });
   CHECK(!contour::finer_grid(large, {}).grid);
+}
+
+TEST_CASE(
+    "the volume within the surface, from the lattice's lines: of balls, of two far apart, and of half a ball") {
+  const auto ball = [](Vec3d x, double radius) { return std::exp((radius - norm(x)) / 4); };
+  const auto volume_of = [](const BlockGrid& grid, const Options& options) {
+    const contour::Lattice lattice(grid, options.box, false, 1);
+    const contour::Surface surface = contour::find_surface(lattice, 1);
+    contour::detail::SurfaceSums sums;
+    for (size_t i = 0; i < surface.cells.size(); ++i)
+      sums += contour::detail::sums_of_cell(surface.cells[i], surface.samples[i], lattice.isovalue);
+    return std::pair{sums.volume(), sums.area};
+  };
+  const double pi = std::acos(-1.);
+  const Vec3d off{0.23, 0.54, 0.79};
+  for (double radius : {3., 6., 20.}) {
+    CAPTURE(radius);
+    const auto [volume, area] =
+        volume_of(cube_grid(radius + 3, 1, [&](Vec3d x) { return ball(x - off, radius); }), {});
+    CHECK(volume == Approx(4 * pi / 3 * radius * radius * radius).epsilon(radius < 4 ? 0.04 : 0.01));
+    CHECK(area == Approx(4 * pi * radius * radius).epsilon(0.05));
+  }
+  const Vec3d apart{30, 31, 29};
+  const auto two = [&](Vec3d x) { return std::max(ball(x - off - apart, 3), ball(x - off + apart, 3)); };
+  CHECK(volume_of(cube_grid(36, 1, two), {}).first == Approx(2 * 36 * pi).epsilon(0.04));
+  Options half;
+  half.box.kind = contour::BoxRequest::corners;
+  half.box.lower = {0, -12, -12};
+  half.box.upper = {12, 12, 12};
+  CHECK(volume_of(cube_grid(14, 1,
+                            [&](Vec3d x) {
+                              return ball(x - Vec3d{0, 0.54, 0.79}, 8);
+                            }),
+                  half)
+            .first == Approx(2 * pi / 3 * 512).epsilon(0.1));
+}
+
+TEST_CASE("bodies far apart keep their volume") {
+  const Vec3d apart{9.1, 8.3, 7.6};
+  const BlockGrid grid = cube_grid(
+      14, 0.5, [&](Vec3d x) { return std::exp(2.2 - norm2(x - apart)) + std::exp(2.2 - norm2(x + apart)); });
+  contour::Summary summary;
+  TetMesh mesh = mesh_of(grid, {}, summary);
+  CHECK(summary.halvings == 1);
+  const improve::Result result = improve::improve(mesh, &grid, {});
+  CHECK(std::fabs(result.fidelity.missing) < 0.005 * result.fidelity.volume);
+}
+
+TEST_CASE("half the spacing keeps each cell's topology, or is refused") {
+  std::mt19937_64 random(13);
+  int kept = 0, refused = 0, not_plain = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    CAPTURE(trial);
+    const BlockGrid grid = random_grid(random, trial), half = contour::halved(grid, 1);
+    const bool keeps = contour::halving_keeps_topology(grid, half, 1);
+    CHECK(keeps == contour::halving_keeps_topology(grid, half, 3));
+    const bool same = trilinear_euler(half) == trilinear_euler(grid);
+    (keeps ? kept : refused) += 1;
+    not_plain += keeps && !all_plain(grid);
+    if (keeps)
+      CHECK(same);
+  }
+  CHECK(kept > 20);
+  CHECK(refused > 20);
+  CHECK(not_plain > 5);
 }
 
 TEST_CASE("what chords of fine cells cut off a ball is the same share of h²/r² whatever its radius") {
