@@ -1,13 +1,13 @@
 // finer_grid.cpp — what chords between neighbouring cells' samples cut off, against what I8 allows.
 #include "contour/finer_grid.hpp"
 #include "contour/detail/chord_items.hpp"
-#include "contour/halved_grid.hpp"
 #include "contour/halved_topology.hpp"
 #include "contour/leaves.hpp"
 #include "geom/bits.hpp"
 #include "improve/isosurface_view.hpp"
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -79,8 +79,8 @@ FinerGrid finer_grid(const BlockGrid& grid, const Options& options) {
     const BlockGrid& now = finer.grid ? *finer.grid : grid;
     if (!cells_too_large(now, options, finer.halvings))
       break;
-    BlockGrid half = halved(now, options.threads);
-    if (!halving_keeps_topology(now, half, options.threads))
+    std::optional<BlockGrid> half = halved_alike(now, options.threads);
+    if (!half)
       break;
     finer.grid = std::move(half);
     ++finer.halvings;

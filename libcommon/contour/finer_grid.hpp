@@ -16,8 +16,7 @@ struct FinerGrid {
 /// - to more than a million cells where they are to be uniform,
 /// - on grids of many points, where the volume is that of large bodies,
 /// - where a wall cuts the grid, or the box would have too many of the halved spacings,
-/// - where that would change the topology (halved_topology.hpp): the mesh has that of trilinear G (I7), and the values
-///   between are means of log G.
+/// - where rounding would change the topology, which stays that of trilinear G (I7; halved_topology.hpp).
 FinerGrid finer_grid(const BlockGrid& grid, const Options& options);
 
 } // namespace molmesh::contour

@@ -46,8 +46,8 @@ struct Point {
   bool active;
 };
 
-/// q: 0 … 15 on each axis, in half spacings from the window's corner.
-Point point_at(const Window& window, Vec3i q, float iso, float inside_value) {
+/// q: 0 … 15 on each axis, in half spacings from the window's corner. linear: G itself is interpolated.
+Point point_at(const Window& window, Vec3i q, float iso, float inside_value, bool linear) {
   const Vec3i low{q.x >> 1, q.y >> 1, q.z >> 1};
   if (((q.x | q.y | q.z) & 1) == 0)
     return {window.value[Window::at(low)], window.active[Window::at(low)]};
@@ -60,7 +60,7 @@ Point point_at(const Window& window, Vec3i q, float iso, float inside_value) {
       double in_row = 0;
       for (int z = 0; z <= (q.z & 1); ++z) {
         const size_t at = Window::at(low + Vec3i{x, y, z});
-        in_row += window.logarithm[at];
+        in_row += linear ? double(window.value[at]) - iso : window.logarithm[at];
         active = active && window.active[at];
         inside = inside && window.value[at] > iso;
       }
@@ -71,14 +71,14 @@ Point point_at(const Window& window, Vec3i q, float iso, float inside_value) {
   if (!active)
     return {inside ? inside_value : 0, false};
   const int points = (1 + (q.x & 1)) * (1 + (q.y & 1)) * (1 + (q.z & 1));
-  const auto v = static_cast<float>(iso * std::exp(sum / points));
+  const auto v = static_cast<float>(linear ? iso + sum / points : iso * std::exp(sum / points));
   // Nor does rounding to single precision.
   return {sum > 0 ? std::max(v, std::nextafter(iso, std::numeric_limits<float>::max())) : std::min(v, iso), true};
 }
 
 } // namespace
 
-BlockGrid halved(const BlockGrid& grid, int threads) {
+BlockGrid halved(const BlockGrid& grid, int threads, const std::vector<Vec3i>& linear) {
   const BlockIndex index(grid);
   const auto iso = static_cast<float>(grid.info.isovalue),
              inside_value = static_cast<float>(grid.info.inside_value);
@@ -93,7 +93,9 @@ BlockGrid halved(const BlockGrid& grid, int threads) {
       const Vec3i first = 8 * Vec3i{c >> 2, c >> 1 & 1, c & 1};
       out.corner = 2 * corner + first;
       for (int s = 0; s < 512; ++s) {
-        const Point p = point_at(window, first + Vec3i{s >> 6, s >> 3 & 7, s & 7}, iso, inside_value);
+        const Vec3i step{s >> 6, s >> 3 & 7, s & 7};
+        const Point p = point_at(window, first + step, iso, inside_value,
+                                 std::binary_search(linear.begin(), linear.end(), out.corner + step));
         out.value[static_cast<size_t>(s)] = p.value;
         out.active[static_cast<size_t>(s >> 6)] |= uint64_t{p.active} << (s & 63);
       }

@@ -2,6 +2,7 @@
 #include "contour/halved_topology.hpp"
 #include "contour/cube.hpp"
 #include "contour/detail/node_items.hpp"
+#include "contour/halved_grid.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <array>
@@ -59,6 +60,15 @@ void join_face(detail::SmallSets<N>& sets, const Corners& v, int f, Point&& poin
   }
 }
 
+/// Of what is inside on its face f.
+int face_parts(const Corners& v, int f) {
+  const auto at = [&](int i) { return v[static_cast<size_t>(face_corner_of(f, i))]; };
+  if (!(at(0) > 0 || at(1) > 0 || at(2) > 0 || at(3) > 0))
+    return 0;
+  const Diagonal d = face_diagonal(at(0), at(1), at(2), at(3));
+  return d != Diagonal::none && !(v[static_cast<size_t>(diagonal_corners(f, d)[0])] > 0) ? 2 : 1;
+}
+
 /// Whether the cell's sets part its corners `whole` as the halves' do, and these have a corner each, of those that
 /// take part.
 template <class Takes>
@@ -79,7 +89,39 @@ bool same_parts(const detail::SmallSets<8>& whole, const detail::SmallSets<27>& 
   return true;
 }
 
+/// Euler number of what is inside in the cell: its parts, less the tunnels that the outside makes through them.
+int inside_euler(const Corners& v) {
+  const CellTopology t = cell_topology(v.data());
+  const std::array<int, 8> on_boundary = detail::boundary_components(t.mask, t.diagonal),
+                           within = joined_corners(t);
+  int chi = 0;
+  for (int c = 0; c < 8; ++c) {
+    const bool part = within[static_cast<size_t>(c)] == c;
+    chi += v[static_cast<size_t>(c)] > 0 ? part : part - (on_boundary[static_cast<size_t>(c)] == c);
+  }
+  return chi;
+}
+
+/// The same through the halves: of these, less that of what two share, and so on.
+int inside_euler(const Halves& halves) {
+  constexpr int middle = 13, steps[3] = {1, 3, 9};
+  const auto inside = [&](int p) { return halves.value[static_cast<size_t>(p)] > 0; };
+  int chi = -int(inside(middle));
+  for (int o = 0; o < 8; ++o)
+    chi += inside_euler(halves.child(o));
+  for (int a = 0; a < 3; ++a) {
+    for (int side : {-1, 1})
+      chi += inside(middle) || inside(middle + side * steps[a]);
+    for (int o = 0; o < 8; ++o)
+      if (!(o >> a & 1))
+        chi -= face_parts(halves.child(o), 2 * a + 1);
+  }
+  return chi;
+}
+
 bool same_in_cell(const Corners& v, const Halves& halves) {
+  if (inside_euler(v) != inside_euler(halves))
+    return false;
   detail::SmallSets<8> whole;
   detail::SmallSets<27> fine;
   join_cell(whole, v, [](int c) { return c; });
@@ -100,7 +142,7 @@ bool same_on_face(const Corners& v, const Halves& halves, int f) {
   return same_parts(whole, fine, [&](int p) { return p / step % 3 == (f % 2 ? 2 : 0); });
 }
 
-/// A disc through plain cells is one whatever is interpolated between points.
+/// A disc through plain cells, as octree nodes are merged.
 bool plain(const Corners& v, const Halves& halves) {
   static constexpr detail::OneDisc one_disc;
   if (!one_disc(inside_of(v)))
@@ -108,44 +150,68 @@ bool plain(const Corners& v, const Halves& halves) {
   for (int o = 0; o < 8; ++o)
     if (const uint32_t inside = inside_of(halves.child(o)); inside != 0 && inside != 0xFF && !one_disc(inside))
       return false;
-  return true;
+  uint32_t inside = 0;
+  for (size_t p = 0; p < halves.value.size(); ++p)
+    inside |= uint32_t{halves.value[p] > 0} << p;
+  return detail::middles_agree(inside);
+}
+
+bool same_topology(const Corners& v, const Halves& halves) {
+  if (plain(v, halves))
+    return true;
+  for (int f = 0; f < 6; ++f)
+    if (!same_on_face(v, halves, f))
+      return false;
+  return same_in_cell(v, halves);
 }
 
 } // namespace
 
-bool halving_keeps_topology(const BlockGrid& grid, const BlockGrid& half, int threads) {
+std::vector<Vec3i> cells_of_other_topology(const BlockGrid& grid, const BlockGrid& half, int threads) {
   const BlockIndex index(grid), half_index(half);
   const auto iso = static_cast<float>(grid.info.isovalue);
-  const auto keeps = [&](Vec3i p) {
+  const auto is_other = [&](Vec3i p) {
     Corners v;
     for (int c = 0; c < 8; ++c)
       v[static_cast<size_t>(c)] = over_isovalue(value_at(grid, index, p + corner_step(c)), iso);
     if (const uint32_t inside = inside_of(v); inside == 0 || inside == 0xFF)
-      return true;
+      return false;
     Halves halves;
     for (int q = 0; q < 27; ++q)
       halves.value[static_cast<size_t>(q)] =
           over_isovalue(value_at(half, half_index, 2 * p + Vec3i{q % 3, q / 3 % 3, q / 9}), iso);
-    if (plain(v, halves))
-      return true;
-    for (int f = 0; f < 6; ++f)
-      if (!same_on_face(v, halves, f))
-        return false;
-    return same_in_cell(v, halves);
+    return !same_topology(v, halves);
   };
   // The lowest corner of a cell that the surface crosses is active (I2): its block is one of these.
-  return par::reduce(
-      static_cast<int64_t>(grid.corner.size()), threads, true,
-      [&](int64_t b) {
-        Vec3i step;
-        for (step.x = 0; step.x < 8; ++step.x)
-          for (step.y = 0; step.y < 8; ++step.y)
-            for (step.z = 0; step.z < 8; ++step.z)
-              if (!keeps(grid.corner[static_cast<size_t>(b)] + step))
-                return false;
-        return true;
-      },
-      [](bool a, bool b) { return a && b; }, 4);
+  std::vector<std::vector<Vec3i>> of_block(grid.corner.size());
+  par::for_n(static_cast<int64_t>(of_block.size()), threads, 4, [&](int64_t b) {
+    for (int s = 0; s < 512; ++s)
+      if (const Vec3i p = grid.corner[static_cast<size_t>(b)] + Vec3i{s >> 6, s >> 3 & 7, s & 7}; is_other(p))
+        of_block[static_cast<size_t>(b)].push_back(p);
+  });
+  std::vector<Vec3i> all;
+  for (const std::vector<Vec3i>& cells : of_block)
+    all.insert(all.end(), cells.begin(), cells.end());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::optional<BlockGrid> halved_alike(const BlockGrid& grid, int threads) {
+  std::vector<Vec3i> linear;
+  while (true) {
+    BlockGrid half = halved(grid, threads, linear);
+    const std::vector<Vec3i> others = cells_of_other_topology(grid, half, threads);
+    if (others.empty())
+      return half;
+    const size_t before = linear.size();
+    for (const Vec3i& p : others)
+      for (int q = 0; q < 27; ++q)
+        linear.push_back(2 * p + Vec3i{q % 3, q / 3 % 3, q / 9});
+    std::sort(linear.begin(), linear.end());
+    linear.erase(std::unique(linear.begin(), linear.end()), linear.end());
+    if (linear.size() == before)
+      return {};
+  }
 }
 
 } // namespace molmesh::contour

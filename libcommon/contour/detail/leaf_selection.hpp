@@ -61,7 +61,7 @@ private:
   };
   // Chords may cut off this share of the volume beyond what tetsmooth gives back by putting points outside the
   // isosurface; below this tolerance all surface cells that are not plane stay fine.
-  static constexpr double most_cut = 0.007, least_tolerance = 0.02;
+  static constexpr double most_cut = 0.0055, least_tolerance = 0.02;
 
   Nodes& refined(int level) { return refined_[static_cast<size_t>(level)]; }
   NodeSet set(int level) { return {refined(level).data(), refined(level).n}; }

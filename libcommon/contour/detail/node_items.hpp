@@ -141,9 +141,21 @@ struct Sheet {
   HD bool has(const SurfaceSample& s) const { return dot(s.normal, normal) >= 0.3; }
 };
 
+/// Of inside_points: whether the signs at the middles of the edges, faces and volume each agree with a corner of
+/// that edge, face or volume, so that eight plain cells may be one (Ju et al. 2002, the paper's reference 22).
+HD inline bool middles_agree(uint32_t in) {
+  constexpr uint32_t corner_bits = 0x5140145, half_way[3] = {0x2492492, 0xE07038, 0x3FE00};
+  // Whether any, and whether all of the corners of the edge, face or cell that a point is the middle of are inside.
+  uint32_t any = in & corner_bits, all = any;
+  for (int a = 0, step = 1; a < 3; ++a, step *= 3) {
+    any |= (any << step | any >> step) & half_way[a];
+    all |= (all << step & all >> step) & half_way[a];
+  }
+  return (in & ~any) == 0 && (all & ~in) == 0;
+}
+
 /// Sets the flags of node i: whole when its children are, its surface is nearly plane, and merging keeps the
-/// topology: the signs at the middles of its edges, faces and volume each agree with a corner of that edge, face or
-/// volume (Ju et al. 2002, the paper's reference 22).
+/// topology.
 struct MergeNodes {
   /// Of the surface's middle from a face with smaller cells behind, in the node's edge length: seen from nearer,
   /// those cells' faces are aslant, and their elements flat, or the dual vertex that keeps off them is off the
@@ -183,18 +195,8 @@ private:
     return true;
   }
   HD bool keeps_topology(int64_t i) const {
-    constexpr uint32_t corner_bits = 0x5140145, half_way[3] = {0x2492492, 0xE07038, 0x3FE00};
-    if (!one_disc(nodes.corners[i]))
-      return false;
-    const uint32_t in = inside_points(children, nodes.child_begin(i), nodes.child_begin(i + 1));
-    // Whether any, and whether all of the corners of the edge, face or cell that a point is the middle of are
-    // inside.
-    uint32_t any = in & corner_bits, all = any;
-    for (int a = 0, step = 1; a < 3; ++a, step *= 3) {
-      any |= (any << step | any >> step) & half_way[a];
-      all |= (all << step & all >> step) & half_way[a];
-    }
-    return (in & ~any) == 0 && (all & ~in) == 0;
+    return one_disc(nodes.corners[i]) &&
+           middles_agree(inside_points(children, nodes.child_begin(i), nodes.child_begin(i + 1)));
   }
   HD static uint8_t near_faces(Vec3d middle, Vec3i corner, int32_t extent) {
     const double margin = extent == 2 ? least_margin_of_two : least_margin;

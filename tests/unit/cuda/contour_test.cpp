@@ -184,7 +184,7 @@ TEST_CASE(
 TEST_CASE("device stages: the host's where surface triangles far from the isosurface come nearer") {
   Options options;
   options.adapt = 0.41;
-  for (const unsigned seed : {1u, 4u, 6u}) {
+  for (const unsigned seed : {3u, 4u, 6u}) {
     const Seen seen = compare(test::creased_grid(seed), options, 2);
     CHECK(seen.differ == 0);
     const auto& kernels = seen.report.kernels;
