@@ -19,7 +19,11 @@ constexpr double room_to_halve = (1 << 18) - 8; ///< spacings of a box: a lattic
 /// Of a uniform lattice after halving, some 12 million elements: it is filled with the smaller cells.
 constexpr double most_uniform_cells = 1 << 20;
 /// With the default band some 16,000 surface cells; a ball of as many, 29 spacings in radius, loses 0.05 %.
-constexpr int64_t most_active_points = 1 << 15;
+constexpr int64_t few_active_points = 1 << 15;
+/// Of more than these only grids of small bodies are looked at: a ball of 5 spacings has half a point inside for
+/// each active one, a protein at 0.5 Å one and a half. Halved they are eight times as large at most.
+constexpr int64_t most_active_points = 1 << 20;
+constexpr double inside_of_small = 0.75;
 /// A ball with as few surface cells loses several per cent, and their areas are not what cells have on average.
 constexpr int64_t too_few_cells = 80;
 /// Share of the volume, a fifth below I8's, and how many times as much as chords between samples those of
@@ -31,6 +35,18 @@ int64_t active_points(const BlockGrid& grid) {
   for (const uint64_t word : grid.active)
     n += count_bits(word);
   return n;
+}
+
+int64_t inside_points(const BlockGrid& grid) {
+  const auto iso = static_cast<float>(grid.info.isovalue);
+  return std::count_if(grid.value.begin(), grid.value.end(), [&](float v) { return v > iso; }) +
+         512 * static_cast<int64_t>(grid.inside.size());
+}
+
+bool may_lose_too_much(const BlockGrid& grid) {
+  const int64_t active = active_points(grid);
+  return active <= few_active_points ||
+         (active <= most_active_points && double(inside_points(grid)) < inside_of_small * double(active));
 }
 
 /// In the grid's spacings.
@@ -73,7 +89,7 @@ bool cells_too_large(const BlockGrid& grid, const Options& options, int halvings
 
 FinerGrid finer_grid(const BlockGrid& grid, const Options& options) {
   FinerGrid finer;
-  if (active_points(grid) > most_active_points)
+  if (!may_lose_too_much(grid))
     return finer;
   while (finer.halvings < most_halvings) {
     const BlockGrid& now = finer.grid ? *finer.grid : grid;

@@ -150,7 +150,8 @@ TEST_CASE("a uniform lattice of many cells is not filled with smaller ones") {
   }
 }
 
-TEST_CASE("the grid's own cells: of large bodies, where a wall cuts the grid, and on large grids") {
+TEST_CASE(
+    "the grid's own cells: of large bodies, where a wall cuts the grid, and on large grids of no small ones") {
   Options options;
   CHECK(!contour::finer_grid(atom_grid(5, 0.5), options).grid);
   const BlockGrid small = atom_grid(1, 0.5);
@@ -159,13 +160,16 @@ TEST_CASE("the grid's own cells: of large bodies, where a wall cuts the grid, an
   options.box.lower = {0.1, -3, -3};
   options.box.upper = {3, 3, 3};
   CHECK(!contour::finer_grid(small, options).grid);
-  const BlockGrid large = cube_grid(16, 0.5, [](Vec3d x) { // 7³ atoms
-    Vec3d from = x;
-    for (int a = 0; a < 3; ++a)
-      from[a] -= 4 * std::clamp(std::round(x[a] / 4), -3., 3.);
-    return std::exp(1 - norm2(from));
-  });
-  CHECK(!contour::finer_grid(large, {}).grid);
+  const auto atoms = [](double radius) { // 7³
+    return cube_grid(18, 0.5, [=](Vec3d x) {
+      Vec3d from = x;
+      for (int a = 0; a < 3; ++a)
+        from[a] -= 4 * std::clamp(std::round(x[a] / 4), -3., 3.);
+      return std::exp(radius * radius - norm2(from));
+    });
+  };
+  CHECK(contour::finer_grid(atoms(1), {}).grid);
+  CHECK(!contour::finer_grid(atoms(3.6), {}).grid); // one body
 }
 
 TEST_CASE(
