@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <utility>
+#include <cstdint>
 
 namespace molmesh::contour {
 namespace {
@@ -60,7 +60,7 @@ void join_face(detail::SmallSets<N>& sets, const Corners& v, int f, Point&& poin
   }
 }
 
-/// Of what is inside on its face f.
+/// Parts of what is inside on its face f.
 int face_parts(const Corners& v, int f) {
   const auto at = [&](int i) { return v[static_cast<size_t>(face_corner_of(f, i))]; };
   if (!(at(0) > 0 || at(1) > 0 || at(2) > 0 || at(3) > 0))
@@ -69,8 +69,8 @@ int face_parts(const Corners& v, int f) {
   return d != Diagonal::none && !(v[static_cast<size_t>(diagonal_corners(f, d)[0])] > 0) ? 2 : 1;
 }
 
-/// Whether the cell's sets part its corners `whole` as the halves' do, and these have a corner each, of those that
-/// take part.
+/// Of the points that take part: whether the cell's sets and the halves' tell the same corners from each other, and
+/// each set of the halves has a corner of the cell.
 template <class Takes>
 bool same_parts(const detail::SmallSets<8>& whole, const detail::SmallSets<27>& halves, Takes&& takes) {
   std::array<bool, 27> has_corner{};

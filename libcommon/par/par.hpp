@@ -88,17 +88,20 @@ inline void prepare_pages(void* begin, size_t bytes, int threads) {
 template <class T, class F, class C>
 T reduce(int64_t n, int threads, T init, F&& f, C&& combine, int64_t grain = 4096) {
   const int64_t chunks = n > 0 ? (n + grain - 1) / grain : 0;
-  std::vector<T> part(static_cast<size_t>(chunks), init);
+  struct Part { // of std::vector<bool> several share a byte
+    T sum;
+  };
+  std::vector<Part> part(static_cast<size_t>(chunks), Part{init});
   for_n(chunks, threads, 1, [&](int64_t c) {
     T sum = init;
     const int64_t end = std::min(n, (c + 1) * grain);
     for (int64_t i = c * grain; i < end; ++i)
       sum = combine(sum, f(i));
-    part[static_cast<size_t>(c)] = sum;
+    part[static_cast<size_t>(c)].sum = sum;
   });
   T sum = init;
-  for (const T& p : part)
-    sum = combine(sum, p);
+  for (const Part& p : part)
+    sum = combine(sum, p.sum);
   return sum;
 }
 

@@ -27,6 +27,13 @@ TEST_CASE("reduce gives the same bits at any number of threads") {
     CHECK(sum(threads) == one);
 }
 
+TEST_CASE("reduce of bool loses nothing of chunks side by side") {
+  constexpr int64_t n = 999'999; // odd: so is the number of chunks that say so
+  for (int threads : {1, 2, 4, 8})
+    CHECK(par::reduce(
+        n, threads, false, [](int64_t) { return true; }, [](bool a, bool b) { return a != b; }, 1));
+}
+
 TEST_CASE("sort agrees with std::sort") {
   std::mt19937_64 random(7);
   for (size_t n : {0u, 1u, 1000u, 200'001u}) {
