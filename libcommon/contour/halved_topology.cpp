@@ -18,6 +18,7 @@ using Corners = std::array<double, 8>; ///< values minus the isovalue, never 0
 struct Halves {
   std::array<double, 27> value; ///< as Corners
 
+  static Vec3i step(int point) { return {point % 3, point / 3 % 3, point / 9}; } ///< from the lowest corner
   /// Of corner c of child `octant`; of the cell's own corner c: at(c, c).
   static int at(int octant, int c) {
     const Vec3i p = corner_step(octant) + corner_step(c);
@@ -138,8 +139,7 @@ bool same_on_face(const Corners& v, const Halves& halves, int f) {
     const int o = face_corner_of(f, i);
     join_face(fine, halves.child(o), f, [&](int c) { return Halves::at(o, c); });
   }
-  const int step = f / 2 == 0 ? 1 : f / 2 == 1 ? 3 : 9;
-  return same_parts(whole, fine, [&](int p) { return p / step % 3 == (f % 2 ? 2 : 0); });
+  return same_parts(whole, fine, [&](int p) { return Halves::step(p)[f / 2] == (f % 2 ? 2 : 0); });
 }
 
 /// A disc through plain cells, as octree nodes are merged.
@@ -179,7 +179,7 @@ std::vector<Vec3i> cells_of_other_topology(const BlockGrid& grid, const BlockGri
     Halves halves;
     for (int q = 0; q < 27; ++q)
       halves.value[static_cast<size_t>(q)] =
-          over_isovalue(value_at(half, half_index, 2 * p + Vec3i{q % 3, q / 3 % 3, q / 9}), iso);
+          over_isovalue(value_at(half, half_index, 2 * p + Halves::step(q)), iso);
     return !same_topology(v, halves);
   };
   // The lowest corner of a cell that the surface crosses is active (I2): its block is one of these.
@@ -206,7 +206,7 @@ std::optional<BlockGrid> halved_alike(const BlockGrid& grid, int threads) {
     const size_t before = linear.size();
     for (const Vec3i& p : others)
       for (int q = 0; q < 27; ++q)
-        linear.push_back(2 * p + Vec3i{q % 3, q / 3 % 3, q / 9});
+        linear.push_back(2 * p + Halves::step(q));
     std::sort(linear.begin(), linear.end());
     linear.erase(std::unique(linear.begin(), linear.end()), linear.end());
     if (linear.size() == before)

@@ -106,6 +106,14 @@ TEST_CASE("finer grids keep components and Euler number") {
     uniform.adapt = 0;
     const Validity v = checked(mesh_of(grid, options)), of_grid = checked(mesh_of(grid, uniform));
     CHECK(v.surface.euler == of_grid.surface.euler);
+    uniform.box.kind = contour::BoxRequest::factor; // of too many cells for smaller ones
+    uniform.box.scale = 12;
+    uniform.meshed = Options::both;
+    contour::Summary own;
+    const Validity of_own_cells = checked(mesh_of(grid, uniform, own));
+    CHECK(own.halvings == 0);
+    CHECK(v.surface.euler == of_own_cells.surface.euler);
+    CHECK(v.surface.components == of_own_cells.surface.components);
     if (trial % 4 != 0) { // nothing at the isovalue, where rounding decides
       CHECK(trilinear_euler(*finer.grid) == trilinear_euler(grid));
       CHECK(v.surface.euler == trilinear_euler(grid));
