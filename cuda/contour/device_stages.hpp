@@ -49,12 +49,12 @@ public:
   void select_leaves(const contour::RefineOptions& options) override {
     selection_.select_leaves(*lattice_, options);
   }
-  void make_dual(const std::function<void(const std::string&)>& on_phase) override {
+  void make_dual(contour::Side unasked, const std::function<void(const std::string&)>& on_phase) override {
     // A leaf has about twelve elements; they are there twice when runs are put together.
     const int64_t leaves = selection_.leaves.key.n, tets = 12 * leaves, tris = 2 * selection_.surface.cells.n;
     b_.plan(complex_bytes() + tets * tet_bytes + tris * 28 +
             std::max(tets * tet_bytes, most_beside(tets, 2 * leaves, tris)));
-    make_complex(on_phase);
+    make_complex(unasked, on_phase);
     SinkOnDevice<Backend> sink(b_);
     const auto made = maker_(complex_->view, sink);
     elements_ = sink.elements(complex_->view);
@@ -116,7 +116,7 @@ private:
     return std::max(relaxation, assembly);
   }
 
-  void make_complex(const std::function<void(const std::string&)>& on_phase) {
+  void make_complex(contour::Side unasked, const std::function<void(const std::string&)>& on_phase) {
     on_phase("dual vertices");
     const contour::LatticeView& lattice = selection_.lattice->view;
     contour::OctreeView tree;
@@ -131,6 +131,7 @@ private:
     slot_ = contour::detail::index_leaves(b_, leaves.block.n, tree);
     const auto& surface = selection_.surface;
     complex_.emplace(b_, lattice, tree, surface.cells.data(), surface.samples.data(), surface.cells.n);
+    complex_->view.unasked = unasked;
     if (!lattice_->cut_allowed() && complex_->meets_wall())
       contour::refuse_surface_at_wall();
     on_phase("elements");

@@ -22,7 +22,10 @@ public:
       : r_(r), team_(team), vertex_(r.vertex[c]), n_(static_cast<int32_t>(r.first[c + 1] - r.first[c])),
         element_(r.element + r.first[c]), spoke_(spoke + r.first[c]), quality_(quality + r.first[c]), side_(side),
         origin_(r.e.position[vertex_]) {
-    const double length = norm(corner(0, 1) - corner(0, 2));
+    int32_t first = 0;
+    while (first + 1 < n_ && !is_asked(first))
+      ++first;
+    const double length = norm(corner(first, 1) - corner(first, 2));
     inverse_ = 1 / (length < 1e-300 ? 1e-300 : length);
     for (int32_t k = team_.rank(); k < n_; k += Team::size)
       spoke_[k] = improve::make_spoke(local(corner(k, 1)), local(corner(k, 2)), local(corner(k, 3)));
@@ -72,7 +75,8 @@ public:
       for (size_t i = 0; i < 4; ++i)
         p[i] = t[i] == vertex_ ? x : r_.e.position[t[i]];
       const float q = improve::tet_quality(p[0], p[1], p[2], p[3], r_.shape);
-      quality_[k] = q <= worst || orient3d(p[0], p[1], p[2], p[3]) <= 0 ? refused : q;
+      const bool is_refused = (is_asked(k) && q <= worst) || orient3d(p[0], p[1], p[2], p[3]) <= 0;
+      quality_[k] = is_refused ? refused : is_asked(k) ? q : contour::detail::unasked_quality;
     }
     team_.sync();
     bool allowed = true;
@@ -90,6 +94,7 @@ public:
   }
 
 private:
+  HD bool is_asked(int32_t k) const { return r_.quality[element_[k]] != contour::detail::unasked_quality; }
   /// Of element k, the vertex in front.
   HD Vec3d corner(int32_t k, int i) const {
     const Tet& t = r_.e.tet[element_[k]];
@@ -116,7 +121,7 @@ private:
   HD void evaluate_all(Vec3d x) {
     const Vec3f y = local(x);
     for (int32_t k = team_.rank(); k < n_; k += Team::size)
-      quality_[k] = evaluate(k, y);
+      quality_[k] = is_asked(k) ? evaluate(k, y) : contour::detail::unasked_quality;
     team_.sync();
   }
 

@@ -24,8 +24,7 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   refine_options.inside = options.meshed != Options::exterior;
   refine_options.outside = with_outside;
   stages.select_leaves(refine_options);
-  // Elements of both sides, whichever is asked for: the surface is to move.
-  stages.make_dual(on_phase);
+  stages.make_dual(options.unasked_side(), on_phase);
   on_phase("relaxation");
   stages.relax();
   on_phase("regions");

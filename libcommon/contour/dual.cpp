@@ -18,6 +18,7 @@ Dual make_dual(const DualInput& in, const std::function<void(const std::string&)
   using Passes = detail::ComplexPasses<par::Launcher, HostMemory>;
   Passes passes(launcher, in.lattice.view(), in.tree.view(), in.surface.cells.data(), in.surface.samples.data(),
                 static_cast<int64_t>(in.surface.cells.size()));
+  passes.view.unasked = in.unasked;
   if (!in.lattice.cut_allowed() && passes.meets_wall())
     refuse_surface_at_wall();
   on_phase("elements");

@@ -1,4 +1,4 @@
-// dual.hpp — from the octree's leaves to the elements of both sides: complex, grid points that go back, elements.
+// dual.hpp — from the octree's leaves to the elements: complex, grid points that go back, elements.
 #pragma once
 #include "contour/complex.hpp"
 #include "contour/elements.hpp"
@@ -15,6 +15,7 @@ struct DualInput {
   const Lattice& lattice;
   const Octree& tree;
   const Surface& surface;
+  Side unasked; ///< as ComplexView has it
   int threads;
 };
 struct Dual {

@@ -41,7 +41,8 @@ public:
         if (t[i] == vertex_)
           moving = i;
       }
-      spokes_.add(p, static_cast<int>(moving));
+      if (is_asked(k))
+        spokes_.add(p, static_cast<int>(moving));
       moving_[k] = moving;
     }
     length_ /= 3. * double(elements_);
@@ -56,13 +57,13 @@ public:
       float q[8];
       improve::qualities(eights_[g], q, r_->shape);
       for (size_t k = 8 * g; k < elements_ && k < 8 * g + 8; ++k) {
-        if (q[k % 8] <= worst)
+        if (is_asked(k) && q[k % 8] <= worst)
           return false;
         const improve::EightElements& e = eights_[g];
         if (q[k % 8] < improve::surely_positive &&
             orient3d(e.corner(k % 8, 0), e.corner(k % 8, 1), e.corner(k % 8, 2), e.corner(k % 8, 3)) <= 0)
           return false;
-        quality_[k] = q[k % 8];
+        quality_[k] = is_asked(k) ? q[k % 8] : detail::unasked_quality;
       }
     }
     r_->e.position[vertex_] = x;
@@ -72,6 +73,7 @@ public:
   }
 
 private:
+  bool is_asked(size_t k) const { return r_->quality[element_[k]] != detail::unasked_quality; }
   const detail::RelaxView* r_ = nullptr;
   const int32_t* element_ = nullptr;
   size_t elements_ = 0;

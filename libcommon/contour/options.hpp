@@ -1,6 +1,7 @@
 // options.hpp — what contour() is asked for, and what it tells besides the mesh.
 #pragma once
 #include "contour/lattice.hpp"
+#include "contour/split_cell.hpp"
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -23,6 +24,13 @@ struct Options {
   bool fill_cavities = false;
   double drop_below = 0; ///< Å³, 0: nothing
   int threads = 1;
+
+  /// The side of the surface that the mesh has no element of, whatever parts there are; crossed: there is none.
+  Side unasked_side() const {
+    return meshed == interior && !fill_cavities    ? Side::outside
+           : meshed == exterior && drop_below == 0 ? Side::inside
+                                                   : Side::crossed;
+  }
 };
 
 struct Summary {

@@ -25,11 +25,12 @@ struct JudgeChunk {
     std::array<int64_t, size_t(chunk)> others;
     size_t n = 0;
     for (int64_t t = c * chunk, end = std::min(e.tets, t + chunk); t < end; ++t) { // no branches: no telling
-      all.quality[t] = 1;
+      const bool unasked = all.is_unasked(e.tet[t]);
+      all.quality[t] = unasked ? detail::unasked_quality : 1;
       others[n] = t;
       for (const int32_t v : e.tet[t])
         __builtin_prefetch(&e.position[v]);
-      n += !all.of_lattice(e.tet[t]);
+      n += !(unasked | all.of_lattice(e.tet[t]));
     }
     improve::judge_each(
         n, [&](size_t k, size_t i) { return e.position[e.tet[others[k]][i]]; },

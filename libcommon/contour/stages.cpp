@@ -17,8 +17,8 @@ void HostStages::select_leaves(const RefineOptions& options) {
   tree_.emplace(lattice_->cells, contour::select_leaves(*lattice_, surface_, options, threads_), threads_);
 }
 
-void HostStages::make_dual(const std::function<void(const std::string&)>& on_phase) {
-  dual_ = contour::make_dual(dual_input(), on_phase);
+void HostStages::make_dual(Side unasked, const std::function<void(const std::string&)>& on_phase) {
+  dual_ = contour::make_dual({*lattice_, *tree_, surface_, unasked, threads_}, on_phase);
   // Nothing asks for these any more: relaxation's arrays take their memory.
   surface_.samples = LargeArray<SurfaceSample>();
   dual_.complex.position = LargeArray<Vec3d>();

@@ -20,8 +20,8 @@ public:
   /// The lattice and its grid stay the caller's until let_go().
   virtual void find_surface(const Lattice& lattice) = 0;
   virtual void select_leaves(const RefineOptions& options) = 0;
-  /// Complex and elements; on_phase as in contour().
-  virtual void make_dual(const std::function<void(const std::string&)>& on_phase) = 0;
+  /// Complex and elements; unasked: Options::unasked_side; on_phase as in contour().
+  virtual void make_dual(Side unasked, const std::function<void(const std::string&)>& on_phase) = 0;
   virtual void relax() = 0;
   virtual std::vector<Component> find_regions(const RegionOptions& options) = 0;
   virtual TetMesh assemble(Options::Meshed meshed) = 0;
@@ -37,7 +37,7 @@ public:
 
   void find_surface(const Lattice& lattice) override;
   void select_leaves(const RefineOptions& options) override;
-  void make_dual(const std::function<void(const std::string&)>& on_phase) override;
+  void make_dual(Side unasked, const std::function<void(const std::string&)>& on_phase) override;
   void relax() override;
   std::vector<Component> find_regions(const RegionOptions& options) override;
   TetMesh assemble(Options::Meshed meshed) override;
@@ -49,7 +49,6 @@ public:
   const Components& regions() const { return regions_; }
 
 private:
-  DualInput dual_input() const { return {*lattice_, *tree_, surface_, threads_}; }
   int threads_;
   const Lattice* lattice_ = nullptr;
   Surface surface_;

@@ -77,6 +77,8 @@ private:
     const bool both_crossed = mine == Side::crossed && its == Side::crossed;
     if (Out::checks && mine != Side::crossed && its != Side::crossed)
       return;
+    if (other >= 0 && mine == c_.unasked && its == mine && mine != Side::crossed)
+      return;
     const int corner[4] = {face_corner_of(f, 0), face_corner_of(f, 1), face_corner_of(f, 2), face_corner_of(f, 3)};
     const auto vertex = [&](int k) { return c_.corner_vertex(leaf, k); };
     // Only fine surface cells have ambiguous faces.

@@ -10,19 +10,25 @@
 namespace molmesh::contour::detail {
 
 /// [vertices of the complex] 1: a grid point that has not moved; 2 + level: a dual vertex of no surface cell; 0:
-/// any other.
+/// any other. With the flag `unasked`: a grid point or split cell's centre on the side that nobody asks for.
 struct LatticeClasses {
+  static constexpr uint8_t unasked = 0x80;
   ComplexView c;
   uint8_t* of;
-  HD void operator()(int64_t v) const {
-    const int64_t leaf = v - c.dual0;
+  HD void operator()(int64_t i) const {
+    const auto v = static_cast<int32_t>(i), leaf = c.leaf_of(v);
+    const bool is_unasked = c.unasked == (c.inside(v) ? Side::inside : Side::outside);
+    uint8_t is = 0;
     if (leaf < 0)
-      of[v] = !c.has_moved[v];
-    else
-      of[v] = leaf < c.tree.leaves && c.side[leaf] != Side::crossed ? static_cast<uint8_t>(2 + c.tree.level[leaf])
-                                                                    : uint8_t{0};
+      is = !c.has_moved[v];
+    else if (v == c.dual(leaf) && c.side[leaf] != Side::crossed)
+      is = static_cast<uint8_t>(2 + c.tree.level[leaf]);
+    of[v] = is_unasked && (leaf < 0 || v == c.split[leaf]) ? is | unasked : is;
   }
 };
+
+/// Of an element that only has to stay positive: more than any other's.
+inline constexpr float unasked_quality = 2;
 
 /// The lattice's own elements need no look: an edge of it with the middles of two boxes of one size.
 struct Qualities {
@@ -33,10 +39,13 @@ struct Qualities {
   float* quality;
   HD void operator()(int64_t t) const {
     const Tet& v = e.tet[t];
-    quality[t] = of_lattice(v) ? 1
-                               : improve::tet_quality(e.position[v[0]], e.position[v[1]], e.position[v[2]],
-                                                      e.position[v[3]], shape);
+    quality[t] = is_unasked(v)   ? unasked_quality
+                 : of_lattice(v) ? 1
+                                 : improve::tet_quality(e.position[v[0]], e.position[v[1]], e.position[v[2]],
+                                                        e.position[v[3]], shape);
   }
+  HD bool is_unasked(const Tet& t) const { return class_of(t[0]) & LatticeClasses::unasked; }
+  /// Of one that is asked for.
   HD bool of_lattice(const Tet& t) const {
     const uint8_t dual = class_of(t[2]); // near the surface this one says it
     return dual >= 2 && class_of(t[3]) == dual && class_of(t[0]) == 1 && class_of(t[1]) == 1;

@@ -67,7 +67,8 @@ TEST_CASE("every cell is found in its leaf, however large, and so it is where ot
 TEST_CASE("merged cells' dual vertices keep off faces with smaller cells behind") {
   const BlockGrid grid = crease();
   const Leaves leaves(grid, 0.3);
-  const Dual dual = make_dual({leaves.lattice, leaves.tree, leaves.surface, 1}, [](const std::string&) {});
+  const Dual dual =
+      make_dual({leaves.lattice, leaves.tree, leaves.surface, Side::crossed, 1}, [](const std::string&) {});
   const ComplexView& c = dual.complex.view;
   NearLeaves near(c.tree);
   int looked_at = 0;

@@ -1,16 +1,16 @@
 // relax_test.cpp — bad elements get better, vertices stay on the surface and on walls.
-#include "contour/contour.hpp"
 #include "contour/relax.hpp"
+#include "contour/stages.hpp"
+#include "geom/predicates.hpp"
 #include "geom/tet_measures.hpp"
 #include "unit/contour/sample_grid.hpp"
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
-#include <map>
 #include <set>
 
 using namespace molmesh;
-using contour::Options;
+using contour::Side;
 
 namespace {
 
@@ -107,32 +107,59 @@ TEST_CASE("a vertex on the surface moves along it") {
   CHECK(contour::relax(stays, {}, nullptr, 1) == 0);
 }
 
-TEST_CASE("interior and exterior alone are parts of the mesh of both, point for point") {
+TEST_CASE("of a side that nobody asks for there is what the surface moves in, positive") {
   const auto two = [](Vec3d x) {
     return std::exp(-0.5 * (norm2(x - Vec3d{1.3, 0.2, 0}) - 4)) +
            std::exp(-0.5 * (norm2(x + Vec3d{1.4, 0, 0.3}) - 5));
   };
-  Options options;
-  options.box.kind = contour::BoxRequest::tight; // the same box for all three
-  const auto elements = [&](const BlockGrid& grid, Options::Meshed meshed, int32_t region) {
-    options.meshed = meshed;
-    contour::Summary summary;
-    const TetMesh mesh = contour::contour(grid, options, summary, [](const std::string&) {});
-    std::set<std::array<Vec3d, 4>> found;
-    for (size_t t = 0; t < mesh.tet.size(); ++t) {
-      if (mesh.region[t] != region)
-        continue;
-      std::array<Vec3d, 4> x;
-      for (size_t i = 0; i < 4; ++i)
-        x[i] = mesh.point[static_cast<size_t>(mesh.tet[t][i])];
-      std::sort(x.begin(), x.end());
-      found.insert(x);
-    }
-    return found;
-  };
+  const auto at = [](int32_t i) { return static_cast<size_t>(i); };
   for (const BlockGrid& grid :
        {test::sample_grid({-14, -12, -12}, {29, 25, 25}, 0.5, 2, two), test::creased_grid(6)}) {
-    CHECK(elements(grid, Options::interior, molecule) == elements(grid, Options::both, molecule));
-    CHECK(elements(grid, Options::exterior, outside) == elements(grid, Options::both, outside));
+    std::array<size_t, 2> of_both{}; // elements on each Side
+    for (const Side unasked : {Side::crossed, Side::outside, Side::inside}) {
+      contour::BoxRequest box;
+      box.kind = contour::BoxRequest::tight;
+      const contour::Lattice lattice(grid, box, true, 1);
+      contour::HostStages stages(1);
+      stages.find_surface(lattice);
+      stages.select_leaves({contour::default_adapt(grid.frame.spacing), true, true});
+      stages.make_dual(unasked, [](const std::string&) {});
+      stages.relax();
+      const contour::Elements& e = stages.dual().elements;
+      const contour::ComplexView& c = stages.dual().complex.view;
+      std::set<int32_t> near; // on the surface or a wall
+      for (const Tri& t : e.tri)
+        near.insert(t.begin(), t.end());
+      const auto is_near = [&](int32_t v) { // or a surface cell's, or a face's point
+        const int32_t leaf = v < c.vertices() ? c.leaf_of(v) : -1;
+        return v >= c.vertices() || near.count(v) > 0 || (leaf >= 0 && c.side[leaf] == Side::crossed);
+      };
+      std::array<size_t, 2> elements{};
+      size_t turned = 0, far = 0;
+      double least = 180, greatest = 0;
+      for (const Tet& t : e.tet) {
+        const auto x = [&](size_t i) { return e.position[at(t[i])]; };
+        turned += orient3d(x(0), x(1), x(2), x(3)) <= 0;
+        const Side side = c.inside(t[0]) ? Side::inside : Side::outside;
+        ++elements[static_cast<size_t>(side)];
+        if (side == unasked) {
+          far += std::none_of(t.begin(), t.end(), is_near);
+          continue;
+        }
+        const Dihedrals d = dihedrals(x(0), x(1), x(2), x(3));
+        least = std::min(least, *std::min_element(d.degree, d.degree + 6));
+        greatest = std::max(greatest, *std::max_element(d.degree, d.degree + 6));
+      }
+      CHECK(turned == 0);
+      CHECK(far == 0);
+      CHECK(least > 13);
+      CHECK(greatest < 160);
+      if (unasked == Side::crossed)
+        of_both = elements;
+      for (const Side side : {Side::outside, Side::inside}) {
+        const auto s = static_cast<size_t>(side);
+        CHECK((side == unasked ? elements[s] < of_both[s] : elements[s] == of_both[s]));
+      }
+    }
   }
 }

@@ -41,9 +41,9 @@ public:
     host_.select_leaves(options);
     device_.select_leaves(options);
   }
-  void make_dual(const std::function<void(const std::string&)>& on_phase) override {
-    host_.make_dual(on_phase);
-    device_.make_dual(on_phase);
+  void make_dual(contour::Side unasked, const std::function<void(const std::string&)>& on_phase) override {
+    host_.make_dual(unasked, on_phase);
+    device_.make_dual(unasked, on_phase);
     compare_elements();
   }
   void relax() override {
