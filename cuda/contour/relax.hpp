@@ -22,14 +22,23 @@ public:
       : r_(r), team_(team), vertex_(r.vertex[c]), n_(static_cast<int32_t>(r.first[c + 1] - r.first[c])),
         element_(r.element + r.first[c]), spoke_(spoke + r.first[c]), quality_(quality + r.first[c]), side_(side),
         origin_(r.e.position[vertex_]) {
-    int32_t first = 0;
-    while (first + 1 < n_ && !is_asked(first))
-      ++first;
-    const double length = norm(corner(first, 1) - corner(first, 2));
-    inverse_ = 1 / (length < 1e-300 ? 1e-300 : length);
-    for (int32_t k = team_.rank(); k < n_; k += Team::size)
-      spoke_[k] = improve::make_spoke(local(corner(k, 1)), local(corner(k, 2)), local(corner(k, 3)));
+    for (int32_t k = n_ - 1; k >= 0; --k)
+      first_[is_asked(k)] = k;
+    for (const int asked : {0, 1})
+      if (const int32_t k = first_[asked]; k >= 0) {
+        const double length = norm(corner(k, 1) - corner(k, 2));
+        inverse_[asked] = 1 / (length < 1e-300 ? 1e-300 : length);
+      }
+    for (int32_t k = team_.rank(); k < n_; k += Team::size) {
+      const bool asked = is_asked(k);
+      spoke_[k] =
+          improve::make_spoke(local(corner(k, 1), asked), local(corner(k, 2), asked), local(corner(k, 3), asked));
+    }
     team_.sync();
+    if (first_[0] >= 0) {
+      const float least = worst_unasked(origin_);
+      floor_ = least < contour::detail::least_unasked ? least : contour::detail::least_unasked;
+    }
   }
 
   /// Mean of the star's edges at the vertex.
@@ -42,20 +51,21 @@ public:
   }
 
   HD TeamStar& spokes() { return *this; }
+  HD bool keeps_unasked(Vec3d y) { return first_[0] < 0 || worst_unasked(y) > floor_; }
 
   HD float worst(Vec3d x, float) {
-    evaluate_all(x);
+    evaluate_all(x, true);
     const float w = quality_[worst_element()];
     team_.sync();
     return w;
   }
 
   HD Vec3d ascent(Vec3d x, double step) {
-    evaluate_all(x);
+    evaluate_all(x, true);
     const int32_t worst = worst_element();
-    const auto d = static_cast<float>(step * inverse_);
+    const auto d = static_cast<float>(step * inverse_[1]);
     for (int s = team_.rank(); s < 6; s += Team::size) {
-      Vec3f y = local(x);
+      Vec3f y = local(x, true);
       y[s / 2] = s % 2 ? y[s / 2] - d : y[s / 2] + d;
       side_[s] = evaluate(worst, y);
     }
@@ -101,14 +111,20 @@ private:
     const int moving = t[0] == vertex_ ? 0 : t[1] == vertex_ ? 1 : t[2] == vertex_ ? 2 : 3;
     return r_.e.position[t[static_cast<size_t>(improve::spoke_corner(moving, i))]];
   }
-  HD Vec3f local(Vec3d x) const {
-    const Vec3d u = (x - origin_) * inverse_;
+  HD Vec3f local(Vec3d x, bool asked) const {
+    const Vec3d u = (x - origin_) * inverse_[asked];
     return {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z)};
   }
   HD float evaluate(int32_t k, const Vec3f& y) const {
     float q;
     improve::spoke_quality(spoke_[k], y.x, y.y, y.z, q, static_cast<float>(r_.shape));
     return q;
+  }
+  HD float worst_unasked(Vec3d x) {
+    evaluate_all(x, false);
+    const float w = quality_[worst_element()];
+    team_.sync();
+    return w;
   }
   /// Of equals the first.
   HD int32_t worst_element() const {
@@ -118,10 +134,11 @@ private:
         worst = k;
     return worst;
   }
-  HD void evaluate_all(Vec3d x) {
-    const Vec3f y = local(x);
+  /// Of the elements that are asked for, or of the others; those that do not count are better than any.
+  HD void evaluate_all(Vec3d x, bool asked) {
+    const Vec3f y = local(x, asked);
     for (int32_t k = team_.rank(); k < n_; k += Team::size)
-      quality_[k] = is_asked(k) ? evaluate(k, y) : contour::detail::unasked_quality;
+      quality_[k] = is_asked(k) == asked ? evaluate(k, y) : contour::detail::unasked_quality;
     team_.sync();
   }
 
@@ -133,7 +150,9 @@ private:
   float* quality_;               ///< [n]
   float* side_;
   Vec3d origin_;
-  double inverse_ = 0; ///< of the unit of length
+  int32_t first_[2] = {-1, -1}; ///< element that nobody asks for, or that is asked for
+  double inverse_[2] = {0, 0};  ///< of the unit of length, of either
+  float floor_ = 0;             ///< of those that nobody asks for
 };
 
 /// Those who have the turn.

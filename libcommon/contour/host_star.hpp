@@ -5,6 +5,7 @@
 #include "geom/predicates.hpp"
 #include "improve/quality_kernel.hpp"
 #include "improve/spokes.hpp"
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -22,6 +23,7 @@ public:
     moving_.resize(elements_);
     const Vec3d x = r.e.position[vertex_];
     spokes_.clear(x, r.shape);
+    unasked_.clear(x, r.shape);
     length_ = 0;
     // In three steps, so that many elements and then corners are on their way from memory at once.
     tet_.resize(elements_);
@@ -41,14 +43,16 @@ public:
         if (t[i] == vertex_)
           moving = i;
       }
-      if (is_asked(k))
-        spokes_.add(p, static_cast<int>(moving));
+      (is_asked(k) ? spokes_ : unasked_).add(p, static_cast<int>(moving));
       moving_[k] = moving;
     }
     length_ /= 3. * double(elements_);
+    if (unasked_.size() > 0)
+      floor_ = std::min(detail::least_unasked, unasked_.worst(x, -2));
   }
   double length() const { return length_; }
   improve::Spokes& spokes() { return spokes_; }
+  bool keeps_unasked(Vec3d y) { return unasked_.size() == 0 || unasked_.worst(y, floor_) > floor_; }
   bool take(Vec3d x, float worst) {
     quality_.resize(8 * eights_.size());
     for (size_t k = 0; k < elements_; ++k)
@@ -79,7 +83,8 @@ private:
   size_t elements_ = 0;
   int32_t vertex_ = 0;
   double length_ = 0;
-  improve::Spokes spokes_;
+  improve::Spokes spokes_, unasked_;
+  float floor_ = 0; ///< of the unasked
   std::vector<Tet> tet_;
   std::vector<improve::EightElements> eights_;
   std::vector<size_t> moving_;

@@ -29,6 +29,8 @@ struct LatticeClasses {
 
 /// Of an element that only has to stay positive: more than any other's.
 inline constexpr float unasked_quality = 2;
+/// So flat such an element may become, 1.8°, in a search: flatter ones would hold a vertex where it is.
+inline constexpr float least_unasked = 1e-3F;
 
 /// The lattice's own elements need no look: an edge of it with the middles of two boxes of one size.
 struct Qualities {
