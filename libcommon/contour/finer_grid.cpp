@@ -4,6 +4,7 @@
 #include "contour/halved_topology.hpp"
 #include "contour/leaves.hpp"
 #include "geom/bits.hpp"
+#include "geom/morton.hpp"
 #include "improve/isosurface_view.hpp"
 #include <algorithm>
 #include <cmath>
@@ -72,16 +73,27 @@ struct Bodies {
   }
 };
 
+bool meets_wall(const Lattice& lattice, const Surface& surface) {
+  const Vec3i last = lattice.cells - Vec3i{1, 1, 1};
+  return std::any_of(surface.cells.begin(), surface.cells.end(), [&](const SurfaceCell& cell) {
+    const Vec3i p = morton_point(cell.key);
+    return p.x == 0 || p.y == 0 || p.z == 0 || p.x == last.x || p.y == last.y || p.z == last.z;
+  });
+}
+
 /// halvings: of the spacing so far.
 bool cells_too_large(const BlockGrid& grid, const Options& options, int halvings) {
   const Lattice lattice(grid, options.box, options.meshed != Options::interior, options.threads);
   const Vec3d extent = (lattice.position(lattice.cells) - lattice.position({0, 0, 0})) / grid.frame.spacing;
-  if (lattice.view().any_cut || std::max({extent.x, extent.y, extent.z}) >= room_to_halve)
+  if (std::max({extent.x, extent.y, extent.z}) >= room_to_halve)
     return false;
   const Vec3d cells = to_double(lattice.cells);
   if (options.adapt == 0 && 8 * cells.x * cells.y * cells.z > most_uniform_cells)
     return false;
-  const Bodies bodies(find_surface(lattice, options.threads), lattice.isovalue);
+  const Surface surface = find_surface(lattice, options.threads);
+  if (lattice.view().any_cut && meets_wall(lattice, surface))
+    return false;
+  const Bodies bodies(surface, lattice.isovalue);
   return bodies.lose_too_much(improve::most_offset * (1 << halvings));
 }
 

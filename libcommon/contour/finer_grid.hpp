@@ -15,7 +15,7 @@ struct FinerGrid {
 /// some 5 h. While they would the spacing is halved (halved_grid.hpp), but never
 /// - to more than a million cells where they are to be uniform,
 /// - on grids of many points, unless small bodies alone have them,
-/// - where a wall cuts the grid, or the box would have too many of the halved spacings,
+/// - where a wall cuts the surface, or the box would have too many of the halved spacings,
 /// - where rounding would change the topology, which stays that of trilinear G (I7; halved_topology.hpp).
 FinerGrid finer_grid(const BlockGrid& grid, const Options& options);
 

@@ -159,7 +159,7 @@ TEST_CASE("a uniform lattice of many cells is not filled with smaller ones") {
 }
 
 TEST_CASE(
-    "the grid's own cells: of large bodies, where a wall cuts the grid, and on large grids of no small ones") {
+    "the grid's own cells: of large bodies, where a wall cuts the surface, and on large grids of no small ones") {
   Options options;
   CHECK(!contour::finer_grid(atom_grid(5, 0.5), options).grid);
   const BlockGrid small = atom_grid(1, 0.5);
@@ -168,6 +168,9 @@ TEST_CASE(
   options.box.lower = {0.1, -3, -3};
   options.box.upper = {3, 3, 3};
   CHECK(!contour::finer_grid(small, options).grid);
+  options.box.lower = {-2.4, -2.2, -2.1}; // the grid, but not the surface
+  options.box.upper = {2.3, 2.6, 2.4};
+  CHECK(contour::finer_grid(small, options).halvings == contour::finer_grid(small, {}).halvings);
   const auto atoms = [](double radius) { // 7³
     return cube_grid(18, 0.5, [=](Vec3d x) {
       Vec3d from = x;
