@@ -35,10 +35,6 @@ public:
           improve::make_spoke(local(corner(k, 1), asked), local(corner(k, 2), asked), local(corner(k, 3), asked));
     }
     team_.sync();
-    if (first_[0] >= 0) {
-      const float least = worst_unasked(origin_);
-      floor_ = least < contour::detail::least_unasked ? least : contour::detail::least_unasked;
-    }
   }
 
   /// Mean of the star's edges at the vertex.
@@ -51,21 +47,21 @@ public:
   }
 
   HD TeamStar& spokes() { return *this; }
-  HD bool keeps_unasked(Vec3d y) { return first_[0] < 0 || worst_unasked(y) > floor_; }
 
   HD float worst(Vec3d x, float) {
-    evaluate_all(x, true);
+    evaluate_all(x);
     const float w = quality_[worst_element()];
     team_.sync();
     return w;
   }
 
   HD Vec3d ascent(Vec3d x, double step) {
-    evaluate_all(x, true);
+    evaluate_all(x);
     const int32_t worst = worst_element();
-    const auto d = static_cast<float>(step * inverse_[1]);
+    const bool asked = is_asked(worst);
+    const auto d = static_cast<float>(step * inverse_[asked]);
     for (int s = team_.rank(); s < 6; s += Team::size) {
-      Vec3f y = local(x, true);
+      Vec3f y = local(x, asked);
       y[s / 2] = s % 2 ? y[s / 2] - d : y[s / 2] + d;
       side_[s] = evaluate(worst, y);
     }
@@ -84,9 +80,8 @@ public:
       Vec3d p[4];
       for (size_t i = 0; i < 4; ++i)
         p[i] = t[i] == vertex_ ? x : r_.e.position[t[i]];
-      const float q = improve::tet_quality(p[0], p[1], p[2], p[3], r_.shape);
-      const bool is_refused = (is_asked(k) && q <= worst) || orient3d(p[0], p[1], p[2], p[3]) <= 0;
-      quality_[k] = is_refused ? refused : is_asked(k) ? q : contour::detail::unasked_quality;
+      const float q = weight(k) * improve::tet_quality(p[0], p[1], p[2], p[3], r_.shape);
+      quality_[k] = q <= worst || orient3d(p[0], p[1], p[2], p[3]) <= 0 ? refused : q;
     }
     team_.sync();
     bool allowed = true;
@@ -104,7 +99,8 @@ public:
   }
 
 private:
-  HD bool is_asked(int32_t k) const { return r_.quality[element_[k]] != contour::detail::unasked_quality; }
+  HD bool is_asked(int32_t k) const { return r_.classes.is_asked(r_.e.tet[element_[k]]); }
+  HD float weight(int32_t k) const { return is_asked(k) ? 1 : contour::detail::unasked_weight; }
   /// Of element k, the vertex in front.
   HD Vec3d corner(int32_t k, int i) const {
     const Tet& t = r_.e.tet[element_[k]];
@@ -120,25 +116,18 @@ private:
     improve::spoke_quality(spoke_[k], y.x, y.y, y.z, q, static_cast<float>(r_.shape));
     return q;
   }
-  HD float worst_unasked(Vec3d x) {
-    evaluate_all(x, false);
-    const float w = quality_[worst_element()];
-    team_.sync();
-    return w;
-  }
-  /// Of equals the first.
+  /// Of equals the first, and one that is asked for before others.
   HD int32_t worst_element() const {
-    int32_t worst = 0;
-    for (int32_t k = 1; k < n_; ++k)
-      if (quality_[k] < quality_[worst])
-        worst = k;
-    return worst;
+    int32_t worst[2] = {-1, -1};
+    for (int32_t k = 0; k < n_; ++k)
+      if (int32_t& w = worst[is_asked(k)]; w < 0 || quality_[k] < quality_[w])
+        w = k;
+    return worst[1] < 0 || (worst[0] >= 0 && quality_[worst[0]] < quality_[worst[1]]) ? worst[0] : worst[1];
   }
-  /// Of the elements that are asked for, or of the others; those that do not count are better than any.
-  HD void evaluate_all(Vec3d x, bool asked) {
-    const Vec3f y = local(x, asked);
+  HD void evaluate_all(Vec3d x) {
+    const Vec3f y[2] = {local(x, false), local(x, true)};
     for (int32_t k = team_.rank(); k < n_; k += Team::size)
-      quality_[k] = is_asked(k) == asked ? evaluate(k, y) : contour::detail::unasked_quality;
+      quality_[k] = weight(k) * evaluate(k, y[is_asked(k)]);
     team_.sync();
   }
 
@@ -152,7 +141,6 @@ private:
   Vec3d origin_;
   int32_t first_[2] = {-1, -1}; ///< element that nobody asks for, or that is asked for
   double inverse_[2] = {0, 0};  ///< of the unit of length, of either
-  float floor_ = 0;             ///< of those that nobody asks for
 };
 
 /// Those who have the turn.

@@ -2,10 +2,9 @@
 #pragma once
 #include "contour/detail/at.hpp"
 #include "contour/detail/relax_items.hpp"
+#include "contour/weighted_spokes.hpp"
 #include "geom/predicates.hpp"
 #include "improve/quality_kernel.hpp"
-#include "improve/spokes.hpp"
-#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -21,9 +20,9 @@ public:
     elements_ = detail::at(r.first[candidate + 1] - r.first[candidate]);
     eights_.resize((elements_ + 7) / 8);
     moving_.resize(elements_);
+    asked_.resize(elements_);
     const Vec3d x = r.e.position[vertex_];
     spokes_.clear(x, r.shape);
-    unasked_.clear(x, r.shape);
     length_ = 0;
     // In three steps, so that many elements and then corners are on their way from memory at once.
     tet_.resize(elements_);
@@ -43,16 +42,14 @@ public:
         if (t[i] == vertex_)
           moving = i;
       }
-      (is_asked(k) ? spokes_ : unasked_).add(p, static_cast<int>(moving));
+      asked_[k] = r.classes.is_asked(t);
+      spokes_.add(p, static_cast<int>(moving), asked_[k]);
       moving_[k] = moving;
     }
     length_ /= 3. * double(elements_);
-    if (unasked_.size() > 0)
-      floor_ = std::min(detail::least_unasked, unasked_.worst(x, -2));
   }
   double length() const { return length_; }
-  improve::Spokes& spokes() { return spokes_; }
-  bool keeps_unasked(Vec3d y) { return unasked_.size() == 0 || unasked_.worst(y, floor_) > floor_; }
+  WeightedSpokes& spokes() { return spokes_; }
   bool take(Vec3d x, float worst) {
     quality_.resize(8 * eights_.size());
     for (size_t k = 0; k < elements_; ++k)
@@ -61,13 +58,14 @@ public:
       float q[8];
       improve::qualities(eights_[g], q, r_->shape);
       for (size_t k = 8 * g; k < elements_ && k < 8 * g + 8; ++k) {
-        if (is_asked(k) && q[k % 8] <= worst)
+        const float weight = asked_[k] ? 1 : detail::unasked_weight;
+        if (weight * q[k % 8] <= worst)
           return false;
         const improve::EightElements& e = eights_[g];
         if (q[k % 8] < improve::surely_positive &&
             orient3d(e.corner(k % 8, 0), e.corner(k % 8, 1), e.corner(k % 8, 2), e.corner(k % 8, 3)) <= 0)
           return false;
-        quality_[k] = is_asked(k) ? q[k % 8] : detail::unasked_quality;
+        quality_[k] = weight * q[k % 8];
       }
     }
     r_->e.position[vertex_] = x;
@@ -77,17 +75,16 @@ public:
   }
 
 private:
-  bool is_asked(size_t k) const { return r_->quality[element_[k]] != detail::unasked_quality; }
   const detail::RelaxView* r_ = nullptr;
   const int32_t* element_ = nullptr;
   size_t elements_ = 0;
   int32_t vertex_ = 0;
   double length_ = 0;
-  improve::Spokes spokes_, unasked_;
-  float floor_ = 0; ///< of the unasked
+  WeightedSpokes spokes_;
   std::vector<Tet> tet_;
   std::vector<improve::EightElements> eights_;
   std::vector<size_t> moving_;
+  std::vector<uint8_t> asked_;
   std::vector<float> quality_;
 };
 

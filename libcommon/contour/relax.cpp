@@ -25,17 +25,16 @@ struct JudgeChunk {
     std::array<int64_t, size_t(chunk)> others;
     size_t n = 0;
     for (int64_t t = c * chunk, end = std::min(e.tets, t + chunk); t < end; ++t) { // no branches: no telling
-      const bool unasked = all.is_unasked(e.tet[t]);
-      all.quality[t] = unasked ? detail::unasked_quality : 1;
+      all.quality[t] = 1;
       others[n] = t;
       for (const int32_t v : e.tet[t])
         __builtin_prefetch(&e.position[v]);
-      n += !(unasked | all.of_lattice(e.tet[t]));
+      n += !all.classes.of_lattice(e.tet[t]);
     }
     improve::judge_each(
         n, [&](size_t k, size_t i) { return e.position[e.tet[others[k]][i]]; },
         [&](size_t k, float q) {
-          all.quality[others[k]] = q;
+          all.quality[others[k]] = all.weighted(e.tet[others[k]], q);
           return true;
         },
         all.shape);

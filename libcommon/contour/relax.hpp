@@ -7,12 +7,12 @@ namespace molmesh::contour {
 
 /// Moves vertices of elements with dihedral angles under 13° or over 160°: walls stay plane, and vertices on the
 /// surface within a share of the grid spacing of `surface` (or no farther than they are); without it they stay.
-/// No vertex's worst element gets worse, but for those on a side that nobody asks for; all stay positive by the
-/// exact predicate; the same result for any number of threads. Then corners of surface triangles whose centroids
-/// are over half a grid spacing from the surface move nearer: for that elements may fall to these limits, or to the
-/// star's worst where that is beyond. Returns how often a vertex moved. lattice_class: lattice_classes of the
-/// complex; the lattice's own elements need no look, those that nobody asks for may be as flat as they like. Empty:
-/// all are looked at.
+/// No vertex's worst element gets worse, where elements that nobody asks for count as detail::unasked_weight has
+/// it; all stay positive by the exact predicate; the same result for any number of threads. Then corners of surface
+/// triangles whose centroids are over half a grid spacing from the surface move nearer: for that elements may fall
+/// to these limits, or to the star's worst where that is beyond. Returns how often a vertex moved. lattice_class:
+/// lattice_classes of the complex; the lattice's own elements need no look. Empty: all are looked at, and asked
+/// for.
 int64_t relax(Elements& elements, const LargeArray<uint8_t>& lattice_class, const improve::Target* surface,
               int threads);
 

@@ -29,13 +29,15 @@ void Spokes::make_last_group() {
   made_ = true;
 }
 
-Vec3d Spokes::ascent(Vec3d x, double step) {
+Vec3d Spokes::ascent(Vec3d x, double step, float* worst_quality) {
   const Vec3f y = local(x);
   quality_.resize(group_.size() * SpokeGroup::lanes);
   judge_spokes(view(), y, quality_.data());
   const auto worst = std::min_element(quality_.begin(), quality_.begin() + static_cast<std::ptrdiff_t>(size()));
   std::swap(*std::find(order_.begin(), order_.end(), static_cast<int32_t>(worst - quality_.begin())),
             order_.front());
+  if (worst_quality)
+    *worst_quality = *worst;
   float side[6];
   judge_around(view(), static_cast<int32_t>(worst - quality_.begin()), y, static_cast<float>(step * inverse_),
                side);

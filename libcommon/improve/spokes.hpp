@@ -28,8 +28,8 @@ public:
   /// Smallest quality with the vertex at x, or some value ≤ above as soon as elements are no better than that.
   float worst(Vec3d x, float above) { return worst_spoke(view(), local(x), above); }
   /// Direction (unit) in which the worst element at x, of equals the first, improves fastest, by differences over
-  /// `step`; zero when flat.
-  Vec3d ascent(Vec3d x, double step);
+  /// `step`; zero when flat. worst: its quality. Not of an empty star.
+  Vec3d ascent(Vec3d x, double step, float* worst = nullptr);
   /// The first of places y[from … n - 1] at which worst() is above; n: none. q: worst() there.
   int first_above(const Vec3d* y, int from, int n, float above, float& q);
 

@@ -57,8 +57,7 @@ private:
 /// most_distance: of a surface vertex from the surface, in its spacings, if it was nearer. Star, of candidate c:
 /// spokes(), what improve::pattern_search asks; length(), the mean of its edges at the vertex; and take(x, worst),
 /// which puts the vertex there unless an element is no better than `worst`, in double precision, or not positive by
-/// the exact predicate; keeps_unasked(y), whether elements that nobody asks for are better than least_unasked with
-/// the vertex at y, or than now.
+/// the exact predicate.
 template <class Surface, class Star>
 HD bool move_vertex(const RelaxView& r, const Surface& surface, double most_distance, int32_t c, Star& star) {
   const int32_t vertex = r.vertex[c];
@@ -78,7 +77,7 @@ HD bool move_vertex(const RelaxView& r, const Surface& surface, double most_dist
     most = most < most_distance * surface.spacing() ? most_distance * surface.spacing() : most;
   }
   const NearSurface<Surface> constrain{surface, r.bound, vertex, on_surface, most};
-  const auto accept = [&](const Vec3d& y) { return star.keeps_unasked(y); };
+  const auto accept = [](const Vec3d&) { return true; };
   float best = r.worst[c];
   return improve::pattern_search(star.spokes(), x, best, r.goal, star.length(), axis, axes, constrain, accept) &&
          star.take(x, r.worst[c]);

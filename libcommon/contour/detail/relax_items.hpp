@@ -27,27 +27,13 @@ struct LatticeClasses {
   }
 };
 
-/// Of an element that only has to stay positive: more than any other's.
-inline constexpr float unasked_quality = 2;
-/// So flat such an element may become, 1.8°, in a search: flatter ones would hold a vertex where it is.
-inline constexpr float least_unasked = 1e-3F;
+/// What is known of elements by their vertices.
+struct ElementClasses {
+  const uint8_t* lattice_class; ///< LatticeClasses
+  int64_t known;                ///< of the vertices
 
-/// The lattice's own elements need no look: an edge of it with the middles of two boxes of one size.
-struct Qualities {
-  ElementsView e;
-  const uint8_t* lattice_class;
-  int64_t known; ///< of the vertices
-  double shape;  ///< of Q, as improve::tet_quality has it
-  float* quality;
-  HD void operator()(int64_t t) const {
-    const Tet& v = e.tet[t];
-    quality[t] = is_unasked(v)   ? unasked_quality
-                 : of_lattice(v) ? 1
-                                 : improve::tet_quality(e.position[v[0]], e.position[v[1]], e.position[v[2]],
-                                                        e.position[v[3]], shape);
-  }
-  HD bool is_unasked(const Tet& t) const { return class_of(t[0]) & LatticeClasses::unasked; }
-  /// Of one that is asked for.
+  HD bool is_asked(const Tet& t) const { return !(class_of(t[0]) & LatticeClasses::unasked); }
+  /// The lattice's own elements need no look: an edge of it with the middles of two boxes of one size.
   HD bool of_lattice(const Tet& t) const {
     const uint8_t dual = class_of(t[2]); // near the surface this one says it
     return dual >= 2 && class_of(t[3]) == dual && class_of(t[0]) == 1 && class_of(t[1]) == 1;
@@ -55,6 +41,25 @@ struct Qualities {
 
 private:
   HD uint8_t class_of(int32_t vertex) const { return vertex < known ? lattice_class[vertex] : uint8_t{0}; }
+};
+
+/// An element that nobody asks for has to stay positive, and is left alone where its sines are a quarter of what
+/// others should have: flatter ones would hold vertices where they are. A power of two: no rounding.
+inline constexpr float unasked_weight = 16;
+
+struct Qualities {
+  ElementsView e;
+  ElementClasses classes;
+  double shape; ///< of Q, as improve::tet_quality has it
+  float* quality;
+  HD void operator()(int64_t t) const {
+    const Tet& v = e.tet[t];
+    quality[t] = classes.of_lattice(v)
+                     ? 1
+                     : weighted(v, improve::tet_quality(e.position[v[0]], e.position[v[1]], e.position[v[2]],
+                                                        e.position[v[3]], shape));
+  }
+  HD float weighted(const Tet& t, float q) const { return classes.is_asked(t) ? q : unasked_weight * q; }
 };
 
 /// What a vertex is bound to, by 4 flags: a wall across x, y, z, and the surface.
@@ -79,7 +84,8 @@ struct RaiseBounds {
 struct RelaxView {
   ElementsView e;
   Bounds bound;
-  float* quality;           ///< [tets]
+  ElementClasses classes;
+  float* quality;           ///< [tets] times unasked_weight where nobody asks for the element
   float goal;               ///< elements below it are bad
   double shape;             ///< of Q, as improve::tet_quality has it
   const int32_t* vertex;    ///< [candidates] ascending

@@ -26,7 +26,8 @@ public:
     r_.bound = {bound_.data()};
     r_.goal = static_cast<float>(improve::angle_quality(largest_angle));
     r_.shape = improve::shape_weight_of(least_q, improve::angle_quality(largest_angle));
-    mover_.judge(Qualities{e, lattice_class, known, r_.shape, r_.quality});
+    r_.classes = {lattice_class, known};
+    mover_.judge(Qualities{e, r_.classes, r_.shape, r_.quality});
     m.for_n("bounds", e.tris, RaiseBounds{e, r_.bound}, {double(e.tris) * 16});
   }
 
