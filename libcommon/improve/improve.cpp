@@ -161,7 +161,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     ++result.rounds;
     if (density && round == 0) { // not before: what is squeezed between surface and grid is gone now
       settle(heals ? 1 : no_worse);
-      schedule.find_crowded(0.5); // triangles stay within a quarter of a spacing from here on (Guard::distance)
+      schedule.find_crowded(Schedule::guarded); // nearer to the target, fewer are
     }
     if (density) {
       if (size_t(round) + 1 == refresh_offset)

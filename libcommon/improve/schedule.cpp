@@ -15,8 +15,7 @@ Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int thr
   const auto with_room = [&](auto& v, size_t n) { par::reserve_pages(v, n, n / 4, threads_); };
   with_room(stamp_, m_.element.size());
   with_room(parts_.owner, m_.point.size());
-  // Points settle later, and with the chords of large triangles either sheet may be off by half of this.
-  find_crowded(1);
+  find_crowded(guarded);
 }
 
 int64_t Schedule::parts_at_surface(double cell) {
@@ -76,18 +75,50 @@ std::vector<SheetTriangle> Schedule::end_triangles() const {
   return triangle;
 }
 
-// Which of the triangles face another one within that distance.
+// How far off the target triangles are, at their centroids and the middles of their edges (Å). A spacing where that
+// is not known, and at most: what is farther is so to first order alone.
+std::vector<float> Schedule::deviations(const std::vector<SheetTriangle>& triangle) const {
+  std::vector<float> off(triangle.size());
+  par::for_n(static_cast<int64_t>((triangle.size() + 1) / 2), threads_, [&](int64_t pair) {
+    const auto first = size_t(2 * pair), end = std::min(triangle.size(), first + 2);
+    EightPlaces place;
+    for (size_t t = first; t < end; ++t) {
+      const auto at = [&](size_t i) { return m_.point[size_t(triangle[t].v[i])]; };
+      const size_t k = 4 * (t - first);
+      place.set(k, (at(0) + at(1) + at(2)) / 3.);
+      for (size_t i = 0; i < 3; ++i)
+        place.set(k + 1 + i, 0.5 * (at(i) + at((i + 1) % 3)));
+    }
+    EightProbes probes;
+    target_->probe_eight(place, static_cast<int>(4 * (end - first)), probes);
+    for (size_t t = first; t < end; ++t)
+      for (size_t k = 4 * (t - first); k < 4 * (t - first) + 4; ++k) {
+        const double most = target_->spacing(),
+                     distance = probes.is_known(k) ? std::fabs(probes.distance[k]) : most;
+        off[t] = std::max(off[t], static_cast<float>(std::min(distance, most)));
+      }
+  });
+  return off;
+}
+
+// Which of the triangles face another one within that distance and what they are off, or may come to be: no more
+// than they are, or than the guard has it.
 std::vector<uint8_t> Schedule::facing(const std::vector<SheetTriangle>& triangle, double distance) const {
+  const std::vector<float> off = deviations(triangle);
+  const auto kept = static_cast<float>(guarded / 2 * target_->spacing());
+  const auto widened = [&](size_t n, double by) {
+    const float reach = static_cast<float>(by) + off[n] + std::max(0.f, off[n] - kept);
+    SheetTriangle wide = triangle[n];
+    wide.low = wide.low - Vec3f{reach, reach, reach};
+    wide.high = wide.high + Vec3f{reach, reach, reach};
+    return wide;
+  };
   const BoxTree tree(
-      triangle.size(), [&](size_t n) { return triangle[n]; }, threads_);
-  const auto reach = static_cast<float>(distance);
+      triangle.size(), [&](size_t n) { return widened(n, 0); }, threads_);
   const double hardly = target_->spacing() / 4;
-  const Vec3f beyond{reach, reach, reach};
   std::vector<uint8_t> faces(triangle.size());
   par::for_n(static_cast<int64_t>(triangle.size()), threads_, [&](int64_t t) {
-    SheetTriangle wide = triangle[size_t(t)];
-    wide.low = wide.low - beyond;
-    wide.high = wide.high + beyond;
+    const SheetTriangle wide = widened(size_t(t), distance);
     faces[size_t(t)] = tree.any(wide, [&](size_t n) {
       const SheetTriangle& other = triangle[n];
       return !wide.of_one_sheet(other, false) && reaches_before(m_.point, wide, other, hardly) &&

@@ -34,9 +34,11 @@ public:
   /// quality.
   Counts settle(float floor, const Guard& guard);
   /// Where the mesh ends in a curved surface it is kept from crossing itself: near sheets that face each other
-  /// within that many spacings, as they are now; or everywhere, from now on.
+  /// within that many spacings and what they are off the target now and may be later; or everywhere, from now on.
   void find_crowded(double apart);
   static constexpr double everywhere = 1e300;
+  static constexpr double guarded =
+      0.5; ///< each triangle stays within a quarter (Guard::distance), or what it is off
   bool ends_in_surface() const { return ends_in_surface_; }
   float worst();
   /// How many parts of that size, in the schedule's cells, hold a point of the surface.
@@ -51,6 +53,7 @@ private:
   std::vector<int32_t> surface_points() const;
   std::vector<int32_t> points_off() const;          ///< of these, off the target
   std::vector<SheetTriangle> end_triangles() const; ///< where the mesh ends in curved surfaces, in its order
+  std::vector<float> deviations(const std::vector<SheetTriangle>& triangle) const;
   std::vector<uint8_t> facing(const std::vector<SheetTriangle>& triangle, double distance) const;
   bool is_hopeless(size_t points_off) const; ///< recover()
   using Work = std::function<void(Editor&, std::vector<int32_t>&)>;

@@ -199,6 +199,27 @@ TEST_CASE("sheets that face each other nearby are crowded, those with elements b
         on_surface);
 }
 
+TEST_CASE("sheets further apart are crowded when they are off the target, which brings them together") {
+  const Vec3d middle{5.03, 5.01, 4.98};
+  const auto between = [&](double inner, double outer) -> Field {
+    return [=](Vec3d p) { return std::exp(std::max(inner - norm(p - middle), norm(p - middle) - outer)); };
+  };
+  const TetMesh mesh = lattice_mesh(between(2, 2.8), {0, 0, 0}, 0.5, 20, 1);
+  for (const double off : {0., 0.3}) {
+    const improve::Isosurface surface(lattice_grid(between(2 + off, 2.8 - off), {0, 0, 0}, 0.5, 20), 1);
+    improve::DynamicMesh m = improve::build(mesh, 180, 1);
+    improve::Schedule schedule(m, &surface, 100, 1);
+    schedule.find_crowded(0.5);
+    const auto crowded =
+        std::count_if(m.vertex.begin(), m.vertex.end(), [](const improve::Vertex& v) { return v.crowded; });
+    const auto on_surface = std::count_if(m.vertex.begin(), m.vertex.end(), [](const improve::Vertex& v) {
+      return v.kind == improve::Kind::surface;
+    });
+    CAPTURE(off, crowded, on_surface);
+    CHECK((off > 0 ? crowded > 0.9 * double(on_surface) : crowded < 0.5 * double(on_surface)));
+  }
+}
+
 TEST_CASE("two sheets that are drawn through each other stop before they cross") {
   const Field balls = [](Vec3d p) {
     return std::exp(-0.8 * (std::min(norm2(p - centre[0]), norm2(p - centre[1])) - 1.6 * 1.6));
