@@ -189,7 +189,7 @@ struct EvaluatePoint {
   HD void operator()(int64_t i) const {
     const int64_t b = order[i / 512];
     const int s = int(i % 512);
-    const Vec3d p = frame.grid.position(frame.corner(BlockFrame::block(key[b])) + Vec3i{s >> 6, s >> 3 & 7, s & 7});
+    const Vec3d p = frame.grid.position(frame.corner(BlockFrame::block(key[b])) + within_block(s));
     OpenLevels<LogSum<double, false>> levels(f);
     for (int64_t l = begin[b]; l < begin[b + 1]; ++l) {
       const int32_t c = list[l];

@@ -63,7 +63,7 @@ Moments moments(const BlockGrid& grid, int64_t points) {
   };
   const auto block = [&](Vec3i corner, auto value) {
     for (int s = 0; s < 512; ++s)
-      if (const Vec3i p = corner + Vec3i{s >> 6, s >> 3 & 7, s & 7};
+      if (const Vec3i p = corner + within_block(s);
           p.x < hi.x && p.y < hi.y && p.z < hi.z && p.x >= lo.x && p.y >= lo.y && p.z >= lo.z)
         add(value(static_cast<size_t>(s)));
   };

@@ -134,7 +134,7 @@ void Reader::check_slots(size_t b) const {
   for (int s = 0; s < 512; ++s) {
     const float v = grid_.value[512 * b + static_cast<size_t>(s)];
     if (grid_.active[8 * b + static_cast<size_t>(s >> 6)] >> (s & 63) & 1) {
-      const Vec3i p = corner + Vec3i{s >> 6, s >> 3 & 7, s & 7};
+      const Vec3i p = corner + within_block(s);
       if (!std::isfinite(v))
         refuse("R11: an active value that is not finite");
       if (!whole && (p.x < lo.x || p.y < lo.y || p.z < lo.z || p.x >= hi.x || p.y >= hi.y || p.z >= hi.z))

@@ -93,7 +93,7 @@ BlockGrid halved(const BlockGrid& grid, int threads, const std::vector<Vec3i>& l
       const Vec3i first = 8 * Vec3i{c >> 2, c >> 1 & 1, c & 1};
       out.corner = 2 * corner + first;
       for (int s = 0; s < 512; ++s) {
-        const Vec3i step{s >> 6, s >> 3 & 7, s & 7};
+        const Vec3i step = within_block(s);
         const Point p = point_at(window, first + step, iso, inside_value,
                                  std::binary_search(linear.begin(), linear.end(), out.corner + step));
         out.value[static_cast<size_t>(s)] = p.value;

@@ -186,7 +186,7 @@ std::vector<Vec3i> cells_of_other_topology(const BlockGrid& grid, const BlockGri
   std::vector<std::vector<Vec3i>> of_block(grid.corner.size());
   par::for_n(static_cast<int64_t>(of_block.size()), threads, 4, [&](int64_t b) {
     for (int s = 0; s < 512; ++s)
-      if (const Vec3i p = grid.corner[static_cast<size_t>(b)] + Vec3i{s >> 6, s >> 3 & 7, s & 7}; is_other(p))
+      if (const Vec3i p = grid.corner[static_cast<size_t>(b)] + within_block(s); is_other(p))
         of_block[static_cast<size_t>(b)].push_back(p);
   });
   std::vector<Vec3i> all;

@@ -55,7 +55,7 @@ template <class Above>
 bool cut(const GridFrame& frame, Vec3i corner, Above&& above) {
   const Vec3i lo = frame.lower, last = lo + frame.points - Vec3i{1, 1, 1};
   for (int s = 0; s < 512; ++s) {
-    const Vec3i p = corner + Vec3i{s >> 6, s >> 3 & 7, s & 7};
+    const Vec3i p = corner + within_block(s);
     const bool wall = p.x == lo.x || p.y == lo.y || p.z == lo.z || p.x == last.x || p.y == last.y || p.z == last.z;
     if (wall && above(s))
       return true;

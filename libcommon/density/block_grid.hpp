@@ -53,6 +53,10 @@ struct BlockGrid {
 HD constexpr int slot(Vec3i p) {
   return (p.x & 7) << 6 | (p.y & 7) << 3 | (p.z & 7);
 }
+/// From the block's corner to the point of that slot.
+HD constexpr Vec3i within_block(int slot) {
+  return {slot >> 6, slot >> 3 & 7, slot & 7};
+}
 /// Lowest index of p's block (rounds down, also for negative indices).
 HD constexpr Vec3i block_corner(Vec3i p) {
   return {p.x & ~7, p.y & ~7, p.z & ~7};

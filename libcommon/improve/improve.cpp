@@ -78,6 +78,9 @@ const std::vector<Attempt> attempts{{1}, {2}, {3}, {4}, {4, widened}, {5}};
 const std::vector<Attempt> attempts_at_end{
     {1}, {2}, {3}, {4}, {5}, {3, widened, 1}, {5, widened, 1}, {5, widened, 1}, {3, widened, 1}};
 
+// Of the last elements below the goal.
+const std::vector<Attempt> healing{{2}, {5}, {5, released, 1}, {5, widened, 1}};
+
 } // namespace
 
 Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
@@ -188,6 +191,16 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     const Counts c = schedule.recover(pass);
     idle = c.total() > 0 ? std::min<size_t>(idle, 1) : idle + 1;
     result.counts += c;
+  }
+  for (const Attempt& attempt : healing) {
+    if (!density || !heals)
+      break;
+    Pass pass;
+    pass.goal = goal;
+    pass.effort = attempt.effort;
+    pass.cell = attempt.cell;
+    pass.guard = attempt.guard;
+    result.counts += schedule.heal(pass);
   }
   if (result.counts.total() == 0 || schedule.worst() < at_first) { // the file that came in, in its own order
     result.in_vain = result.counts.total() > 0;

@@ -120,94 +120,113 @@ private:
   std::vector<std::pair<size_t, size_t>> fan_;
 };
 
-} // namespace
+/// The labels of the triangles at each vertex, in the order that they come in; 0: no more.
+struct VertexLabels {
+  std::vector<std::array<uint8_t, 3>> of;
+  std::vector<uint8_t> many; ///< more than three
 
-void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, double sharp, int threads) {
-  find_flat_labels(m, mesh, label);
-  std::vector<std::array<uint8_t, 3>> seen(m.point.size(), {0, 0, 0});
-  std::vector<uint8_t> many(m.point.size(), 0);
-  struct Edge {
-    int32_t a, b;
-    uint8_t label;
-    int32_t tri;
-  };
+  VertexLabels(const TetMesh& mesh, const std::vector<uint8_t>& label)
+      : of(mesh.point.size(), {0, 0, 0}), many(mesh.point.size(), 0) {
+    for (size_t t = 0; t < mesh.tri.size(); ++t)
+      for (const int32_t v : mesh.tri[t])
+        add(size_t(v), label[t]);
+  }
+
+private:
+  void add(size_t v, uint8_t l) {
+    auto& s = of[v];
+    size_t k = 0;
+    while (k < 3 && s[k] != 0 && s[k] != l)
+      ++k;
+    if (k == 3)
+      many[v] = 1;
+    else
+      s[k] = l;
+  }
+};
+
+// On one curved label: of the surface; on flat labels of different axes, two at most: sliding; else fixed.
+Vertex vertex_of(const DynamicMesh& m, const std::array<uint8_t, 3>& labels, bool many) {
+  Vertex x{Kind::fixed, 0, labels[0]};
+  if (many)
+    return x;
+  if (labels[1] == 0 && m.labels[labels[0]].curved())
+    x.kind = Kind::surface;
+  bool flat = true;
+  int frozen = 0, planes = 0;
+  for (const uint8_t l : labels) {
+    if (l == 0)
+      continue;
+    flat = flat && !m.labels[l].curved();
+    if (flat)
+      frozen |= 1 << m.labels[l].axis, ++planes;
+  }
+  const int bits = (frozen & 1) + (frozen >> 1 & 1) + (frozen >> 2 & 1);
+  if (flat && bits == planes && bits < 3)
+    x.kind = Kind::sliding, x.frozen = static_cast<uint8_t>(frozen);
+  return x;
+}
+
+bool on_surface_and_wall(const DynamicMesh& m, const std::array<uint8_t, 3>& labels, bool many) {
+  return !many && labels[1] != 0 && labels[2] == 0 &&
+         m.labels[labels[0]].curved() != m.labels[labels[1]].curved() &&
+         (m.labels[labels[0]].wall || m.labels[labels[1]].wall);
+}
+
+/// Of a triangle.
+struct Edge {
+  int32_t a, b; ///< a < b
+  uint8_t label;
+  int32_t tri;
+};
+
+std::vector<Edge> sorted_edges(const TetMesh& mesh, const std::vector<uint8_t>& label, int threads) {
   std::vector<Edge> edges;
   edges.reserve(3 * mesh.tri.size());
-  for (size_t t = 0; t < mesh.tri.size(); ++t) {
-    const uint8_t l = label[t];
+  for (size_t t = 0; t < mesh.tri.size(); ++t)
     for (size_t i = 0; i < 3; ++i) {
       const int32_t v = mesh.tri[t][i], w = mesh.tri[t][(i + 1) % 3];
-      auto& s = seen[size_t(v)];
-      size_t k = 0;
-      while (k < 3 && s[k] != 0 && s[k] != l)
-        ++k;
-      if (k == 3)
-        many[size_t(v)] = 1;
-      else
-        s[k] = l;
-      edges.push_back({std::min(v, w), std::max(v, w), l, static_cast<int32_t>(t)});
+      edges.push_back({std::min(v, w), std::max(v, w), label[t], static_cast<int32_t>(t)});
     }
-  }
-  Traces traces(m.point.size());
-  for (size_t v = 0; v < m.point.size(); ++v) {
-    Vertex& x = m.vertex[v];
-    const auto& s = seen[v];
-    if (s[0] == 0)
-      continue;
-    x = {Kind::fixed, 0, s[0]};
-    if (many[v])
-      continue;
-    if (s[1] == 0 && m.labels[s[0]].curved())
-      x.kind = Kind::surface;
-    bool flat = true;
-    int frozen = 0, planes = 0;
-    for (const uint8_t l : s) {
-      if (l == 0)
-        continue;
-      flat = flat && !m.labels[l].curved();
-      if (flat)
-        frozen |= 1 << m.labels[l].axis, ++planes;
-    }
-    const int bits = (frozen & 1) + (frozen >> 1 & 1) + (frozen >> 2 & 1);
-    if (flat && bits == planes && bits < 3)
-      x.kind = Kind::sliding, x.frozen = static_cast<uint8_t>(frozen);
-    // Of a surface that came in alone nothing says which corners of its outline to keep.
-    if (sharp >= 180 && s[1] != 0 && s[2] == 0 && m.labels[s[0]].curved() != m.labels[s[1]].curved() &&
-        (m.labels[s[0]].wall || m.labels[s[1]].wall))
-      traces.add_candidate(v);
-  }
+  par::sort(edges, threads, [](const Edge& x, const Edge& y) {
+    return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.tri < y.tri;
+  });
+  return edges;
+}
+
+// Ends of edges of not two triangles, and of sharp ones, are fixed. The two triangles of others are of one fan.
+void fix_kept_edges(DynamicMesh& m, const TetMesh& mesh, const std::vector<Edge>& edges, double sharp, Fans& fans,
+                    Traces& traces) {
   const auto normal = [&](int32_t t) {
     const Tri& f = mesh.tri[size_t(t)];
     const Vec3d p = mesh.point[size_t(f[0])];
     const Vec3d n = cross(mesh.point[size_t(f[1])] - p, mesh.point[size_t(f[2])] - p);
     return n / std::max(norm(n), 1e-300);
   };
+  const auto curved = [&](const Edge& e) { return m.labels[e.label].curved(); };
   const double limit = std::cos(sharp * 3.14159265358979323846 / 180);
-  par::sort(edges, threads, [](const Edge& x, const Edge& y) {
-    return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.tri < y.tri;
-  });
-  Fans fans(mesh.tri);
   for (size_t i = 0, j; i < edges.size(); i = j) {
-    for (j = i; j < edges.size() && edges[j].a == edges[i].a && edges[j].b == edges[i].b;)
+    const Edge& e = edges[i];
+    for (j = i; j < edges.size() && edges[j].a == e.a && edges[j].b == e.b;)
       ++j;
-    bool keep = j - i != 2;
-    if (!keep)
-      for (const int32_t v : {edges[i].a, edges[i].b})
-        fans.join(edges[i].tri, edges[i + 1].tri, v);
-    if (!keep && edges[i].label == edges[i + 1].label && m.labels[edges[i].label].curved())
-      keep = dot(normal(edges[i].tri), normal(edges[i + 1].tri)) < limit;
-    const auto curved = [&](const Edge& e) { return m.labels[e.label].curved(); };
+    const bool two = j - i == 2, two_labels = two && e.label != edges[i + 1].label;
+    if (two)
+      for (const int32_t v : {e.a, e.b})
+        fans.join(e.tri, edges[i + 1].tri, v);
+    const bool keep = !two || (!two_labels && curved(e) && dot(normal(e.tri), normal(edges[i + 1].tri)) < limit);
     const auto first = edges.begin() + std::ptrdiff_t(i), last = edges.begin() + std::ptrdiff_t(j);
-    const bool of_both = (j - i == 3 || (j - i == 2 && edges[i].label != edges[i + 1].label)) &&
-                         std::count_if(first, last, curved) == 1;
+    const bool of_both = (j - i == 3 || two_labels) && std::count_if(first, last, curved) == 1;
     if (keep)
-      m.vertex[size_t(edges[i].a)].kind = m.vertex[size_t(edges[i].b)].kind = Kind::fixed;
+      m.vertex[size_t(e.a)].kind = m.vertex[size_t(e.b)].kind = Kind::fixed;
     if (keep || of_both)
-      traces.note_edge(edges[i].a, edges[i].b, of_both, j - i);
+      traces.note_edge(e.a, e.b, of_both, j - i);
   }
+}
+
+// Where sheets touch elements may know but one of them: such vertices are fixed.
+void fix_touching(DynamicMesh& m, const TetMesh& mesh, Fans& fans, Traces& traces) {
   constexpr size_t none = SIZE_MAX;
-  std::vector<size_t> fan; // where sheets touch, elements may know but one of them
-  fan.resize(m.point.size(), none);
+  std::vector<size_t> fan(m.point.size(), none);
   for (size_t c = 0; c < 3 * mesh.tri.size(); ++c) {
     const auto v = size_t(mesh.tri[c / 3][c % 3]);
     const size_t here = fans.find(c);
@@ -216,8 +235,27 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& 
     fan[v] = here;
     traces.note_fan(v, here);
   }
+}
+
+} // namespace
+
+void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, double sharp, int threads) {
+  find_flat_labels(m, mesh, label);
+  const VertexLabels labels(mesh, label);
+  Traces traces(m.point.size());
+  for (size_t v = 0; v < m.point.size(); ++v) {
+    if (labels.of[v][0] == 0)
+      continue;
+    m.vertex[v] = vertex_of(m, labels.of[v], labels.many[v]);
+    // Of a surface that came in alone nothing says which corners of its outline to keep.
+    if (sharp >= 180 && on_surface_and_wall(m, labels.of[v], labels.many[v]))
+      traces.add_candidate(v);
+  }
+  Fans fans(mesh.tri);
+  fix_kept_edges(m, mesh, sorted_edges(mesh, label, threads), sharp, fans, traces);
+  fix_touching(m, mesh, fans, traces);
   traces.for_each([&](size_t v) {
-    const auto& s = seen[v];
+    const auto& s = labels.of[v];
     const bool flat_first = !m.labels[s[0]].curved();
     m.vertex[v] = {Kind::trace, static_cast<uint8_t>(1 << m.labels[s[flat_first ? 0 : 1]].axis),
                    s[flat_first ? 1 : 0]};

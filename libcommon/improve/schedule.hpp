@@ -30,6 +30,9 @@ public:
   /// Surface vertices off the target: put on it, or off the surface, where the elements around can be brought over
   /// the goal afterwards. Nothing else changes.
   Counts recover(const Pass& pass);
+  /// Elements that are left below the goal, few of them: shaken and, of an effort over 4, made to wander, as
+  /// recover() has it, with parts around each. No more points are off and no more triangles bent.
+  Counts heal(const Pass& pass);
   /// Puts surface vertices on the target where no element falls under `floor`; floor ≥ 1: to less than half its
   /// quality.
   Counts settle(float floor, const Guard& guard);

@@ -104,7 +104,7 @@ std::string compare_grids(const Hierarchy& h, const BlockGrid& device, const Blo
   int64_t active = 0, differ = 0, value = 0, side = 0;
   for (size_t b = 0; b < host.corner.size(); ++b)
     for (int s = 0; s < 512; ++s) {
-      const Vec3i p = host.corner[b] + Vec3i{s >> 6, s >> 3 & 7, s & 7};
+      const Vec3i p = host.corner[b] + within_block(s);
       const bool here = is_active(host, in_host, p), there = is_active(device, in_device, p);
       const float v = value_at(host, in_host, p), w = value_at(device, in_device, p);
       active += here;
@@ -120,7 +120,7 @@ std::string compare_grids(const Hierarchy& h, const BlockGrid& device, const Blo
     const int s = static_cast<int>(random() % 512);
     if (!(device.active[8 * b + static_cast<size_t>(s >> 6)] >> (s & 63) & 1))
       continue;
-    const Vec3i p = device.corner[b] + Vec3i{s >> 6, s >> 3 & 7, s & 7};
+    const Vec3i p = device.corner[b] + within_block(s);
     const double exact = test::exact_density(h, device.info.decay, device.frame.position(p));
     wrong += !(std::abs(device.value[512 * b + static_cast<size_t>(s)] - exact) <= eps * std::max(1.0, exact));
     ++n;

@@ -47,7 +47,7 @@ void check_same(const BlockGrid& a, const BlockGrid& b) {
   for (const auto& [x, ix, y, iy] : {std::tie(a, ia, b, ib), std::tie(b, ib, a, ia)}) {
     for (size_t k = 0; k < x.corner.size(); ++k)
       for (int s = 0; s < 512; ++s) {
-        const Vec3i p = x.corner[k] + Vec3i{s >> 6, s >> 3 & 7, s & 7};
+        const Vec3i p = x.corner[k] + within_block(s);
         const float v = value_at(x, ix, p), w = value_at(y, iy, p);
         const bool here = is_active(x, ix, p), there = is_active(y, iy, p);
         active += here;

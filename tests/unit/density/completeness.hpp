@@ -32,7 +32,7 @@ inline double worst_error(const Hierarchy& h, const BlockGrid& g, int samples) {
     const int s = static_cast<int>(random() % 512);
     if (!(g.active[8 * b + static_cast<size_t>(s >> 6)] >> (s & 63) & 1))
       continue;
-    const Vec3i p = g.corner[b] + Vec3i{s >> 6, s >> 3 & 7, s & 7};
+    const Vec3i p = g.corner[b] + within_block(s);
     const double exact = exact_density(h, g.info.decay, g.frame.position(p));
     worst = std::max(worst, std::abs(g.value[512 * b + static_cast<size_t>(s)] - exact) /
                                 (g.info.tolerance * std::max(1.0, exact)));

@@ -179,7 +179,7 @@ TEST_CASE("the derived margin keeps the band off the wall, a small one is refuse
     int64_t touched = 0;
     for (const Vec3i& c : g.corner)
       for (int s = 0; s < 512; ++s) {
-        const Vec3i p = c + Vec3i{s >> 6, s >> 3 & 7, s & 7};
+        const Vec3i p = c + within_block(s);
         const bool wall = p.x <= 0 || p.y <= 0 || p.z <= 0 || p.x >= last.x || p.y >= last.y || p.z >= last.z;
         touched += wall && is_active(g, index, p);
       }

@@ -50,7 +50,7 @@ inline BlockGrid lattice_grid(const Field& field, Vec3d origin, double h, int n)
   const BlockIndex index(g);
   for (size_t b = 0; b < g.corner.size(); ++b)
     for (int s = 0; s < 512; ++s) {
-      const Vec3i p = g.corner[b] + Vec3i{s >> 6, s >> 3 & 7, s & 7};
+      const Vec3i p = g.corner[b] + within_block(s);
       const auto a = active.find(p);
       if (a != active.end()) {
         g.value[512 * b + size_t(s)] = a->second;
