@@ -48,10 +48,7 @@ Counts Schedule::heal(const Pass& pass) {
   par::sort_unique(points, 1);
   find_crowded(everywhere);
   set_parts_around(points, passes_++, pass.cell * cell_);
-  const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
-    const Element& e = m_.element[size_t(t)];
-    return e.alive() && part_of(e) >= 0;
-  });
+  const std::vector<int32_t> items = elements_of_parts();
   return for_parts(items, parts_of(items), pass.guard,
                    [&](Editor& editor, std::vector<int32_t>& list) {
                      std::vector<int32_t> slots = list;

@@ -78,6 +78,15 @@ const std::vector<Attempt> attempts{{1}, {2}, {3}, {4}, {4, widened}, {5}};
 const std::vector<Attempt> attempts_at_end{
     {1}, {2}, {3}, {4}, {5}, {3, widened, 1}, {5, widened, 1}, {5, widened, 1}, {3, widened, 1}};
 
+Pass pass_of(const Attempt& attempt, float goal) {
+  Pass pass;
+  pass.goal = goal;
+  pass.effort = attempt.effort;
+  pass.cell = attempt.cell;
+  pass.guard = attempt.guard;
+  return pass;
+}
+
 // Of the last elements below the goal.
 const std::vector<Attempt> healing{{2}, {5}, {5, released, 1}, {5, widened, 1}};
 
@@ -181,27 +190,17 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   size_t idle = 0;
   for (int repeat = 0; density && repeat < recoveries && idle < all.size(); ++repeat) {
     const Attempt& attempt = all[idle];
-    Pass pass;
-    pass.goal = goal;
-    pass.effort = attempt.effort;
+    Pass pass = pass_of(attempt, goal);
     pass.worst_first = repeat % 2 == 0;
-    // What goes wrong is taken back: parts are small.
-    pass.cell = many && repeat < recoveries_of_many ? 0.35 : attempt.cell;
-    pass.guard = attempt.guard;
+    if (many && repeat < recoveries_of_many) // what goes wrong is taken back: parts are small
+      pass.cell = 0.35;
     const Counts c = schedule.recover(pass);
     idle = c.total() > 0 ? std::min<size_t>(idle, 1) : idle + 1;
     result.counts += c;
   }
-  for (const Attempt& attempt : healing) {
-    if (!density || !heals)
-      break;
-    Pass pass;
-    pass.goal = goal;
-    pass.effort = attempt.effort;
-    pass.cell = attempt.cell;
-    pass.guard = attempt.guard;
-    result.counts += schedule.heal(pass);
-  }
+  if (density && heals)
+    for (const Attempt& attempt : healing)
+      result.counts += schedule.heal(pass_of(attempt, goal));
   if (result.counts.total() == 0 || schedule.worst() < at_first) { // the file that came in, in its own order
     result.in_vain = result.counts.total() > 0;
     result.counts = {};

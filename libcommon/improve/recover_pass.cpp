@@ -1,6 +1,5 @@
 // recover_pass.cpp — the points off the target and the parts around them, those left out where nothing has changed
 // since the same was in vain.
-#include "improve/choose.hpp"
 #include "improve/recover.hpp"
 #include "improve/schedule.hpp"
 #include "par/par.hpp"
@@ -25,10 +24,7 @@ Counts Schedule::recover(const Pass& pass) {
     return {};
   find_crowded(everywhere); // they leave it meanwhile
   set_parts_around(points, passes_++, pass.cell * cell_);
-  const std::vector<int32_t> items = choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
-    const Element& e = m_.element[size_t(t)];
-    return e.alive() && part_of(e) >= 0;
-  });
+  const std::vector<int32_t> items = elements_of_parts();
   std::vector<std::vector<int32_t>> off(static_cast<size_t>(parts_.count())); // of each part
   for (const int32_t v : points)
     if (const int32_t part = parts_.owner[size_t(v)]; part >= 0)

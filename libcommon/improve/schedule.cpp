@@ -250,6 +250,13 @@ int32_t Schedule::part_of(const Element& e) const {
   return p >= 0 && parts_.owns(p, e.v) ? p : -1;
 }
 
+std::vector<int32_t> Schedule::elements_of_parts() const {
+  return choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
+    const Element& e = m_.element[size_t(t)];
+    return e.alive() && part_of(e) >= 0;
+  });
+}
+
 std::vector<int32_t> Schedule::parts_of(const std::vector<int32_t>& elements) const {
   std::vector<int32_t> part(elements.size());
   par::for_n(static_cast<int64_t>(part.size()), threads_,

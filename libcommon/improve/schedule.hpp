@@ -40,8 +40,8 @@ public:
   /// within that many spacings and what they are off the target now and may be later; or everywhere, from now on.
   void find_crowded(double apart);
   static constexpr double everywhere = 1e300;
-  static constexpr double guarded =
-      0.5; ///< each triangle stays within a quarter (Guard::distance), or what it is off
+  /// Each triangle stays within a quarter of a spacing (Guard::distance), or what it is off.
+  static constexpr double guarded = 0.5;
   bool ends_in_surface() const { return ends_in_surface_; }
   float worst();
   /// How many parts of that size, in the schedule's cells, hold a point of the surface.
@@ -78,6 +78,7 @@ private:
   void set_parts_around(const std::vector<int32_t>& points, int shift, double size);
   void find_owners();
   int32_t part_of(const Element& e) const; ///< -1: none
+  std::vector<int32_t> elements_of_parts() const;
   std::vector<int32_t> parts_of(const std::vector<int32_t>& elements) const;
 
   DynamicMesh& m_;

@@ -17,7 +17,8 @@ struct ComplexView {
   int32_t surface_cells = 0;
   int32_t grid_vertices = 0, dual0 = 0;
   int32_t pieces = 0; ///< vertices after the leaves' duals
-  /// Its elements are made at the surface alone, which is to move, and need but stay positive; crossed: neither's.
+  /// Its elements are made at the surface alone, which is to move, and may be flat (unasked_weight); crossed:
+  /// neither's.
   Side unasked = Side::crossed;
 
   Side* side = nullptr;
