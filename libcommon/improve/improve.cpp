@@ -198,7 +198,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     idle = c.total() > 0 ? std::min<size_t>(idle, 1) : idle + 1;
     result.counts += c;
   }
-  if (density && heals)
+  if (heals)
     for (const Attempt& attempt : healing)
       result.counts += schedule.heal(pass_of(attempt, goal));
   if (result.counts.total() == 0 || schedule.worst() < at_first) { // the file that came in, in its own order

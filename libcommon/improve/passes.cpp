@@ -140,7 +140,7 @@ std::vector<int32_t> Schedule::low_elements(float goal) {
 bool Schedule::in_few_parts(const std::vector<int32_t>& items, int shift, double cell) {
   if (items.size() < worth_halving)
     return false;
-  set_lattice(shift, cell);
+  set_lattice(shift, cell, bounds());
   std::vector<double> share(static_cast<size_t>(parts_.count()));
   for (const int32_t t : items)
     share[size_t(parts_.at(m_.point[size_t(m_.element[size_t(t)].v[0])]))] += 1 / double(items.size());

@@ -19,7 +19,7 @@ Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int thr
 }
 
 int64_t Schedule::parts_at_surface(double cell) {
-  set_lattice(0, cell * cell_);
+  set_lattice(0, cell * cell_, bounds());
   std::vector<uint8_t> met(static_cast<size_t>(parts_.count()));
   for (size_t v = 0; v < m_.point.size(); ++v)
     if (m_.incident[v] >= 0 && m_.vertex[v].kind == Kind::surface)
@@ -182,8 +182,7 @@ Schedule::Box Schedule::bounds() const {
         return m_.incident[size_t(v)] >= 0 ? Box{m_.point[size_t(v)], m_.point[size_t(v)]} : Box{};
       },
       [](Box a, const Box& b) {
-        a.low = {std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y), std::min(a.low.z, b.low.z)};
-        a.high = {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)};
+        a.add(b);
         return a;
       });
 }
@@ -206,15 +205,14 @@ double Schedule::cell_of_all(double cell) const {
   return any_longer ? 16 * extent / cell_ : 0;
 }
 
-void Schedule::set_lattice(int shift, double cell) {
-  const auto [low, high] = bounds();
-  parts_.low = low;
+void Schedule::set_lattice(int shift, double cell, const Box& box) {
+  parts_.low = box.low;
   // Fractions of a cell that never line up again on all axes: every neighborhood lies inside some part soon.
   static constexpr double stride[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
   for (int a = 0; a < 3; ++a)
     parts_.offset[size_t(a)] = shift * stride[a] - std::floor(shift * stride[a]);
   const double most = std::clamp(16. * double(m_.point.size()), 1e6, 1e8); // memory as the points
-  const Vec3d size = high - low;
+  const Vec3d size = box.high - box.low;
   const auto cells = [&](int a) { return std::floor(size[a] / cell) + 2; };
   while (cells(0) * cells(1) * cells(2) > most)
     cell *= 2;
@@ -226,7 +224,7 @@ void Schedule::set_lattice(int shift, double cell) {
 }
 
 void Schedule::set_parts(int shift, double cell) {
-  set_lattice(shift, cell);
+  set_lattice(shift, cell, bounds());
   find_owners();
 }
 
@@ -239,7 +237,16 @@ void Schedule::find_owners() {
 
 void Schedule::set_parts_around(const std::vector<int32_t>& points, int shift, double size) {
   constexpr int32_t reach = 2; // cells: the point stays two fifths of the size from the cube's sides
-  set_lattice(shift, size / (2 * reach + 1));
+  const double cell = size / (2 * reach + 1);
+  set_lattice(shift, cell, bounds());
+  if (parts_.cell > cell) { // a far box: round the points alone, and the outermost cells are nobody's
+    Box around;
+    for (const int32_t v : points)
+      around.add({m_.point[size_t(v)], m_.point[size_t(v)]});
+    const double beyond = (reach + 1) * cell;
+    set_lattice(shift, cell,
+                {around.low - Vec3d{beyond, beyond, beyond}, around.high + Vec3d{beyond, beyond, beyond}});
+  }
   for (size_t i = 0; i < points.size(); ++i)
     parts_.add_box(m_.point[size_t(points[shift % 2 == 0 ? i : points.size() - 1 - i])], reach);
   find_owners();

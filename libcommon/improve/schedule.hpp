@@ -4,6 +4,7 @@
 #include "improve/pass.hpp"
 #include "improve/vain.hpp"
 #include "par/helpers.hpp"
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -69,10 +70,16 @@ private:
                    const Work& work, const PartShares& shares = {});
   struct Box {
     Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+    void add(const Box& o) {
+      for (int a = 0; a < 3; ++a) {
+        low[a] = std::min(low[a], o.low[a]);
+        high[a] = std::max(high[a], o.high[a]);
+      }
+    }
   };
   Box bounds() const;
   void find_worst(); ///< DynamicMesh::worst of the restless stretches
-  void set_lattice(int shift, double cell);
+  void set_lattice(int shift, double cell, const Box& box);
   void set_parts(int shift, double cell); ///< its cells
   /// A cube of about that size around each of the points, where there is room for it beside the others' cubes.
   void set_parts_around(const std::vector<int32_t>& points, int shift, double size);

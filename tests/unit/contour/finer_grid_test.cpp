@@ -163,14 +163,18 @@ TEST_CASE(
   Options options;
   CHECK(!contour::finer_grid(atom_grid(5, 0.5), options).grid);
   const BlockGrid small = atom_grid(1, 0.5);
+  const Vec3d middle{0.115, 0.27, 0.395};
   CHECK(contour::finer_grid(small, options).grid);
   options.box.kind = contour::BoxRequest::corners;
   options.box.lower = {0.1, -3, -3};
   options.box.upper = {3, 3, 3};
   CHECK(!contour::finer_grid(small, options).grid);
-  options.box.lower = {-2.4, -2.2, -2.1}; // the grid, but not the surface
-  options.box.upper = {2.3, 2.6, 2.4};
-  CHECK(contour::finer_grid(small, options).halvings == contour::finer_grid(small, {}).halvings);
+  for (const double wall :
+       {2.1, 1.1}) { // cuts the grid, but not the surface, and not where it is in its last cells
+    options.box.lower = middle - Vec3d{wall, wall, wall};
+    options.box.upper = middle + Vec3d{wall, wall, wall};
+    CHECK(contour::finer_grid(small, options).halvings == contour::finer_grid(small, {}).halvings);
+  }
   const auto atoms = [](double radius) { // 7³
     return cube_grid(18, 0.5, [=](Vec3d x) {
       Vec3d from = x;

@@ -3,6 +3,7 @@
 #include "improve/improve.hpp"
 #include "improve/schedule.hpp"
 #include "lattice_mesh.hpp"
+#include "push_off.hpp"
 #include "recovery_pass.hpp"
 #include "surface_shape.hpp"
 #include <algorithm>
@@ -32,30 +33,13 @@ struct Case {
         all.push_back(static_cast<int32_t>(e));
     return all;
   }
-  /// Every 20th surface point goes 0.05 h to 0.2 h along the normal, where its elements stay positive.
-  int push_off() {
-    int pushed = 0;
-    for (size_t v = 0; v < m.point.size(); ++v) {
-      double distance;
-      Vec3d normal;
-      if (m.vertex[v].kind != improve::Kind::surface || v % 20 != 0 || !surface.probe(m.point[v], distance, normal))
-        continue;
-      m.point[v] += h * (0.05 + 0.01 * double(v % 16)) * (v % 40 == 0 ? 1. : -1.) * normal;
-      for (const int32_t e : star(static_cast<int32_t>(v))) {
-        m.element[size_t(e)].q = m.quality(m.element[size_t(e)].v);
-        m.note_change(e);
-      }
-      ++pushed;
-    }
-    return pushed;
-  }
 };
 
 } // namespace
 
 TEST_CASE("points pushed off the isosurface are recovered, no element is the worse for it") {
   Case c;
-  REQUIRE(c.push_off() > 10);
+  REQUIRE(push_off(c.m, c.surface) > 10);
   const improve::Fidelity before = improve::measure_fidelity(c.m, c.surface, 1);
   REQUIRE(before.points_off > 10);
   improve::Schedule schedule(c.m, &c.surface, 32 * h, 1);

@@ -1,0 +1,35 @@
+// push_off.hpp — surface points leave the isosurface, as rounds leave some.
+#pragma once
+#include "improve/dynamic_mesh.hpp"
+#include "improve/isosurface.hpp"
+
+namespace molmesh::test {
+
+/// Every 20th surface point goes 0.05 h to 0.2 h along the normal: elements good enough to solve on stay positive.
+/// Returns how many.
+inline int push_off(improve::DynamicMesh& m, const improve::Isosurface& surface) {
+  const double h = surface.spacing();
+  std::vector<uint8_t> pushed(m.point.size());
+  int count = 0;
+  for (size_t v = 0; v < m.point.size(); ++v) {
+    double distance;
+    Vec3d normal;
+    if (m.vertex[v].kind != improve::Kind::surface || v % 20 != 0 || !surface.probe(m.point[v], distance, normal))
+      continue;
+    m.point[v] += h * (0.05 + 0.01 * double(v % 16)) * (v % 40 == 0 ? 1. : -1.) * normal;
+    pushed[v] = 1;
+    ++count;
+  }
+  for (size_t e = 0; e < m.element.size(); ++e) {
+    improve::Element& element = m.element[e];
+    for (const int32_t v : element.v)
+      if (element.alive() && pushed[size_t(v)]) {
+        element.q = m.quality(element.v);
+        m.note_change(static_cast<int32_t>(e));
+        break;
+      }
+  }
+  return count;
+}
+
+} // namespace molmesh::test
