@@ -27,7 +27,7 @@ void assign_regions(std::vector<Component>& part, const std::vector<detail::Part
   // A dropped part takes the region round it; where parts nest, the outermost decides first.
   std::vector<uint8_t> dropped(part.size(), 0);
   for (size_t i = 0; i < part.size(); ++i)
-    if (Component& c = part[i]; c.inside && !c.at_wall && c.volume < options.drop_below) {
+    if (Component& c = part[i]; c.inside && !c.at_wall && options.drop_below > 0 && c.volume < options.drop_below) {
       dropped[i] = 1;
       c.region = cavity;
     }

@@ -87,14 +87,22 @@ bool is_cut(const Surface& surface, const Lattice& lattice) {
   });
 }
 
+/// Those in the grid, beyond which cells grow; of the inside alone as many as points, but all are looked at.
+double uniform_cells(const BlockGrid& grid, const LatticeView& lattice, const Options& options) {
+  constexpr double looked_at = 1. / 1024;
+  double cells = 1;
+  for (int a = 0; a < 3; ++a)
+    cells *= std::min(lattice.cells[a], lattice.grid_last[a]) - std::max(0, lattice.grid_first[a]);
+  return options.meshed == Options::interior ? std::max(double(inside_points(grid)), looked_at * cells) : cells;
+}
+
 /// halvings: of the spacing so far.
 bool cells_too_large(const BlockGrid& grid, const Options& options, int halvings) {
   const Lattice lattice(grid, options.box, options.meshed != Options::interior, options.threads);
   const Vec3d extent = (lattice.position(lattice.cells) - lattice.position({0, 0, 0})) / grid.frame.spacing;
   if (std::max({extent.x, extent.y, extent.z}) >= room_to_halve)
     return false;
-  const Vec3d cells = to_double(lattice.cells);
-  if (options.adapt == 0 && 8 * cells.x * cells.y * cells.z > most_uniform_cells)
+  if (options.adapt == 0 && 8 * uniform_cells(grid, lattice.view(), options) > most_uniform_cells)
     return false;
   const Surface surface = find_surface(lattice, options.threads);
   if (lattice.view().any_cut && is_cut(surface, lattice))

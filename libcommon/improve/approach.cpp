@@ -5,7 +5,8 @@
 namespace molmesh::improve {
 
 bool Editor::approach(int32_t v, float floor) {
-  if (m_.vertex[size_t(v)].kind != Kind::surface || !target_ || !star(v, star_))
+  const Vertex& vertex = m_.vertex[size_t(v)];
+  if (!follows_target(vertex.kind) || !target_ || !star(v, star_))
     return false;
   const Vec3d from = m_.point[size_t(v)];
   const double length = mean_edge(star_, v), furthest = 1.5 * length;
@@ -15,7 +16,7 @@ bool Editor::approach(int32_t v, float floor) {
     const Vec3d d{k / 9 - 1., k / 3 % 3 - 1., k % 3 - 1.};
     for (double r = 0.05; r < 1.5; r *= 1.5) {
       Vec3d y = from + r * length / std::max(norm(d), 1.) * d;
-      if (target_->project(y, length) && norm(y - from) < nearest)
+      if (put_on_target(vertex, from, y, length) && norm(y - from) < nearest)
         nearest = norm(y - from), to = y;
     }
   }

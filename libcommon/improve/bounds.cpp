@@ -45,6 +45,34 @@ bool Editor::project(const Vertex& k, Vec3d& x, double reach) const {
          (k.kind == Kind::trace ? target_->project_in_plane(x, k.axis(), reach) : target_->project(x, reach));
 }
 
+// And a trial of one at `from`, within the walls.
+bool Editor::put_on_target(const Vertex& k, Vec3d from, Vec3d& x, double reach) const {
+  if (k.kind == Kind::trace)
+    x[k.axis()] = from[k.axis()];
+  return project(k, x, reach) && inside_walls(from, x);
+}
+
+// n trials: those that come there, in front and in order; how many.
+int Editor::put_all_on_target(const Vertex& k, Vec3d from, Vec3d* x, int n, double reach) const {
+  int there = 0;
+  for (int first = 0; first < n; first += 8) {
+    const int count = std::min(8, n - first);
+    if (k.kind != Kind::surface) {
+      for (int i = first; i < first + count; ++i)
+        if (Vec3d y = x[i]; put_on_target(k, from, y, reach))
+          x[there++] = y;
+      continue;
+    }
+    EightPlaces eight;
+    for (int i = 0; i < count; ++i)
+      eight.set(size_t(i), x[first + i]);
+    for (uint32_t put = target_->project_eight(eight, count, reach); put; put &= put - 1)
+      if (const Vec3d y = eight[size_t(std::countr_zero(put))]; inside_walls(from, y))
+        x[there++] = y;
+  }
+  return there;
+}
+
 // Moves a trial x of a vertex at `from` onto what it is bound to.
 bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const {
   switch (k.kind) {
@@ -57,9 +85,9 @@ bool Editor::constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) cons
     // The distance to first order means nothing where the gradient vanishes, and that is where points must leave.
     if (target_ && guard_.lift > 0)
       return norm(x - from) <= guard_.lift * target_->spacing() && stays(x) && inside_walls(from, x);
-    if (target_ && loose && k.kind == Kind::surface)
+    if (target_ && loose)
       return norm(x - from) <= reach && off_at(x).value_or(1) <= most_loose && inside_walls(from, x);
-    return project(k, x, reach) && inside_walls(from, x);
+    return put_on_target(k, from, x, reach);
   case Kind::sliding:
     for (int a = 0; a < 3; ++a)
       if (k.frozen >> a & 1)
@@ -79,25 +107,21 @@ int Editor::constrain_all(const Vertex& k, Vec3d from, Vec3d* x, int n, double r
         x[allowed++] = y;
     return allowed;
   }
+  if (!loose)
+    return put_all_on_target(k, from, x, n, reach);
   for (int first = 0; first < n; first += 8) {
     const int count = std::min(8, n - first);
     EightPlaces eight;
     for (int i = 0; i < count; ++i)
       eight.set(size_t(i), x[first + i]);
-    uint32_t left = 0;
-    if (loose) {
-      EightProbes probes;
-      target_->probe_eight(eight, count, probes);
-      for (uint32_t bits = probes.known; bits; bits &= bits - 1)
-        if (const auto i = size_t(std::countr_zero(bits));
-            target_->off_by(probes.distance[i]) <= most_loose && norm(eight[i] - from) <= reach)
-          left |= 1u << i;
-    } else {
-      left = target_->project_eight(eight, count, reach);
+    EightProbes probes;
+    target_->probe_eight(eight, count, probes);
+    for (uint32_t known = probes.known; known; known &= known - 1) {
+      const auto i = size_t(std::countr_zero(known));
+      if (target_->off_by(probes.distance[i]) <= most_loose && norm(eight[i] - from) <= reach &&
+          inside_walls(from, eight[i]))
+        x[allowed++] = eight[i];
     }
-    for (; left; left &= left - 1)
-      if (const Vec3d y = eight[size_t(std::countr_zero(left))]; inside_walls(from, y))
-        x[allowed++] = y;
   }
   return allowed;
 }
@@ -162,8 +186,8 @@ std::optional<double> Editor::off_at(Vec3d x) const {
 
 double Editor::off(int32_t v) const {
   constexpr double two_spacings = 100; // where the target is not known: it is not near
-  return m_.vertex[size_t(v)].kind == Kind::surface && target_ ? off_at(m_.point[size_t(v)]).value_or(two_spacings)
-                                                               : 0;
+  return follows_target(m_.vertex[size_t(v)].kind) && target_ ? off_at(m_.point[size_t(v)]).value_or(two_spacings)
+                                                              : 0;
 }
 
 // Whether t and three triangles of beyond_, one across each of its edges, close a hole that is inside out.

@@ -198,6 +198,8 @@ private:
   std::optional<double> off_at(Vec3d x) const; ///< off() of a place; none where the target is not known
   bool stays(Vec3d x) const;
   bool project(const Vertex& k, Vec3d& x, double reach) const;
+  bool put_on_target(const Vertex& k, Vec3d from, Vec3d& x, double reach) const;
+  int put_all_on_target(const Vertex& k, Vec3d from, Vec3d* x, int n, double reach) const;
   bool constrain(const Vertex& k, Vec3d from, Vec3d& x, double reach) const;
   /// Those of n trials that constrain() allows, in front and in order; how many.
   int constrain_all(const Vertex& k, Vec3d from, Vec3d* x, int n, double reach) const;
@@ -235,7 +237,7 @@ private:
   bool find_shell(Piece& piece, Vec3d c);
   bool shrink(const Piece& piece, Vec3d c, double scale, double ratio);
   bool find_ring(int32_t v, const Neck& neck, Piece& piece);
-  bool place_on_target(Vec3d& x, double length, const Fit& before, float above);
+  bool place_on_target(const Vertex& k, Vec3d& x, double length, const Fit& before, float above);
   bool search(const Vertex& k, Vec3d& x, float& best, float aim, double length, const Fit& before, float above);
   /// Moves v, star_ being its elements, as far as they stay above: all the way, or steps shorter each time.
   bool step_to(int32_t v, Vec3d to, double shorter, double least, float above);

@@ -32,7 +32,7 @@ void FaultCount::find_misfits() {
     for (size_t f = 0; f < 4; ++f) {
       if (editor_.bent(t, f))
         bent_.push_back(4 * int64_t{t} + int64_t(f));
-      if (m_.vertex[size_t(e.v[f])].kind == Kind::surface && surface_points_(e.v[f]) == met.size())
+      if (follows_target(m_.vertex[size_t(e.v[f])].kind) && surface_points_(e.v[f]) == met.size())
         met.push_back({e.v[f], t});
     }
   }

@@ -3,7 +3,6 @@
 #include "improve/quality_kernel.hpp"
 #include <algorithm>
 #include <array>
-#include <bit>
 
 namespace molmesh::improve {
 namespace {
@@ -81,35 +80,33 @@ bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double le
 
 // The best place on the target around x where the surface fits better. The way along the gradient alone leads
 // nowhere where that vanishes.
-bool Editor::place_on_target(Vec3d& x, double length, const Fit& before, float above) {
+bool Editor::place_on_target(const Vertex& k, Vec3d& x, double length, const Fit& before, float above) {
   const Vec3d from = x;
   float best = above;
   const double reach = guard_.reach * length;
-  const auto bind = [&](Vec3d& y) { return target_->project(y, reach) && inside_walls(from, y); };
+  const auto bind = [&](Vec3d& y) { return put_on_target(k, from, y, reach); };
   const auto accept = [&](Vec3d y) { return sails_fit(y, before); };
   constexpr int all = 27 * 3; // directions, each at three lengths
   for (int first = 0; first < all; first += 8) {
     const int n = std::min(8, all - first);
-    EightPlaces eight;
-    for (int i = 0; i < n; ++i) {
-      const int k = (first + i) / 3;
-      const Vec3d d{k / 9 - 1., k / 3 % 3 - 1., k % 3 - 1.};
-      eight.set(size_t(i), from + 0.15 * (1 << (first + i) % 3) * length / std::max(norm(d), 1.) * d);
-    }
     std::array<Vec3d, 8> place;
-    int places = 0;
-    for (uint32_t put = target_->project_eight(eight, n, reach); put; put &= put - 1)
-      if (const Vec3d y = eight[size_t(std::countr_zero(put))]; inside_walls(from, y) && norm(y - from) < length)
-        place[size_t(places++)] = y;
+    for (int i = 0; i < n; ++i) {
+      const int way = (first + i) / 3;
+      const Vec3d d{way / 9 - 1., way / 3 % 3 - 1., way % 3 - 1.};
+      place[size_t(i)] = from + 0.15 * (1 << (first + i) % 3) * length / std::max(norm(d), 1.) * d;
+    }
+    const auto there = place.begin() + put_all_on_target(k, from, place.data(), n, reach);
+    const auto near = std::remove_if(place.begin(), there, [&](Vec3d y) { return !(norm(y - from) < length); });
+    const auto places = static_cast<int>(near - place.begin());
     float q;
-    for (int k = 0; (k = spokes_.first_above(place.data(), k, places, best, q)) < places; ++k)
-      if (accept(place[size_t(k)]))
-        best = q, x = place[size_t(k)];
+    for (int i = 0; (i = spokes_.first_above(place.data(), i, places, best, q)) < places; ++i)
+      if (accept(place[size_t(i)]))
+        best = q, x = place[size_t(i)];
   }
   if (!(best > above))
     return false;
   Vec3d basis[3];
-  const int dimensions = basis_of({Kind::surface}, target_, false, x, basis);
+  const int dimensions = basis_of(k, target_, false, x, basis);
   pattern_search(spokes_, x, best, goal, length, basis, dimensions, bind, accept);
   return true;
 }
@@ -214,7 +211,7 @@ bool Editor::move_to_best(int32_t v) {
   const Vec3d from = m_.point[size_t(v)];
   Vec3d x = from;
   float best = straighten ? fit.worth() : before;
-  if (straighten && off(v) > 1 ? !place_on_target(x, length, fit, above)
+  if (straighten && off(v) > 1 ? !place_on_target(k, x, length, fit, above)
                                : !search(k, x, best, goal, length, fit, above))
     return false;
   m_.point[size_t(v)] = x;

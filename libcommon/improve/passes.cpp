@@ -217,13 +217,10 @@ Counts Schedule::straighten(const Pass& pass) {
   });
 }
 
-std::vector<int32_t> Schedule::vertices(bool (*of)(Kind)) const {
-  return choose(static_cast<int64_t>(m_.point.size()), threads_,
-                [&](int64_t v) { return m_.incident[size_t(v)] >= 0 && of(m_.vertex[size_t(v)].kind); });
-}
-
 std::vector<int32_t> Schedule::surface_points() const {
-  return vertices([](Kind k) { return k == Kind::surface; });
+  return choose(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
+    return m_.incident[size_t(v)] >= 0 && follows_target(m_.vertex[size_t(v)].kind);
+  });
 }
 
 std::vector<int32_t> Schedule::points_off() const {
@@ -244,7 +241,7 @@ std::vector<int32_t> Schedule::points_off() const {
 
 Counts Schedule::settle(float floor, const Guard& guard) {
   set_parts(settles_++, cell_);
-  const std::vector<int32_t> items = vertices(follows_target);
+  const std::vector<int32_t> items = surface_points();
   std::vector<int32_t> part;
   for (const int32_t v : items)
     part.push_back(parts_.owner[size_t(v)]);

@@ -185,7 +185,7 @@ private:
         const Element e = m_.element[size_t(slots_[k])];
         const int i = e.alive() ? e.find(v) : -1;
         for (int j = 0; i >= 0 && j < 4 && !flipped; ++j)
-          flipped = j != i && m_.vertex[size_t(e.v[size_t(j)])].kind == Kind::surface &&
+          flipped = j != i && follows_target(m_.vertex[size_t(e.v[size_t(j)])].kind) &&
                     editor_.remove_edge(slots_[k], i, j);
       }
       if (!flipped)
@@ -242,7 +242,7 @@ private:
     for (const auto& [t, e] : snapshot.element)
       if (const int i = e.find(v); i >= 0)
         for (int j = 0; j < 4; ++j)
-          if (j != i && m_.vertex[size_t(e.v[size_t(j)])].kind == Kind::surface)
+          if (j != i && follows_target(m_.vertex[size_t(e.v[size_t(j)])].kind))
             edges.push_back({e.v[size_t(j)], t, 4 * i + j});
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a[0] == b[0]; }),

@@ -53,8 +53,7 @@ public:
   double cell_of_all(double cell) const;
 
 private:
-  std::vector<int32_t> vertices(bool (*of)(Kind)) const; ///< alive, ascending
-  std::vector<int32_t> surface_points() const;
+  std::vector<int32_t> surface_points() const;      ///< those on traces too; ascending
   std::vector<int32_t> points_off() const;          ///< of these, off the target
   std::vector<SheetTriangle> end_triangles() const; ///< where the mesh ends in curved surfaces, in its order
   std::vector<float> deviations(const std::vector<SheetTriangle>& triangle) const;

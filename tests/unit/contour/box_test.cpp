@@ -108,3 +108,33 @@ TEST_CASE("a surface that meets the wall is refused unless the box was asked to 
   const BlockGrid cut = test::sample_grid({-12, -12, 0}, {25, 25, 13}, 0.5, 2, atom);
   CHECK_THROWS_AS(mesh_of(cut, options), Error);
 }
+
+TEST_CASE("a far wall takes no digits from the volumes of parts") {
+  const BlockGrid grid = cube_grid(6, 1, [](Vec3d x) { return std::exp(2 - norm(x - Vec3d{0.2, 0.3, 0.1})); });
+  Options options;
+  options.adapt = 0;
+  options.box.kind = contour::BoxRequest::factor;
+  options.meshed = Options::both;
+  for (const double scale : {2., 2000., 20'000.}) {
+    CAPTURE(scale);
+    options.box.scale = scale;
+    contour::Summary summary;
+    const Validity v = checked(mesh_of(grid, options, summary));
+    REQUIRE(summary.molecule_volumes.size() == 1);
+    CHECK(summary.molecule_volumes[0] == Approx(region_volume(v, 1)).epsilon(1e-11));
+  }
+}
+
+TEST_CASE("without a least volume no part is dropped, whatever rounding makes of its volume") {
+  std::vector<contour::Component> part(2);
+  part[0].at_wall = true;
+  part[1].inside = true;
+  const std::vector<contour::detail::PartSurface> surfaces{{1, 0, -1e-9}};
+  contour::assign_regions(part, surfaces, {});
+  CHECK(part[1].region == molecule);
+  contour::RegionOptions drop;
+  drop.drop_below = 1e-3;
+  part[1].volume = 0;
+  contour::assign_regions(part, surfaces, drop);
+  CHECK(part[1].region == outside);
+}

@@ -4,6 +4,7 @@
 #include "contour/halved_grid.hpp"
 #include "contour/halved_topology.hpp"
 #include "contour/leaves.hpp"
+#include "contour/stages.hpp"
 #include "improve/improve.hpp"
 #include "unit/contour/checked.hpp"
 #include "unit/contour/sample_grid.hpp"
@@ -28,6 +29,22 @@ BlockGrid atom_grid(double radius, double h) {
   return cube_grid(radius + 6 * h, h, [=](Vec3d x) {
     return std::exp(radius * radius - norm2(x - h * Vec3d{0.23, 0.54, 0.79}));
   });
+}
+
+/// Both regions, uniform, in the cells of the grid itself.
+TetMesh mesh_of_own_cells(const BlockGrid& grid) {
+  const contour::Lattice lattice(grid, {}, true, 1);
+  contour::HostStages stages(1);
+  stages.find_surface(lattice);
+  contour::RefineOptions uniform;
+  uniform.adapt = 0;
+  uniform.inside = uniform.outside = true;
+  stages.select_leaves(uniform);
+  Options both;
+  both.meshed = Options::both;
+  stages.make_dual(both.unasked_side(), [](const std::string&) {});
+  stages.find_regions({});
+  return stages.assemble(Options::both);
 }
 
 /// Checks one point between, or one of the grid's own.
@@ -106,12 +123,7 @@ TEST_CASE("finer grids keep components and Euler number") {
     uniform.adapt = 0;
     const Validity v = checked(mesh_of(grid, options)), of_grid = checked(mesh_of(grid, uniform));
     CHECK(v.surface.euler == of_grid.surface.euler);
-    uniform.box.kind = contour::BoxRequest::factor; // of too many cells for smaller ones
-    uniform.box.scale = 12;
-    uniform.meshed = Options::both;
-    contour::Summary own;
-    const Validity of_own_cells = checked(mesh_of(grid, uniform, own));
-    CHECK(own.halvings == 0);
+    const Validity of_own_cells = checked(mesh_of_own_cells(grid));
     CHECK(v.surface.euler == of_own_cells.surface.euler);
     CHECK(v.surface.components == of_own_cells.surface.components);
     if (trial % 4 != 0) { // nothing at the isovalue, where rounding decides
@@ -147,15 +159,24 @@ TEST_CASE("a body of few spacings keeps its volume to half a per cent, in unifor
   }
 }
 
-TEST_CASE("a uniform lattice of many cells is not filled with smaller ones") {
+TEST_CASE("a grid of many uniform cells is not filled with smaller ones") {
   Options options;
   options.adapt = 0;
   options.meshed = Options::both;
-  options.box.kind = contour::BoxRequest::factor;
-  for (const double factor : {6., 40.}) {
+  BlockGrid grid = atom_grid(1, 0.5);
+  for (const double factor : {6., 40.}) { // cells grow beyond the grid
+    options.box.kind = contour::BoxRequest::factor;
     options.box.scale = factor;
-    CHECK(contour::finer_grid(atom_grid(1, 0.5), options).grid.has_value() == (factor < 10));
+    CHECK(contour::finer_grid(grid, options).grid);
   }
+  grid.frame.lower -= Vec3i{25, 25, 25};
+  grid.frame.points += Vec3i{50, 50, 50};
+  CHECK(!contour::finer_grid(grid, options).grid);
+  options.meshed = Options::interior; // few are inside
+  CHECK(contour::finer_grid(grid, options).grid);
+  options.meshed = Options::both;
+  options.adapt.reset();
+  CHECK(contour::finer_grid(grid, options).grid);
 }
 
 TEST_CASE(
