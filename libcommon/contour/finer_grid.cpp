@@ -18,7 +18,7 @@ namespace {
 
 constexpr int most_halvings = 2;
 constexpr double room_to_halve = (1 << 18) - 8; ///< spacings of a box: a lattice takes twice as many
-/// Of a uniform lattice after halving, some 12 million elements: it is filled with the smaller cells.
+/// After halving, some 12 million elements: all of the grid is filled with the smaller cells.
 constexpr double most_uniform_cells = 1 << 20;
 /// With the default band some 16,000 surface cells; a ball of as many, 29 spacings in radius, loses 0.05 %.
 constexpr int64_t few_active_points = 1 << 15;
@@ -105,7 +105,7 @@ bool cells_too_large(const BlockGrid& grid, const Options& options, int halvings
   if (options.adapt == 0 && 8 * uniform_cells(grid, lattice.view(), options) > most_uniform_cells)
     return false;
   const Surface surface = find_surface(lattice, options.threads);
-  if (lattice.view().any_cut && is_cut(surface, lattice))
+  if (is_cut(surface, lattice))
     return false;
   const Bodies bodies(surface, lattice.isovalue);
   return bodies.lose_too_much(improve::most_offset * (1 << halvings));

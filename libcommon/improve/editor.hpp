@@ -93,14 +93,14 @@ public:
   /// Whether the face is a surface triangle, counted from this side, that does not keep the guard, or is turned by
   /// more than Guard::widest_unbent.
   bool bent(int32_t e, size_t face) const;
-  /// Of a surface vertex: Target::off_by, or two spacings where the target is not known.
+  /// Of a vertex of the surface or a trace: Target::off_by, or two spacings where the target is not known.
   double off(int32_t v) const;
   /// Moves surface vertices onto the target, in order, all the way or part of it; no element falls under `floor`;
   /// floor ≥ 1: to less than half its quality. The part has not been changed before. Triangles are not asked one
   /// move at a time whether they cross others, which few do: where one does in the end, all goes back and they are.
   void settle(const std::vector<int32_t>& vertices, float floor);
-  /// Moves a surface vertex towards the nearest place on the target that it finds, as far as no element falls
-  /// under `floor`.
+  /// Moves a vertex of the surface or a trace towards the nearest place on the target that it finds, as far as no
+  /// element falls under `floor`.
   bool approach(int32_t v, float floor);
 
   int32_t part() const { return room_.part; }

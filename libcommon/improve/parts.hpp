@@ -12,7 +12,7 @@ namespace molmesh::improve {
 /// Parts are disjoint and convex: what keeps to its own never meets what keeps to another.
 struct Parts {
   std::vector<int32_t> owner; ///< [vertices] part it began in, or is reserved for; -1: none, or a free slot
-  Vec3d low;                  ///< of all points
+  Vec3d low;                  ///< of all points, or of the boxes' surroundings
   double cell = 1;
   std::array<double, 3> offset{}; ///< in cells, in [0, 1)
   std::array<int64_t, 3> n{1, 1, 1};

@@ -123,9 +123,11 @@ private:
 
   // Where the isosurface grazes a wall the mesh has no room for it: long searches there are nearly always in vain.
   bool at_wall() {
-    const std::vector<int32_t> points = faults_.points_off();
-    return std::any_of(points.begin(), points.end(),
-                       [&](int32_t v) { return !m_.walls.clear(m_.point[size_t(v)], editor_.spacing()); });
+    std::vector<int32_t> points = faults_.points_off();
+    std::erase_if(points, [&](int32_t v) { return m_.vertex[size_t(v)].kind != Kind::surface; });
+    return points.empty() || std::any_of(points.begin(), points.end(), [&](int32_t v) {
+             return !m_.walls.clear(m_.point[size_t(v)], editor_.spacing());
+           });
   }
 
   // The states put by since the part last changed, best first.
@@ -179,6 +181,8 @@ private:
 
   // Edges of the surface at v flip until it can leave.
   bool cut_off(int32_t v) {
+    if (m_.vertex[size_t(v)].kind != Kind::surface)
+      return false;
     for (int flips = 0; flips < 8; ++flips) {
       bool flipped = false;
       for (size_t k = 0; k < slots_.size() && !flipped; ++k) {

@@ -239,13 +239,16 @@ void Schedule::set_parts_around(const std::vector<int32_t>& points, int shift, d
   constexpr int32_t reach = 2; // cells: the point stays two fifths of the size from the cube's sides
   const double cell = size / (2 * reach + 1);
   set_lattice(shift, cell, bounds());
-  if (parts_.cell > cell) { // a far box: round the points alone, and the outermost cells are nobody's
+  if (parts_.cell > cell) { // too many for the whole mesh, as in a far box: round the points alone
     Box around;
     for (const int32_t v : points)
       around.add({m_.point[size_t(v)], m_.point[size_t(v)]});
-    const double beyond = (reach + 1) * cell;
-    set_lattice(shift, cell,
-                {around.low - Vec3d{beyond, beyond, beyond}, around.high + Vec3d{beyond, beyond, beyond}});
+    for (double now = 0, next = cell; next > now; next = parts_.cell) {
+      now = next;
+      const double beyond = (reach + 2) * now; // so that no point beyond the outermost cells is in a box
+      set_lattice(shift, now,
+                  {around.low - Vec3d{beyond, beyond, beyond}, around.high + Vec3d{beyond, beyond, beyond}});
+    }
   }
   for (size_t i = 0; i < points.size(); ++i)
     parts_.add_box(m_.point[size_t(points[shift % 2 == 0 ? i : points.size() - 1 - i])], reach);

@@ -80,7 +80,8 @@ private:
   void find_worst(); ///< DynamicMesh::worst of the restless stretches
   void set_lattice(int shift, double cell, const Box& box);
   void set_parts(int shift, double cell); ///< its cells
-  /// A cube of about that size around each of the points, where there is room for it beside the others' cubes.
+  /// A cube of about that size around each of the points, of which there are some, where there is room for it
+  /// beside the others' cubes.
   void set_parts_around(const std::vector<int32_t>& points, int shift, double size);
   void find_owners();
   int32_t part_of(const Element& e) const; ///< -1: none

@@ -126,8 +126,18 @@ struct PartSurfaces {
   static constexpr int64_t stretch = 64;
   ElementsView e;
   const int32_t* part;
-  Vec3d origin;
+  LatticeView lattice;
+  /// The grid's first point: a far wall's corner would leave a small part's volume to rounding.
+  HD Vec3d origin() const {
+    Vec3i p;
+    for (int a = 0; a < 3; ++a)
+      p[a] = lattice.grid_first[a] < 0                  ? 0
+             : lattice.grid_first[a] > lattice.cells[a] ? lattice.cells[a]
+                                                        : lattice.grid_first[a];
+    return lattice.position(p);
+  }
   HD int64_t operator()(int64_t i, PartSurface* out) const {
+    const Vec3d from = origin();
     PartSurface now{-1, -1, 0};
     int64_t n = 0;
     for (int64_t t = stretch * i; t < stretch * (i + 1) && t < e.tris; ++t) {
@@ -139,7 +149,7 @@ struct PartSurfaces {
         ++n;
       }
       if (out)
-        now.volume += tet_volume(origin, e.position[e.tri[t][0]], e.position[e.tri[t][1]], e.position[e.tri[t][2]]);
+        now.volume += tet_volume(from, e.position[e.tri[t][0]], e.position[e.tri[t][1]], e.position[e.tri[t][2]]);
     }
     if (n > 0 && out)
       out[n - 1] = now;

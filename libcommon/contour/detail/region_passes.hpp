@@ -16,14 +16,6 @@ std::vector<T> downloaded(Launcher& m, const typename Launcher::template Array<T
   return to;
 }
 
-/// A far wall's corner would leave a small part's volume to rounding.
-inline Vec3d origin_near_surface(const LatticeView& l) {
-  Vec3i p;
-  for (int a = 0; a < 3; ++a)
-    p[a] = std::clamp(l.grid_first[a], 0, l.cells[a]);
-  return l.position(p);
-}
-
 template <class Launcher>
 class RegionPasses {
   template <class T>
@@ -37,7 +29,7 @@ public:
     name_parts(m, c);
     const auto surfaces =
         gather<PartSurface>(m, "part surfaces", (e.tris + PartSurfaces::stretch - 1) / PartSurfaces::stretch,
-                            PartSurfaces{e, part_.data(), origin_near_surface(c.lattice)});
+                            PartSurfaces{e, part_.data(), c.lattice});
     assign_regions(component, downloaded<PartSurface>(m, surfaces.array, surfaces.n), options);
     std::vector<uint8_t> of_part;
     for (const Component& part : component)

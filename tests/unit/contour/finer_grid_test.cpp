@@ -190,8 +190,11 @@ TEST_CASE(
   options.box.lower = {0.1, -3, -3};
   options.box.upper = {3, 3, 3};
   CHECK(!contour::finer_grid(small, options).grid);
-  for (const double wall :
-       {2.1, 1.1}) { // cuts the grid, but not the surface, and not where it is in its last cells
+  const BlockGrid half = cube_grid(1, 0.5, [](Vec3d x) { return std::exp(0.5 - norm2(x + Vec3d{0, 0, 1})); });
+  options.box.lower = {-1, -1, -1}; // on the grid's own plane
+  options.box.upper = {1, 1, 1};
+  CHECK(!contour::finer_grid(half, options).grid);
+  for (const double wall : {2.1, 1.1}) { // not the surface, though it is in the last cells
     options.box.lower = middle - Vec3d{wall, wall, wall};
     options.box.upper = middle + Vec3d{wall, wall, wall};
     CHECK(contour::finer_grid(small, options).halvings == contour::finer_grid(small, {}).halvings);

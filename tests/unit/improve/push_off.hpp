@@ -5,17 +5,20 @@
 
 namespace molmesh::test {
 
-/// Every 20th surface point goes 0.05 h to 0.2 h along the normal: elements good enough to solve on stay positive.
-/// Returns how many.
-inline int push_off(improve::DynamicMesh& m, const improve::Isosurface& surface) {
+/// Every 20th point of that kind goes 0.05 h to 0.2 h along the normal, or what of it is in its wall: elements good
+/// enough to solve on stay positive. Returns how many.
+inline int push_off(improve::DynamicMesh& m, const improve::Isosurface& surface,
+                    improve::Kind kind = improve::Kind::surface) {
   const double h = surface.spacing();
   std::vector<uint8_t> pushed(m.point.size());
   int count = 0;
   for (size_t v = 0; v < m.point.size(); ++v) {
     double distance;
     Vec3d normal;
-    if (m.vertex[v].kind != improve::Kind::surface || v % 20 != 0 || !surface.probe(m.point[v], distance, normal))
+    if (m.vertex[v].kind != kind || v % 20 != 0 || !surface.probe(m.point[v], distance, normal))
       continue;
+    if (kind == improve::Kind::trace)
+      normal[m.vertex[v].axis()] = 0;
     m.point[v] += h * (0.05 + 0.01 * double(v % 16)) * (v % 40 == 0 ? 1. : -1.) * normal;
     pushed[v] = 1;
     ++count;

@@ -2,6 +2,8 @@
 // and the elements at it are as good as any.
 #include "cut_clusters.hpp"
 #include "improve/improve.hpp"
+#include "push_off.hpp"
+#include "recovery_pass.hpp"
 #include <catch2/catch.hpp>
 #include <map>
 #include <set>
@@ -81,4 +83,27 @@ TEST_CASE("the trace of a surface on a wall lies on the isosurface and in the wa
   CHECK(traces > 1000);
   CAPTURE(traces, off);
   CHECK(1000 * off < traces); // where the isosurface grazes the wall
+}
+
+TEST_CASE("points of a trace that were pushed off come back, within their wall") {
+  const BlockGrid grid = cluster(1, 0.5);
+  const improve::Isosurface isosurface(grid, 1);
+  TetMesh mesh = cut(grid, contour::Options::both, 0.6);
+  improve::improve(mesh, &grid, {});
+  improve::DynamicMesh m = improve::build(mesh, 180, 1);
+  const improve::Fidelity before = improve::measure_fidelity(m, isosurface, 1);
+  const int pushed = push_off(m, isosurface, improve::Kind::trace);
+  REQUIRE(pushed > 2);
+  for (const improve::Element& e : m.element)
+    REQUIRE((!e.alive() || m.quality(e.v) > 0));
+  REQUIRE(improve::measure_fidelity(m, isosurface, 1).points_off_wall > before.points_off_wall);
+  improve::Schedule schedule(m, &isosurface, 32 * isosurface.spacing(), 1);
+  const float worst = schedule.worst();
+  for (int k = 0; k < 4; ++k)
+    schedule.recover(recovery_pass(0.5));
+  CHECK(improve::measure_fidelity(m, isosurface, 1).points_off <= before.points_off);
+  CHECK(schedule.worst() >= worst);
+  for (size_t v = 0; v < m.point.size(); ++v)
+    if (const improve::Vertex& x = m.vertex[v]; m.incident[v] >= 0 && x.kind == improve::Kind::trace)
+      CHECK(m.point[v][x.axis()] == (x.axis() == 0 ? 0.6 : -0.6));
 }
