@@ -15,9 +15,9 @@ struct FinerGrid {
 /// some 5 h. While they would the spacing is halved (halved_grid.hpp), but never
 /// - to more than a million cells in the grid, or inside, where they are to be uniform,
 /// - on grids of many points, unless small bodies alone have them,
-/// - where a wall cuts the surface or takes the place of a grid plane with points inside, or the box would have too
-/// many of the halved spacings,
-/// - where rounding would change the topology, which stays that of trilinear G (I7; halved_topology.hpp).
+/// - where a wall cuts the surface, or the box would have too many of the halved spacings,
+/// - where rounding would change the topology, which stays that of trilinear G (I7; halved_topology.hpp), but in the
+///   cells at a wall that takes the place of a grid plane: of the halved grid another plane goes.
 FinerGrid finer_grid(const BlockGrid& grid, const Options& options);
 
 } // namespace molmesh::contour
