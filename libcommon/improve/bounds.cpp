@@ -55,14 +55,14 @@ bool Editor::put_on_target(const Vertex& k, Vec3d from, Vec3d& x, double reach) 
 // n trials: those that come there, in front and in order; how many.
 int Editor::put_all_on_target(const Vertex& k, Vec3d from, Vec3d* x, int n, double reach) const {
   int there = 0;
+  if (k.kind != Kind::surface) {
+    for (int i = 0; i < n; ++i)
+      if (Vec3d y = x[i]; put_on_target(k, from, y, reach))
+        x[there++] = y;
+    return there;
+  }
   for (int first = 0; first < n; first += 8) {
     const int count = std::min(8, n - first);
-    if (k.kind != Kind::surface) {
-      for (int i = first; i < first + count; ++i)
-        if (Vec3d y = x[i]; put_on_target(k, from, y, reach))
-          x[there++] = y;
-      continue;
-    }
     EightPlaces eight;
     for (int i = 0; i < count; ++i)
       eight.set(size_t(i), x[first + i]);

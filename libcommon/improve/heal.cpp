@@ -1,6 +1,5 @@
 // heal.cpp — the few elements that nothing helps which has to help at once.
 #include "improve/heal.hpp"
-#include "improve/choose.hpp"
 #include "improve/faults.hpp"
 #include "improve/mend.hpp"
 #include "improve/schedule.hpp"
@@ -34,12 +33,7 @@ void heal_part(Editor& editor, DynamicMesh& m, std::vector<int32_t> slots, const
 Counts Schedule::heal(const Pass& pass) {
   constexpr size_t most = 64; // many are no business of long searches
   const int32_t time = ++time_;
-  const float goal = FaultCount::share * pass.goal;
-  find_worst();
-  const std::vector<int32_t> low = choose(
-      static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::stretch,
-      [&](int64_t s) { return m_.worst[size_t(s)] < goal; },
-      [&](int64_t t) { return m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < goal; });
+  const std::vector<int32_t> low = low_elements(FaultCount::share * pass.goal, true);
   if (low.empty() || low.size() > most)
     return {};
   std::vector<int32_t> points;

@@ -129,12 +129,15 @@ Counts Schedule::run(const Pass& pass) {
   return counts += work_off(items, pass, shift, cell);
 }
 
-std::vector<int32_t> Schedule::low_elements(float goal) {
+std::vector<int32_t> Schedule::low_elements(float goal, bool tried_too) {
   find_worst();
   return choose(
       static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::stretch,
       [&](int64_t s) { return m_.worst[size_t(s)] < goal; },
-      [&](int64_t e) { return worthwhile(static_cast<int32_t>(e), goal); });
+      [&](int64_t e) {
+        const Element& el = m_.element[size_t(e)];
+        return tried_too ? el.alive() && el.q < goal : worthwhile(static_cast<int32_t>(e), goal);
+      });
 }
 
 bool Schedule::in_few_parts(const std::vector<int32_t>& items, int shift, double cell) {

@@ -62,7 +62,8 @@ private:
   using Work = std::function<void(Editor&, std::vector<int32_t>&)>;
   /// It is below the goal, and has changed since it was last tried.
   bool worthwhile(int32_t element, float goal) const;
-  std::vector<int32_t> low_elements(float goal); ///< worthwhile
+  /// Worthwhile, or all below the goal.
+  std::vector<int32_t> low_elements(float goal, bool tried_too = false);
   bool in_few_parts(const std::vector<int32_t>& items, int shift, double cell);
   Counts work_off(const std::vector<int32_t>& items, const Pass& pass, int shift, double cell);
   Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,

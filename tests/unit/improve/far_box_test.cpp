@@ -5,6 +5,7 @@
 #include "improve/schedule.hpp"
 #include "push_off.hpp"
 #include "recovery_pass.hpp"
+#include "unit/contour/checked.hpp"
 #include <catch2/catch.hpp>
 
 using namespace molmesh;
@@ -22,8 +23,7 @@ TetMesh mesh_of(const BlockGrid& grid, contour::Options::Meshed meshed, double s
   options.meshed = meshed;
   options.box.kind = contour::BoxRequest::factor;
   options.box.scale = scale;
-  contour::Summary summary;
-  return contour::contour(grid, options, summary, [](const std::string&) {});
+  return test::mesh_of(grid, options);
 }
 
 } // namespace
