@@ -56,6 +56,18 @@ struct FlowMesh {
   improve::Walls walls;
 
   HD float lack(float q) const { return improve::lack(q, goal, worst_first, guard); }
+  /// Whether a triangle at the point must be kept from crossing another sheet (DynamicMesh::crowded): the host's
+  /// passes see to that, and know such triangles by their places.
+  HD bool is_watched(int64_t v) const {
+    for (int64_t i = sails.begin[v]; i < sails.begin[v + 1]; ++i) {
+      int crowded = 0;
+      for (const int32_t corner : sail[sails.item[i]].v)
+        crowded += vertex[corner].crowded;
+      if (crowded >= 2)
+        return true;
+    }
+    return false;
+  }
 };
 
 /// What a point must keep to: every element of its star above `worst`, which is what it was; their deficit and the
@@ -90,7 +102,7 @@ struct WantsToMove {
       bad = bad || q[m.elements.item[i]] < m.goal;
     const improve::Kind kind = m.vertex[v].kind;
     wanted[n] = bad && kind != improve::Kind::fixed && kind != improve::Kind::trace &&
-                (kind != improve::Kind::surface || m.has_surface);
+                (kind != improve::Kind::surface || (m.has_surface && !m.is_watched(v)));
   }
 };
 
@@ -116,7 +128,7 @@ HD inline float worst_if_kept(const FlowMesh& m, int64_t v, const Where& at, con
   for (int64_t i = m.elements.begin[v]; i < m.elements.begin[v + 1]; ++i) {
     const Corners& e = m.element[m.elements.item[i]];
     const float q = improve::tet_quality(at(e.v[0]), at(e.v[1]), at(e.v[2]), at(e.v[3]));
-    if (!(q > limits.worst && q > 1e-6f))
+    if (!(q > limits.worst && q > improve::surely_positive))
       return -1;
     worst = q < worst ? q : worst;
     lack += m.lack(q);

@@ -48,7 +48,7 @@ Angles measure_up_to(const DynamicMesh& m, float quality, int threads) {
 } // namespace
 
 Angles measure_angles(const DynamicMesh& m, int threads) {
-  // No element has less quality than any of its angles alone: those above this have none outside [27°, 137°].
+  // No element has more quality than any of its angles alone: those above this have none outside [27°, 137°].
   const auto enough = static_cast<float>(1.001 * std::max(angle_quality(27), angle_quality(137)));
   const Angles a = measure_up_to(m, enough, threads);
   return a.min < 27 && a.max > 137 ? a : measure_up_to(m, 2, threads);

@@ -231,7 +231,7 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
       e.region = mesh.region[first + k];
       e.q = std::max(q, 0.f);
       worst = std::min(worst, e.q);
-      if (q < 1e-6f && orient3d(corner(k, 0), corner(k, 1), corner(k, 2), corner(k, 3)) <= 0)
+      if (q < surely_positive && orient3d(corner(k, 0), corner(k, 1), corner(k, 2), corner(k, 3)) <= 0)
         fault.found(static_cast<int64_t>(first + k), [&] {
           return name("tetrahedron", static_cast<int64_t>(first + k)) + " has no positive volume";
         });
@@ -247,8 +247,11 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   std::vector<uint8_t> label = set_labels(m, mesh, first);
   const std::vector<uint8_t> way = link(m, mesh, label, threads);
   split_surface(m, way, label, first);
-  for (size_t l = 1; l < first.size(); ++l) // as the first of its triangles
-    m.labels[l].reversed = way[size_t(first[l])] & reversed;
+  std::vector<int64_t> turned(m.labels.size());
+  for (size_t t = 0; t < label.size(); ++t)
+    turned[label[t]] += way[t] & reversed ? 1 : -1;
+  for (size_t l = 1; l < first.size(); ++l) // as most of its triangles
+    m.labels[l].reversed = turned[l] > 0;
   set_kinds(m, mesh, label, sharp, threads);
   return m;
 }

@@ -169,7 +169,7 @@ bool Editor::judge(Candidate& c, float above) const {
 bool Editor::is_above(const Candidate& c, float above) const {
   if (!(c.q > above))
     return false;
-  if (c.q > 1e-6f)
+  if (c.q > surely_positive)
     return true;
   const auto p = [&](size_t i) { return m_.point[size_t(c.v[i])]; };
   return orient3d(p(0), p(1), p(2), p(3)) > 0;

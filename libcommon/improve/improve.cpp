@@ -13,7 +13,10 @@
 namespace molmesh::improve {
 namespace {
 
+// Of the labels that are curved; of all where none is: nothing is bound to these then, but they have a size.
 std::vector<uint8_t> curved_triangles(const DynamicMesh& m, const TetMesh& mesh) {
+  if (std::none_of(m.labels.begin() + 1, m.labels.end(), [](const Label& l) { return l.curved(); }))
+    return std::vector<uint8_t>(mesh.tri.size(), 1);
   std::vector<uint8_t> take(mesh.tri.size());
   for (size_t t = 0; t < mesh.tri.size(); ++t)
     for (const Label& l : m.labels)
@@ -87,6 +90,11 @@ Pass pass_of(const Attempt& attempt, float goal) {
   return pass;
 }
 
+float goal_of(const Options& o) {
+  return static_cast<float>(std::max(angle_quality(std::min(o.min_dihedral, Options::most_min_dihedral)),
+                                     angle_quality(std::max(o.max_dihedral, Options::least_max_dihedral))));
+}
+
 // Of the last elements below the goal.
 const std::vector<Attempt> healing{{2}, {5}, {5, released, 1}, {5, widened, 1}};
 
@@ -118,8 +126,9 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   const Target* target = density ? static_cast<const Target*>(isosurface.get()) : input_surface.get();
   const double h = target->spacing(), edge = mean_surface_edge(m, options.threads); // 4 h and more in merged cells
   Schedule schedule(m, target, std::clamp(21 * edge, 32 * h, 256 * h), options.threads);
-  const float goal =
-      static_cast<float>(std::max(angle_quality(options.min_dihedral), angle_quality(options.max_dihedral)));
+  const float goal = goal_of(options);
+  // For better elements than by default no point leaves the isosurface.
+  const float usual = std::min(goal, goal_of({}));
 
   const auto settle = [&](float floor) {
     result.counts += schedule.settle(floor, kept);
@@ -139,7 +148,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   for (int round = 0; round < options.iterations && schedule.worst() < goal; ++round) {
     const Stage& stage = stages[std::min<size_t>(size_t(round), std::size(stages) - 1)];
     Pass pass;
-    const auto rising = static_cast<float>(stage.share * stage.share * goal);
+    const auto rising = static_cast<float>(stage.share * stage.share * (stage.guard.lift > 0 ? usual : goal));
     pass.goal = rising;
     pass.effort = stage.effort;
     pass.cell = stage.cell;
@@ -190,13 +199,21 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   size_t idle = 0;
   for (int repeat = 0; density && repeat < recoveries && idle < all.size(); ++repeat) {
     const Attempt& attempt = all[idle];
-    Pass pass = pass_of(attempt, goal);
+    Pass pass = pass_of(attempt, usual);
     pass.worst_first = repeat % 2 == 0;
     if (many && repeat < recoveries_of_many) // what goes wrong is taken back: parts are small
       pass.cell = 0.35;
     const Counts c = schedule.recover(pass);
     idle = c.total() > 0 ? std::min<size_t>(idle, 1) : idle + 1;
     result.counts += c;
+  }
+  for (int repeat = 0; density && goal > usual && repeat < 4; ++repeat) { // recovery has mended to the usual goal
+    Pass pass;
+    pass.goal = goal, pass.effort = 1, pass.cell = 8, pass.worst_first = repeat % 2 == 0, pass.guard = released;
+    const Counts c = schedule.run(pass);
+    result.counts += c;
+    if (c.total() == 0)
+      break;
   }
   if (heals)
     for (const Attempt& attempt : healing)

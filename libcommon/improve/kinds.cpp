@@ -16,17 +16,20 @@ struct Extent {
   double rounding = 0;
 };
 
-Extent extent(const TetMesh& mesh) {
+/// Of the points that elements have: a file may hold others.
+Extent extent(const DynamicMesh& m) {
   Extent all;
   double largest = 0;
   bool single = true; // from a program or a file of 32-bit coordinates
-  for (const Vec3d& p : mesh.point)
-    for (int a = 0; a < 3; ++a) {
+  for (size_t v = 0; v < m.point.size(); ++v) {
+    const Vec3d p = m.point[v];
+    for (int a = 0; a < 3 && m.incident[v] >= 0; ++a) {
       all.low[a] = std::min(all.low[a], p[a]);
       all.high[a] = std::max(all.high[a], p[a]);
       largest = std::max(largest, std::abs(p[a]));
       single = single && double(static_cast<float>(p[a])) == p[a];
     }
+  }
   all.rounding = std::max(1e-12 * norm(all.high - all.low), largest * (single ? 0x1p-22 : 0x1p-50));
   return all;
 }
@@ -44,7 +47,7 @@ void find_flat_labels(DynamicMesh& m, const TetMesh& mesh, const std::vector<uin
         high[l][a] = std::max(high[l][a], mesh.point[size_t(v)][a]);
       }
   }
-  const Extent all = extent(mesh);
+  const Extent all = extent(m);
   m.walls.rounding = all.rounding;
   for (size_t l = 1; l < m.labels.size(); ++l)
     for (int a = 0; a < 3; ++a) {
@@ -203,6 +206,15 @@ void fix_kept_edges(DynamicMesh& m, const TetMesh& mesh, const std::vector<Edge>
     const Vec3d n = cross(mesh.point[size_t(f[1])] - p, mesh.point[size_t(f[2])] - p);
     return n / std::max(norm(n), 1e-300);
   };
+  // Files may turn the triangles of one label either way.
+  const auto runs_along = [&](int32_t t, const Edge& e) {
+    const Tri& f = mesh.tri[size_t(t)];
+    return (f[0] == e.a && f[1] == e.b) || (f[1] == e.a && f[2] == e.b) || (f[2] == e.a && f[0] == e.b);
+  };
+  const auto bend = [&](const Edge& e, const Edge& o) { // cosine of what the surface bends by
+    const double cosine = dot(normal(e.tri), normal(o.tri));
+    return runs_along(e.tri, e) == runs_along(o.tri, e) ? -cosine : cosine;
+  };
   const auto curved = [&](const Edge& e) { return m.labels[e.label].curved(); };
   const double limit = std::cos(sharp * 3.14159265358979323846 / 180);
   for (size_t i = 0, j; i < edges.size(); i = j) {
@@ -213,7 +225,7 @@ void fix_kept_edges(DynamicMesh& m, const TetMesh& mesh, const std::vector<Edge>
     if (two)
       for (const int32_t v : {e.a, e.b})
         fans.join(e.tri, edges[i + 1].tri, v);
-    const bool keep = !two || (!two_labels && curved(e) && dot(normal(e.tri), normal(edges[i + 1].tri)) < limit);
+    const bool keep = !two || (!two_labels && curved(e) && bend(e, edges[i + 1]) < limit);
     const auto first = edges.begin() + std::ptrdiff_t(i), last = edges.begin() + std::ptrdiff_t(j);
     const bool of_both = (j - i == 3 || two_labels) && std::count_if(first, last, curved) == 1;
     if (keep)

@@ -193,6 +193,22 @@ TEST_CASE("a few rounds improve, and nothing becomes worse for want of more") {
   }
 }
 
+TEST_CASE("whatever quality is asked for, the surface stays on the isosurface") {
+  const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  for (const double min : {28., 34., 60.}) {
+    TetMesh mesh = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
+    improve::Options options;
+    options.min_dihedral = min;
+    options.max_dihedral = 180 - 1.6 * min;
+    const improve::Result r = improve::improve(mesh, &grid, options);
+    CAPTURE(min);
+    CHECK(r.after.min > 26.5); // better than by default
+    CHECK(r.after.max < 138);
+    CHECK(measure(mesh, &grid).off <= 0.02);
+    CHECK(r.fidelity.turned == 0);
+  }
+}
+
 TEST_CASE("angles are measured as the elements beyond a limit are counted") {
   TetMesh mesh = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
   const auto check = [&](double least, double most) {

@@ -82,6 +82,50 @@ TEST_CASE("a wall that is bent is no plane, far from the origin either") {
   }
 }
 
+TEST_CASE("points that no element has say nothing of the walls") {
+  TetMesh mesh = ball_in_a_box();
+  const auto expected = kinds(improve::build(mesh, 180, 1));
+  for (Vec3d& p : mesh.point)
+    p = {double(float(p.x)), double(float(p.y)), double(float(p.z))};
+  for (const Vec3d& p : {Vec3d{-20, 3, 1}, Vec3d{0x1p33, 0x1p33, -0x1p33}})
+    mesh.point.push_back(p);
+  const improve::DynamicMesh m = improve::build(mesh, 180, 1);
+  CHECK(planes(m) == 6);
+  CHECK(std::count_if(m.labels.begin(), m.labels.end(), [](const improve::Label& l) { return l.wall; }) == 6);
+  for (size_t kind = 1; kind < expected.size(); ++kind) // those of [0] have no label
+    CHECK(kinds(m)[kind] == expected[kind]);
+}
+
+TEST_CASE("triangles of one label may be turned either way") {
+  const Field field = [](Vec3d p) { return std::exp(-0.3 * (norm2(p - Vec3d{2.6, 2.5, 2.4}) - 1.44)); };
+  const BlockGrid grid = lattice_grid(field, {0, 0, 0}, 0.5, 10);
+  TetMesh mesh = ball_in_a_box();
+  const auto expected = kinds(improve::build(mesh, 50, 1));
+  for (size_t t = 0; t < mesh.tri.size(); t += 3)
+    std::swap(mesh.tri[t][1], mesh.tri[t][2]);
+  CHECK(kinds(improve::build(mesh, 50, 1)) == expected); // no edge is sharper for it
+  CHECK(improve::improve(mesh, &grid, {}).fidelity.turned == 0);
+}
+
+TEST_CASE("without a curved label the size of a mesh does not matter") {
+  const auto after = [](double unit) {
+    TetMesh mesh = ball_in_a_box();
+    mesh.region.assign(mesh.tet.size(), Region::molecule);
+    rebuild_triangles(mesh);
+    label_walls(mesh);
+    for (Vec3d& p : mesh.point)
+      p = unit * p;
+    const improve::Result result = improve::improve(mesh, nullptr, {});
+    CHECK(result.after.min >= 25);
+    CHECK(result.after.max <= 140);
+    return result.counts.total();
+  };
+  const int64_t operations = after(1);
+  CHECK(operations > 0);
+  CHECK(after(0x1p-10) == operations);
+  CHECK(after(0x1p+10) == operations);
+}
+
 TEST_CASE("a mesh far from the origin is improved as one at the origin is") {
   improve::Options how;
   TetMesh here = ball_in_a_box(), there = here;

@@ -76,7 +76,7 @@ TEST_CASE("the trace of a surface on a wall lies on the isosurface and in the wa
         double distance;
         Vec3d normal;
         ++traces;
-        off += !isosurface.probe(p, distance, normal) || std::abs(distance) > 0.04 * isosurface.spacing();
+        off += !isosurface.probe(p, distance, normal) || std::abs(distance) > 0.02 * isosurface.spacing();
       }
     }
   }

@@ -3,6 +3,7 @@
 #include "cuda/par/host.hpp"
 #include "cut_clusters.hpp"
 #include "improve/improve.hpp"
+#include "improve/schedule.hpp"
 #include <catch2/catch.hpp>
 
 using namespace molmesh;
@@ -70,6 +71,34 @@ TEST_CASE("the device's flow keeps a cut surface in the box") {
       CHECK(beyond == 0);
     }
   }
+}
+
+TEST_CASE("the device's flow leaves sheets that face each other to the host") {
+  const BlockGrid grid = cluster(1, 1);
+  const improve::Isosurface surface(grid, 1);
+  contour::Options options;
+  options.meshed = contour::Options::interior;
+  improve::DynamicMesh m = improve::build(mesh_of(grid, options), 180, 1);
+  improve::Schedule schedule(m, &surface, 100, 1);
+  const improve::DynamicMesh before = m;
+  improve::Pass pass;
+  pass.goal = static_cast<float>(improve::angle_quality(30));
+  cuda::HostBackend backend(1);
+  REQUIRE(cuda::Flow<cuda::HostBackend>(backend, &surface, 1).run(m, pass, 8) > 0);
+  int64_t watched = 0, moved = 0, moved_watched = 0;
+  for (size_t t = 0; t < m.element.size(); ++t)
+    for (size_t f = 0; f < 4; ++f)
+      if (m.element[t].alive() && m.element[t].n[f] < 0) {
+        const auto v = improve::outward_triangle(m.element[t].v, f);
+        const bool changed = std::any_of(v.begin(), v.end(),
+                                         [&](int32_t w) { return m.point[size_t(w)] != before.point[size_t(w)]; });
+        watched += m.crowded(v);
+        moved += changed;
+        moved_watched += changed && m.crowded(v);
+      }
+  CHECK(watched > 10);
+  CHECK(moved > 10);
+  CHECK(moved_watched == 0);
 }
 
 TEST_CASE("walls are planes that a mesh ends at") {
