@@ -8,7 +8,6 @@
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
 #include <algorithm>
-#include <numeric>
 #include <optional>
 
 using namespace molmesh;
@@ -60,8 +59,8 @@ void describe(CLI::App& app, Options& o) {
       ->check(CLI::IsMember({"interior", "exterior", "both"}));
   app.add_option(
          "--box", o.box,
-         "outer box: auto (at least twice the surface's extents), tight (the grid), a factor of the surface's "
-         "extents (> 1), or x0,y0,z0,x1,y1,z1 in Å, which may cut the molecule")
+         "outer box: auto (interior: the grid; else at least twice the surface's extents), tight (the grid), a "
+         "factor of the surface's extents (> 1), or x0,y0,z0,x1,y1,z1 in Å, which may cut the molecule")
       ->type_name("BOX");
   app.add_option(
          "--adapt", o.adapt,
@@ -73,7 +72,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--cavities", o.cavities, "closed cavities: keep (region 3) or fill (region 1)")
       ->check(CLI::IsMember({"keep", "fill"}));
   app.add_option("--drop-below", o.drop_below,
-                 "parts of the molecule smaller than this become outside; those that the box cuts stay")
+                 "parts of the molecule smaller than this become what is round them; those that the box cuts stay")
       ->type_name("Å³")
       ->check(CLI::Range(0., 1e300));
 }

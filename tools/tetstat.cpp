@@ -18,7 +18,7 @@ struct Options : cli::Common {
 
 void describe(CLI::App& app, Options& o) {
   app.add_flag("--json", o.json, "one JSON object instead of text (formats/tetstat/TETSTATv1.md)");
-  app.add_flag("--crossings", o.crossings, "also look for surface triangles that cross (exact; interior meshes)");
+  app.add_flag("--crossings", o.crossings, "also look for surface triangles that cross (exact)");
   app.add_option("--compare", o.compare, "a mesh to compare with: --compare BEFORE AFTER; the status is AFTER's")
       ->type_name("FILE");
   cli::add_dihedral_limits(app, o.min_dihedral, o.max_dihedral);

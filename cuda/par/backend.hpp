@@ -11,7 +11,7 @@
 //   for_n(name, n, item, work)         item(i) for i in [0, n), each call independent of the others
 //   for_teams(name, n, item, work)     item(i, team, shared): Team::size threads work on i together
 //   T scan(name, pointer, n)           count[i] → sum of count[0..i), in place; slot n, one more, gets the total
-//   sort_pairs(name, keys, values, n)  ascending keys, unsigned integers; the order of equal keys is open
+//   sort_pairs(name, keys, values, n)  ascending keys, unsigned integers; equal keys stay in their order
 //   int64_t room()                     bytes of the device's memory that may still be taken
 //   void plan(bytes)                   what follows takes so many at once: says what is to be paged (Ledger)
 // Where the device's memory does not suffice, array() throws OutOfRoom, or, as the backend was made, takes memory

@@ -35,7 +35,7 @@ struct ComplexArrays {
   ComplexView view; ///< points to them, and to the lattice, octree and surface that the caller keeps
 };
 
-/// On the host; from a device without positions, distances and has_moved, which only elements need.
+/// On the host.
 struct HostMemory {
   template <class T>
   using Array = LargeArray<T>;

@@ -3,11 +3,37 @@
 #include "contour/detail/at.hpp"
 #include "contour/detail/region_passes.hpp"
 #include "par/launcher.hpp"
+#include <algorithm>
 #include <array>
+#include <numeric>
+#include <utility>
 
 namespace molmesh::contour {
 
 using detail::at;
+
+namespace {
+
+// The first of those of one region has the volume of all; what is outside has none.
+void join_touching(std::vector<Component>& part, const std::vector<std::array<int32_t, 2>>& next_to) {
+  std::vector<int32_t> first(part.size());
+  std::iota(first.begin(), first.end(), 0);
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& [in, out] : next_to)
+      if (part[at(in)].region == part[at(out)].region && first[at(in)] != first[at(out)]) {
+        first[at(in)] = first[at(out)] = std::min(first[at(in)], first[at(out)]);
+        changed = true;
+      }
+  }
+  for (size_t i = 0; i < part.size(); ++i)
+    if (at(first[i]) != i && part[i].region != outside) {
+      part[at(first[i])].volume += std::exchange(part[i].volume, 0);
+      part[i].joined = true;
+    }
+}
+
+} // namespace
 
 void assign_regions(std::vector<Component>& part, const std::vector<detail::PartSurface>& surfaces,
                     const RegionOptions& options) {
@@ -47,6 +73,7 @@ void assign_regions(std::vector<Component>& part, const std::vector<detail::Part
   for (Component& c : part) // what was dropped in one is filled with it
     if (options.fill_cavities && c.region == cavity)
       c.region = molecule;
+  join_touching(part, next_to);
 }
 
 Components find_components(const ComplexView& c, const Elements& elements, const RegionOptions& options,

@@ -11,8 +11,9 @@ namespace molmesh::contour {
 struct Component {
   bool inside = false;
   bool at_wall = false;
-  double volume = 0;  ///< Å³, enclosed by its own surface; 0 for an outside part that reaches the wall
-  int32_t region = 0; ///< Region
+  double volume = 0;   ///< Å³, without what is in it; 0 for an outside part that reaches the wall
+  int32_t region = 0;  ///< Region
+  bool joined = false; ///< to one before it, of the same region now, which has its volume
 };
 
 struct Components {
@@ -29,7 +30,7 @@ struct RegionOptions {
 Components find_components(const ComplexView& c, const Elements& elements, const RegionOptions& options,
                            int threads);
 
-/// Volumes and regions of parts whose surfaces these are.
+/// Volumes and regions of parts whose surfaces these are. A filled cavity and what is round it are one part.
 void assign_regions(std::vector<Component>& part, const std::vector<detail::PartSurface>& surfaces,
                     const RegionOptions& options);
 

@@ -40,11 +40,11 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
 
   stages.count(summary);
   for (const Component& c : parts) {
-    if (c.inside && c.region == molecule)
+    if (c.region == molecule && !c.joined)
       summary.molecule_volumes.push_back(c.volume);
     if (c.inside && c.region != molecule)
       ++summary.dropped_parts;
-    if (!c.inside && c.region == cavity)
+    if (c.region == cavity && !c.joined)
       summary.cavity_volumes.push_back(c.volume);
     if (!c.inside && c.region == molecule)
       ++summary.filled_cavities;

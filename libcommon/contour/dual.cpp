@@ -7,11 +7,6 @@
 
 namespace molmesh::contour {
 
-void refuse_surface_at_wall() {
-  fail(Status::failed, "the surface meets the wall of the box: give hier2density a larger --margin, or ask for the "
-                       "cut with --box x0,y0,z0,x1,y1,z1");
-}
-
 Dual make_dual(const DualInput& in, const std::function<void(const std::string&)>& on_phase) {
   on_phase("dual vertices");
   par::Launcher launcher(in.threads);

@@ -27,7 +27,4 @@ struct Dual {
 /// Throws Error(failed) when the surface meets a wall that was not asked to cut it.
 Dual make_dual(const DualInput& input, const std::function<void(const std::string&)>& on_phase);
 
-/// What a surface at a wall is refused with.
-[[noreturn]] void refuse_surface_at_wall();
-
 } // namespace molmesh::contour

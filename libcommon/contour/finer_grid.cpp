@@ -45,7 +45,16 @@ int64_t inside_points(const BlockGrid& grid) {
          512 * static_cast<int64_t>(grid.inside.size());
 }
 
+/// A halved grid's indices are twice as large, and those of a quarter's spacing have to be indices still.
+bool lies_too_far(const BlockGrid& grid) {
+  constexpr int32_t far = 1 << 27;
+  const Vec3i low = grid.frame.lower, high = low + grid.frame.points;
+  return std::max({-low.x, -low.y, -low.z, high.x, high.y, high.z}) > far;
+}
+
 bool may_lose_too_much(const BlockGrid& grid) {
+  if (lies_too_far(grid))
+    return false;
   const int64_t active = active_points(grid);
   return active <= few_active_points ||
          (active <= most_active_points && double(inside_points(grid)) < inside_of_small * double(active));
@@ -69,8 +78,8 @@ struct Bodies {
   }
   /// given_back: tetsmooth puts points so far outside the isosurface.
   bool lose_too_much(double given_back) const {
-    return cells < too_few_cells ||
-           smoothed * std::fabs(cut) > given_back * sums.area + most_missing * sums.volume();
+    return cells > 0 && (cells < too_few_cells ||
+                         smoothed * std::fabs(cut) > given_back * sums.area + most_missing * sums.volume());
   }
 };
 

@@ -157,11 +157,15 @@ Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls, i
 
 bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_t last, bool exact) {
   const double h = grid_.frame.spacing, origin = grid_.frame.origin[a];
-  const double low = (lower - origin) / h, high = (upper - origin) / h; // in grid indices
+  const auto index = [&](double x) { // a wall on a grid plane is on it, whatever rounding makes of its place
+    const double i = (x - origin) / h, whole = std::floor(i + 0.5);
+    return exact && std::fabs(i - whole) <= 1e-9 ? whole : i;
+  };
+  const double low = index(lower), high = index(upper);
   const int32_t unit = 1 << top_level;
   // A wall within the grid takes the place of the nearest grid plane.
-  auto begin = static_cast<int32_t>(exact ? std::lround(low) : std::lround(std::floor(low)));
-  auto end = static_cast<int32_t>(exact ? std::lround(high) : std::lround(std::ceil(high)));
+  auto begin = static_cast<int32_t>(std::floor(exact ? low + 0.5 : low));
+  auto end = static_cast<int32_t>(exact ? std::floor(high + 0.5) : std::ceil(high));
   for (int side = 0; side < 2; ++side) {
     const double wall = side ? high : low;
     Cut& cut = cut_[static_cast<size_t>(a)][static_cast<size_t>(side)];
@@ -217,6 +221,11 @@ bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
   x.front() = lower; // to the last bit
   x.back() = upper;
   return true;
+}
+
+void refuse_surface_at_wall() {
+  fail(Status::failed, "the surface meets the wall of the box: give hier2density a larger --margin, or ask for the "
+                       "cut with --box x0,y0,z0,x1,y1,z1");
 }
 
 } // namespace molmesh::contour

@@ -2,9 +2,7 @@
 #pragma once
 #include "density/block_grid.hpp"
 #include "geom/vec.hpp"
-#include <algorithm>
 #include <array>
-#include <string>
 #include <vector>
 
 namespace molmesh::contour {
@@ -55,17 +53,6 @@ struct LatticeView {
       if ((cut[a][0].cuts && p[a] == 0) || (cut[a][1].cuts && p[a] == cells[a]))
         return true;
     return false;
-  }
-  HD bool inside(Vec3i p) const {
-    BlockIndexView::Last last;
-    return inside(p, last);
-  }
-  /// For points close to each other: `last` is theirs.
-  HD bool inside(Vec3i p, BlockIndexView::Last& last) const {
-    if (any_cut && on_cut(p))
-      return value(p) > isovalue;
-    const int64_t b = index.find(base + p, last);
-    return b == BlockIndexView::inside || (b >= 0 && bit(inside_words, b, base + p));
   }
   /// Whether the grid holds G there, not only the side; v: value(p) then. last: as for inside.
   HD bool active(Vec3i p, float& v, BlockIndexView::Last& last) const {
@@ -171,5 +158,8 @@ private:
   bool cut_allowed_ = false;
   LatticeView view_;
 };
+
+/// What a surface at a wall that was not asked to cut it is refused with.
+[[noreturn]] void refuse_surface_at_wall();
 
 } // namespace molmesh::contour

@@ -155,9 +155,6 @@ int64_t relax_on(const Surface& surface, bool surface_moves, Elements& elements,
 
 int64_t relax(Elements& elements, const LargeArray<uint8_t>& lattice_class, const improve::Target* surface,
               int threads) {
-  if (constexpr int64_t most = INT32_MAX; static_cast<int64_t>(elements.tet.size()) > most)
-    fail(Status::failed, std::to_string(elements.tet.size()) + " elements on both sides, expected " +
-                             std::to_string(most) + " at most: a coarser spacing or a larger --adapt");
   if (!surface)
     return relax_on(NoSurface{}, false, elements, lattice_class, threads);
   if (const auto* isosurface = dynamic_cast<const improve::Isosurface*>(surface))

@@ -25,7 +25,7 @@ public:
   virtual void relax() = 0;
   virtual std::vector<Component> find_regions(const RegionOptions& options) = 0;
   virtual TetMesh assemble(Options::Meshed meshed) = 0;
-  /// Everything but volumes and parts.
+  /// What they know: not volumes and parts, nor what was asked for and done to the grid.
   virtual void count(Summary& summary) const = 0;
   /// From here on nothing reads the lattice or its grid; also after a stage has thrown.
   virtual void let_go() noexcept {}
@@ -43,10 +43,7 @@ public:
   TetMesh assemble(Options::Meshed meshed) override;
   void count(Summary& summary) const override;
 
-  const Octree& tree() const { return *tree_; }
-  const Surface& surface() const { return surface_; } ///< without samples when make_dual is done
-  const Dual& dual() const { return dual_; }          ///< the elements' positions stand for the complex's
-  const Components& regions() const { return regions_; }
+  const Dual& dual() const { return dual_; } ///< the elements' positions stand for the complex's
 
 private:
   int threads_;

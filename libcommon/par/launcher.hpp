@@ -67,7 +67,7 @@ public:
   T scan(const char*, T* count, int64_t n) {
     return count[n] = exclusive_scan(count, n);
   }
-  /// Ascending keys; nobody counts on the order of equal ones (Backend).
+  /// Ascending keys, those of one key by their values: as Backend where these come in ascending.
   template <class K, class V>
   void sort_pairs(const char*, K* keys, V* values, int64_t n) {
     std::vector<std::pair<K, V>> pair(static_cast<size_t>(n));

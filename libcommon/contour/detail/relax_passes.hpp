@@ -2,6 +2,8 @@
 #pragma once
 #include "contour/detail/nearer_passes.hpp"
 #include "contour/detail/vertex_stars.hpp"
+#include "error.hpp"
+#include <string>
 
 namespace molmesh::contour::detail {
 
@@ -17,7 +19,7 @@ public:
   /// lattice_class: of the first `known` vertices. surface_moves: vertices on the surface do.
   RelaxPasses(Launcher& m, const ElementsView& e, const uint8_t* lattice_class, int64_t known, bool surface_moves,
               Mover& mover)
-      : m_(m), mover_(mover), surface_moves_(surface_moves), quality_(m.template array<float>(e.tets)),
+      : m_(m), mover_(mover), surface_moves_(surface_moves), quality_(m.template array<float>(numbered(e.tets))),
         bound_(m.filled(4 * e.positions, uint8_t{0})), stars_(m) {
     // 13.2° counts like it. Q is held to the least of the paper's improved meshes: raising it is tetsmooth's work.
     constexpr double largest_angle = 159.8, least_q = 0.1;
@@ -29,6 +31,14 @@ public:
     r_.classes = {lattice_class, known};
     mover_.judge(Qualities{e, r_.classes, r_.shape, r_.quality});
     m.for_n("bounds", e.tris, RaiseBounds{e, r_.bound}, {double(e.tris) * 16});
+  }
+
+  /// So many elements, if stars can name them.
+  static int64_t numbered(int64_t elements) {
+    if (constexpr int64_t most = INT32_MAX; elements > most)
+      fail(Status::failed, std::to_string(elements) + " elements on both sides, expected " + std::to_string(most) +
+                               " at most: a coarser spacing or a larger --adapt");
+    return elements;
   }
 
   /// How often a vertex moved.

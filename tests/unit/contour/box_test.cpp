@@ -1,9 +1,11 @@
 // box_test.cpp — outer boxes: exact walls, cuts through the molecule, what is refused.
 #include "contour/contour.hpp"
+#include "contour/lattice.hpp"
 #include "error.hpp"
 #include "improve/improve.hpp"
 #include "unit/contour/checked.hpp"
 #include "unit/contour/sample_grid.hpp"
+#include "unit/refusal.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -43,7 +45,9 @@ TEST_CASE("boxes: exact walls, a cut through the molecule, few elements far away
     CHECK_THROWS_AS(mesh_of(grid, options), Error);
     options.box.lower = {-1, -1, -1}; // within the molecule
     options.box.upper = {1.5, 1, 1.2};
-    CHECK(region_volume(checked(mesh_of(grid, options)), molecule) == Approx(2.5 * 2 * 2.2));
+    contour::Summary summary;
+    CHECK(region_volume(checked(mesh_of(grid, options, summary)), molecule) == Approx(2.5 * 2 * 2.2));
+    CHECK(summary.halvings == 0); // there is no body to be small
     options.meshed = Options::exterior;
     CHECK_THROWS_WITH(mesh_of(grid, options), Catch::Contains("nothing to mesh"));
   }
@@ -101,12 +105,42 @@ TEST_CASE("a mesh does not depend on where the grid's indices begin") {
   }
 }
 
+TEST_CASE("a wall on a grid plane takes its place, whatever rounding makes of it") {
+  BlockGrid grid = cube_grid(6, 0.3, atom);
+  contour::BoxRequest box;
+  box.kind = contour::BoxRequest::corners;
+  int64_t astray = 0; // by rounding
+  for (int i = 0; i < 40; ++i) {
+    grid.frame.origin = {1.0 / 3 + 12.345 * i, -7.1 * i, 1e3 + 0.7 * i};
+    box.lower = grid.frame.position({-14, -13, -10});
+    box.upper = grid.frame.position({14, 15, 18});
+    for (int a = 0; a < 3; ++a)
+      astray += (box.upper[a] - grid.frame.origin[a]) / 0.3 < Vec3i{14, 15, 18}[a];
+    const contour::Lattice lattice(grid, box, true, 1);
+    CHECK(lattice.cells.x == 28);
+    CHECK(lattice.cells.y == 28);
+    CHECK(lattice.cells.z == 28);
+    const contour::LatticeView& view = lattice.view();
+    for (int a = 0; a < 3; ++a)
+      for (size_t side = 0; side < 2; ++side) { // as the plane that it is, within the grid's 20 on each side
+        CHECK(view.cut[a][side].cuts);
+        CHECK(view.cut[a][side].share == 0);
+      }
+    CHECK(lattice.position({0, 0, 0}) == box.lower);
+    CHECK(lattice.position(lattice.cells) == box.upper);
+  }
+  CHECK(astray > 10);
+}
+
 TEST_CASE("a surface that meets the wall is refused unless the box was asked to cut it") {
-  const BlockGrid grid = cube_grid(2.5, 0.5, atom); // all inside but for nothing: no surface
   Options options;
-  CHECK_THROWS_AS(mesh_of(grid, options), Error);
-  const BlockGrid cut = test::sample_grid({-12, -12, 0}, {25, 25, 13}, 0.5, 2, atom);
-  CHECK_THROWS_AS(mesh_of(cut, options), Error);
+  // The second one's lattice is wider than the grid, for the largest cells to fill it.
+  const BlockGrid corners_outside = cube_grid(2.5, 0.5, atom),
+                  half = test::sample_grid({-12, -12, 0}, {25, 25, 13}, 0.5, 2, atom);
+  for (const BlockGrid* grid : {&corners_outside, &half}) {
+    CHECK_THROWS_WITH(mesh_of(*grid, options), Catch::Contains("the surface meets the wall of the box"));
+    CHECK(refusal(Status::failed, [&] { mesh_of(*grid, options); }).find("--margin") != std::string::npos);
+  }
 }
 
 TEST_CASE("a far wall takes no digits from the volumes of parts") {

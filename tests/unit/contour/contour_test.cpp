@@ -98,8 +98,11 @@ TEST_CASE("known shapes have their Euler numbers, components and volumes") {
       REQUIRE(summary.cavity_volumes.size() == 1);
       CHECK(summary.cavity_volumes[0] == Approx(region_volume(v, cavity)).epsilon(1e-9));
       options.fill_cavities = true;
-      const Validity filled = checked(mesh_of(grid, options));
+      const Validity filled = checked(mesh_of(grid, options, summary = {}));
       CHECK(region_volume(filled, cavity) == 0);
+      CHECK(summary.cavity_volumes.empty());
+      REQUIRE(summary.molecule_volumes.size() == 1); // solid now
+      CHECK(summary.molecule_volumes[0] == Approx(region_volume(filled, molecule)).epsilon(1e-9));
       CHECK(filled.surface.components == 1);
       options.fill_cavities = false;
       options.meshed = Options::exterior;
@@ -134,9 +137,15 @@ TEST_CASE("dust in a cavity goes with the cavity, a hollow part goes with its ow
   options.drop_below = 10;
   for (bool fill : {false, true}) {
     options.fill_cavities = fill;
-    const Validity v = checked(mesh_of(dust, options));
+    contour::Summary summary;
+    const Validity v = checked(mesh_of(dust, options, summary));
     CHECK(v.surface.components == (fill ? 1 : 2));
     CHECK((region_volume(v, cavity) > 0) == !fill);
+    REQUIRE(summary.molecule_volumes.size() == 1); // the dust is part of the cavity, or of what fills it
+    CHECK(summary.molecule_volumes[0] == Approx(region_volume(v, molecule)).epsilon(1e-9));
+    REQUIRE(summary.cavity_volumes.size() == (fill ? 0 : 1));
+    if (!fill)
+      CHECK(summary.cavity_volumes[0] == Approx(region_volume(v, cavity)).epsilon(1e-9));
   }
   options.drop_below = 80; // the hollow part (49), not the atom (113)
   for (bool fill : {false, true}) {
