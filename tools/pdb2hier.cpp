@@ -18,7 +18,8 @@ struct Options : cli::Common {
 
 void describe(CLI::App& app, Options& o) {
   const auto keep_or_drop = CLI::IsMember({"keep", "drop"});
-  app.add_option("--format", o.pdb.format, "of the input; auto: PQR where the name ends in .pqr, else from its contents")
+  app.add_option("--format", o.pdb.format,
+                 "of the input; auto: PQR where the name ends in .pqr, else from its contents")
       ->type_name("FORMAT")
       ->check(CLI::IsMember({"auto", "pdb", "mmcif", "mmjson", "pqr"}));
   app.add_option("--model", o.pdb.model, "first, all, or a model's number")->type_name("MODEL");

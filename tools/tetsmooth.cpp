@@ -41,7 +41,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--parts", o.parts,
                  "parts (METIS) that the elements are numbered by in the output, one an element at most")
       ->check(CLI::Range(1, 1000000));
-  cli::add_dihedral_limits(app, o.min_dihedral, o.max_dihedral, "; up to 34 and 125 also aimed at, 26 and 138.5 always");
+  cli::add_dihedral_limits(app, o.min_dihedral, o.max_dihedral, ", and aimed at up to 34 and 125");
 }
 
 nlohmann::ordered_json json(const improve::Angles& a) {

@@ -154,7 +154,8 @@ void assign_exponents(Arrangement& a, const PdbOptions& options, PdbReport& repo
     if (!any)
       fail_input(rule.where + ": found no atom in selection '" + rule.selection + "', expected some");
     if (!(rule.residue && has("residue")) && !(rule.chain && has("chain")) && !(rule.domain && has("domain")))
-      fail_input(rule.where + ": found exponents that have no effect alone, expected one of a level that --levels has");
+      fail_input(rule.where +
+                 ": found exponents that have no effect alone, expected one of a level that --levels has");
     const auto idle = [&](const std::optional<double>& exponent, const char* name, const char* level) {
       if (exponent && !has(level))
         report.notes.push_back(rule.where + ": " + name + " has no effect, --levels has no " + level);

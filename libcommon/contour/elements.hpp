@@ -4,8 +4,8 @@
 // tetrahedron; all of these have positive volume exactly when the segment between the dual vertices pierces the
 // face. Where it does not, a point of the face is put between them: then they always have. The tetrahedra round a
 // sign-change edge are replaced by pyramids from either end over the ring of dual vertices, both split by the same
-// diagonals; where no diagonal leaves positive volumes, or better ones than that, the edge's crossing point is joined
-// with the ring. So every mesh is valid by construction: what is chosen is only how good it is.
+// diagonals; where no diagonal leaves positive volumes, or better ones than that, the edge's crossing point is
+// joined with the ring. So every mesh is valid by construction: what is chosen is only how good it is.
 #pragma once
 #include "contour/complex.hpp"
 #include "contour/detail/elements_view.hpp"

@@ -14,9 +14,9 @@ struct Fidelity {
   int64_t points_off_wall = 0;   ///< and in walls that cut the surface
   int64_t centroids_off = 0;     ///< further than 0.25 spacings, or not known
   int64_t turned = 0;            ///< normals more than 45° from its own
-  double volume = 0;  ///< Å³ of the mesh's lowest region: the inside, where that is meshed
-  double missing = 0; ///< Å³ that the isosurface encloses beyond that (to first order; negative: less)
-  double area = 0;    ///< Å²
+  double volume = 0;             ///< Å³ of the mesh's lowest region: the inside, where that is meshed
+  double missing = 0;            ///< Å³ that the isosurface encloses beyond that (to first order; negative: less)
+  double area = 0;               ///< Å²
 };
 
 Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int threads);
