@@ -27,9 +27,8 @@ struct GatherSails {
       if (faces[i] >> f & 1) {
         if (out) {
           const int32_t* const v = element[i].v;
-          const int swapped = faces[i] >> (4 + f) & 1; // as improve::outward_face has them, or the other way round
-          const int face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-          out[n] = {{v[face[f][0]], v[face[f][1 + swapped]], v[face[f][2 - swapped]]}};
+          const int swapped = faces[i] >> (4 + f) & 1; // as seen from outside, or the other way round
+          out[n] = {{v[tet_face(f, 0)], v[tet_face(f, 1 + swapped)], v[tet_face(f, 2 - swapped)]}};
         }
         ++n;
       }

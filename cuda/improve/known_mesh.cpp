@@ -8,19 +8,9 @@ namespace {
 
 uint8_t sail_faces(const improve::DynamicMesh& m, const improve::Element& e) {
   unsigned faces = 0;
-  for (size_t f = 0; e.alive() && f < 4; ++f) {
-    const improve::Label& label = m.labels[e.label[f]];
-    if (e.label[f] == 0 || !label.curved())
-      continue;
-    const bool outside = e.n[f] < 0;
-    const int32_t across = outside ? 0 : m.element[static_cast<size_t>(e.n[f])].region;
-    if (!outside && across < e.region)
-      continue; // its other side counts it
-    const bool lower = outside || e.region < across;
-    faces |= 1u << f;
-    if (lower == label.reversed) // the face runs against the isosurface's normal
-      faces |= 16u << f;
-  }
+  for (size_t f = 0; e.alive() && f < 4; ++f)
+    if (m.counts_here(e, f) && m.labels[e.label[f]].curved())
+      faces |= (m.outward(e, f) ? 1u : 17u) << f;
   return static_cast<uint8_t>(faces);
 }
 

@@ -45,16 +45,14 @@ int64_t inside_points(const BlockGrid& grid) {
          512 * static_cast<int64_t>(grid.inside.size());
 }
 
-/// A halved grid's indices are twice as large, and those of a quarter's spacing have to be indices still.
+/// Twice its indices, and the box's that reach on from there, would be over 10^9, where IsosurfaceView knows none.
 bool lies_too_far(const BlockGrid& grid) {
-  constexpr int32_t far = 1 << 27;
+  constexpr int32_t far = (1 << 28) + (1 << 20);
   const Vec3i low = grid.frame.lower, high = low + grid.frame.points;
   return std::max({-low.x, -low.y, -low.z, high.x, high.y, high.z}) > far;
 }
 
 bool may_lose_too_much(const BlockGrid& grid) {
-  if (lies_too_far(grid))
-    return false;
   const int64_t active = active_points(grid);
   return active <= few_active_points ||
          (active <= most_active_points && double(inside_points(grid)) < inside_of_small * double(active));
@@ -128,7 +126,7 @@ FinerGrid finer_grid(const BlockGrid& grid, const Options& options) {
     return finer;
   while (finer.halvings < most_halvings) {
     const BlockGrid& now = finer.grid ? *finer.grid : grid;
-    if (!cells_too_large(now, options, finer.halvings))
+    if (lies_too_far(now) || !cells_too_large(now, options, finer.halvings))
       break;
     std::optional<BlockGrid> half = halved_alike(now, options.threads);
     if (!half)

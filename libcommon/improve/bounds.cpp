@@ -8,12 +8,6 @@
 
 namespace molmesh::improve {
 
-// Whether the face, seen as an outward one of e, runs as the target's normal does.
-bool Editor::outward(const Element& e, size_t face) const {
-  const bool lower = e.n[face] < 0 || e.region < m_.element[size_t(e.n[face])].region;
-  return lower != m_.labels[e.label[face]].reversed;
-}
-
 double Editor::misfit(Vec3d a, Vec3d b, Vec3d c, double most_tilt) const {
   return improve::misfit(*target_, guard_, most_tilt, a, b, c);
 }
@@ -23,9 +17,10 @@ double Editor::misfit_face(const Element& e, size_t face, double most_tilt) cons
   if (!target_ || !m_.labels[e.label[face]].curved())
     return 0;
   std::array<Vec3d, 3> p;
+  const auto v = outward_triangle(e.v, face);
   for (size_t i = 0; i < 3; ++i)
-    p[i] = m_.point[size_t(e.v[size_t(outward_face[face][i])])];
-  return outward(e, face) ? misfit(p[0], p[1], p[2], most_tilt) : misfit(p[0], p[2], p[1], most_tilt);
+    p[i] = m_.point[size_t(v[i])];
+  return m_.outward(e, face) ? misfit(p[0], p[1], p[2], most_tilt) : misfit(p[0], p[2], p[1], most_tilt);
 }
 
 // How far from the target loose vertices may be, in units of off().
@@ -131,13 +126,13 @@ void Editor::add_sail(const Element& e, size_t face, int32_t from) {
   if (!target_ || !m_.labels[e.label[face]].curved() || !m_.counts_here(e, face))
     return;
   Sail s{{}, -1};
+  const auto v = outward_triangle(e.v, face);
   for (size_t i = 0; i < 3; ++i) {
-    const int32_t v = e.v[size_t(outward_face[face][i])];
-    s.p[i] = m_.point[size_t(v)];
-    if (v == from)
+    s.p[i] = m_.point[size_t(v[i])];
+    if (v[i] == from)
       s.moving = static_cast<int>(i);
   }
-  if (!outward(e, face)) {
+  if (!m_.outward(e, face)) {
     std::swap(s.p[1], s.p[2]);
     s.moving = s.moving == 1 ? 2 : s.moving == 2 ? 1 : s.moving;
   }

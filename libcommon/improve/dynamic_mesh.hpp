@@ -1,5 +1,6 @@
 // dynamic_mesh.hpp — tetrahedra that know their neighbours, labelled faces and constrained vertices.
 #pragma once
+#include "geom/tet_measures.hpp"
 #include "improve/quality.hpp"
 #include "improve/walls.hpp"
 #include "mesh/tet_mesh.hpp"
@@ -55,12 +56,10 @@ struct Element {
   bool any_labelled() const { return (label[0] | label[1] | label[2] | label[3]) != 0; }
 };
 
-inline constexpr std::array<std::array<int, 3>, 4> outward_face{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-
 /// Face of the element v, seen from outside it.
 inline std::array<int32_t, 3> outward_triangle(const std::array<int32_t, 4>& v, size_t face) {
-  const auto& o = outward_face[face];
-  return {v[size_t(o[0])], v[size_t(o[1])], v[size_t(o[2])]};
+  const auto corner = [&](int i) { return v[size_t(tet_face(int(face), i))]; };
+  return {corner(0), corner(1), corner(2)};
 }
 
 } // namespace molmesh::improve
@@ -116,6 +115,11 @@ struct DynamicMesh {
   /// Whether the face is labelled and this side's to count: the lower region's.
   bool counts_here(const Element& e, size_t face) const {
     return e.label[face] != 0 && (e.n[face] < 0 || element[size_t(e.n[face])].region > e.region);
+  }
+  /// Whether a labelled face, seen as an outward one of e, runs as the target's normal does.
+  bool outward(const Element& e, size_t face) const {
+    const bool lower = e.n[face] < 0 || e.region < element[size_t(e.n[face])].region;
+    return lower != labels[e.label[face]].reversed;
   }
   /// Whether two of its corners are.
   bool crowded(const std::array<int32_t, 3>& triangle) const {

@@ -194,7 +194,6 @@ private:
   float lack(float q) const { return improve::lack(q, goal, worst_first, guard_); }
   float lack(const std::vector<int32_t>& elements) const;
   float lack(const std::vector<Candidate>& elements) const;
-  bool outward(const Element& e, size_t face) const;
   std::optional<double> off_at(Vec3d x) const; ///< off() of a place; none where the target is not known
   bool stays(Vec3d x) const;
   bool project(const Vertex& k, Vec3d& x, double reach) const;

@@ -138,7 +138,7 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
       old_fit.add(misfit_face(after, face_s));
       old_fit.add(misfit_face(before, face_t));
       const auto p = [&](int32_t v) { return m_.point[size_t(v)]; };
-      const bool out = outward(after, face_s);
+      const bool out = m_.outward(after, face_s);
       fit.add(out ? misfit(p(vs), p(b), p(vt)) : misfit(p(vt), p(b), p(vs)));
       fit.add(out ? misfit(p(vs), p(vt), p(a)) : misfit(p(vt), p(vs), p(a)));
       if (!fits(fit, old_fit))
@@ -182,9 +182,9 @@ bool Editor::swap_face(int32_t e, int i) {
       b = other.v[k];
   const float above = demand(std::min(el.q, other.q));
   now_.clear();
+  const auto face = outward_triangle(el.v, size_t(i));
   for (size_t k = 0; k < 3; ++k) {
-    const auto& o = outward_face[size_t(i)];
-    Candidate c{{a, b, el.v[size_t(o[k])], el.v[size_t(o[(k + 1) % 3])]}, el.region, 0, {}};
+    Candidate c{{a, b, face[k], face[(k + 1) % 3]}, el.region, 0, {}};
     if (!judge(c, above))
       return false;
     now_.push_back(c);

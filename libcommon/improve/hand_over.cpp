@@ -21,11 +21,11 @@ bool Editor::find_side(int32_t v, Side& side) const {
         continue;
       if (e.n[f] < 0)
         return false;
-      (outward(e, f) ? inside : outside) = e.region;
+      (m_.outward(e, f) ? inside : outside) = e.region;
       side.label = e.label[f];
       for (const int32_t w : e.v)
         rim.push_back(w == v || w == e.v[f] ? -1 : w);
-      if (outward(e, f))
+      if (m_.outward(e, f))
         side.before.add(misfit_face(e, f));
     }
   }

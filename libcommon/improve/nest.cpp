@@ -35,7 +35,7 @@ bool Editor::find_piece(int32_t v, Piece& piece) {
     for (size_t f = 0; f < 4; ++f)
       if (const auto s = outward_triangle(e.v, f); piece.has(s) && m_.counts_here(e, f)) {
         const auto p = [&](size_t k) { return m_.point[size_t(s[k])] - home; };
-        volume += (outward(e, f) ? 1 : -1) * dot(p(0), cross(p(1), p(2)));
+        volume += (m_.outward(e, f) ? 1 : -1) * dot(p(0), cross(p(1), p(2)));
       }
   }
   piece.hole = volume < 0;

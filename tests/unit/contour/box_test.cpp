@@ -82,17 +82,36 @@ TEST_CASE("boxes: exact walls, a cut through the molecule, few elements far away
   }
 }
 
+namespace {
+
+/// The same points by other indices.
+BlockGrid renumbered(BlockGrid grid, Vec3i by) {
+  grid.frame.lower += by;
+  grid.frame.origin = grid.frame.origin - grid.frame.spacing * Vec3d{double(by.x), double(by.y), double(by.z)};
+  for (auto* corners : {&grid.corner, &grid.inside})
+    for (Vec3i& corner : *corners)
+      corner += by;
+  return grid;
+}
+
+} // namespace
+
+TEST_CASE("near the end of all indices a small body is meshed in the grid's own cells") {
+  const BlockGrid grid = cube_grid(6, 0.5, atom);
+  Options options;
+  options.meshed = Options::both;
+  for (const bool far : {false, true}) {
+    const int32_t shift = far ? (1 << 29) - 64 : 0;
+    contour::Summary summary;
+    CHECK(checked(mesh_of(renumbered(grid, {shift, -shift, shift}), options, summary)).surface.euler == 2);
+    CHECK((summary.halvings == 0) == far);
+  }
+}
+
 TEST_CASE("a mesh does not depend on where the grid's indices begin") {
   const BlockGrid grid = cube_grid(6, 0.5, atom);
-  BlockGrid moved = grid;
   for (const int32_t shift : {-(1 << 21), 1 << 21, 1 << 28}) {
-    const Vec3i by{shift, -shift, shift};
-    moved.frame.lower = grid.frame.lower + by;
-    moved.frame.origin = grid.frame.origin - grid.frame.spacing * Vec3d{double(by.x), double(by.y), double(by.z)};
-    for (size_t b = 0; b < grid.corner.size(); ++b)
-      moved.corner[b] = grid.corner[b] + by;
-    for (size_t b = 0; b < grid.inside.size(); ++b)
-      moved.inside[b] = grid.inside[b] + by;
+    const BlockGrid moved = renumbered(grid, {shift, -shift, shift});
     for (const auto kind :
          {contour::BoxRequest::automatic, contour::BoxRequest::factor, contour::BoxRequest::corners}) {
       Options options;
@@ -100,7 +119,9 @@ TEST_CASE("a mesh does not depend on where the grid's indices begin") {
       options.box.scale = 2;
       options.box.lower = {-7, -7, -1};
       options.box.upper = {8, 7, 7};
-      CHECK(mesh_of(moved, options).tet == mesh_of(grid, options).tet);
+      CAPTURE(shift, int(kind));
+      const bool same = mesh_of(moved, options).tet == mesh_of(grid, options).tet;
+      CHECK(same);
     }
   }
 }

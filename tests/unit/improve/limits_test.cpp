@@ -28,7 +28,7 @@ TEST_CASE("meshes that 32-bit indices do not hold are refused") {
   CHECK(status([&] { improve::require_slots(4, whole / 2); }) == Status::failed);
 }
 
-TEST_CASE("a box beyond all measure costs no more than another") {
+TEST_CASE("a box beyond all measure is improved as another is") {
   const Field ball = [](Vec3d p) { return std::exp(-0.3 * (norm2(p - Vec3d{2.6, 2.5, 2.4}) - 1.44)); };
   TetMesh mesh = lattice_mesh(ball, {0, 0, 0}, 0.5, 10);
   Vec3d low = mesh.point[0], high = low;
