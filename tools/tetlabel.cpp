@@ -18,7 +18,7 @@ namespace {
 struct Options : cli::Common {
   Options() { keep_input = false; } // a mesh may be labelled in its place
   std::string hierarchy;
-  double decay = 1;
+  std::string decay = "auto";
   std::vector<std::string> boundary;
 };
 
@@ -26,9 +26,11 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("hierarchy", o.hierarchy, "the structure (.hier) that the mesh was made from")
       ->type_name("STRUCTURE")
       ->required();
-  app.add_option("--decay", o.decay, "decay rate of an atom's term, as hier2density had it")
+  app.add_option(
+         "--decay", o.decay,
+         "decay rate of an atom's term, as hier2density had it; auto: as the mesh says, 1 where it does not")
       ->type_name("Å⁻²")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::PositiveNumber | CLI::IsMember({"auto"}));
   app.add_option(
          "--boundary", o.boundary,
          "NAME=SELECTION: triangles of the molecular surface that belong to these atoms (gemmi's selection "
@@ -60,6 +62,16 @@ std::vector<label::NamedBoundary> select(const Options& o, const Hierarchy& h) {
   return boundary;
 }
 
+double decay_of(const Options& o, const TetMesh& mesh) {
+  if (o.decay == "auto")
+    return mesh.decay > 0 ? mesh.decay : 1;
+  const double decay = cli::numbers("--decay", o.decay, 1)[0];
+  if (mesh.decay > 0 && std::fabs(decay - mesh.decay) > 1e-9 * mesh.decay)
+    fail(Status::usage, "--decay: found " + o.decay + ", expected " + std::to_string(mesh.decay) +
+                            ", which the mesh was made with");
+  return decay;
+}
+
 Status run_tool(const Options& o, cli::Run& run) {
   if (o.input == "-" && o.hierarchy == "-")
     fail(Status::usage, "both inputs are standard input, expected at most one");
@@ -72,7 +84,8 @@ Status run_tool(const Options& o, cli::Run& run) {
 
   run.phase("label");
   const label::Places places = label::places_of(mesh, o.resolved_threads());
-  label::Labels labels = label::find_labels(h, places.centroid, {o.decay, mesh.isovalue, o.resolved_threads()});
+  label::Labels labels =
+      label::find_labels(h, places.centroid, {decay_of(o, mesh), mesh.isovalue, o.resolved_threads()});
   run.counts["tetrahedra"] = places.tets;
   run.counts["triangles"] = static_cast<int64_t>(places.cell.size()) - places.tets;
   if (const double off = label::median_offset(places, labels, mesh.isovalue); std::fabs(off) > std::log(3.)) {

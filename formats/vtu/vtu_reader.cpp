@@ -266,6 +266,9 @@ private:
         d_.refuse(a->line, "R4", "isovalue is not one finite number");
       m_.isovalue = c.real(0);
     }
+    if (const ArrayTag* a = find(d_.field, "decay")) // another program's may be anything
+      if (const Column c = decoder_.decode(*a); c.size() == 1 && c.real(0) > 0 && std::isfinite(c.real(0)))
+        m_.decay = c.real(0);
     m_.source = text("source");
     m_.creator = text("creator");
     if (arrays_ == CellArrays::keep)

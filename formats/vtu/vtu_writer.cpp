@@ -103,6 +103,9 @@ void write_vtu(std::ostream& out, const TetMesh& m) {
                                [&](std::ostream& o) { write_bytes(o, &m.isovalue, sizeof m.isovalue); }},
                               bytes_array("source", m.source),
                               bytes_array("creator", m.creator)};
+  if (m.decay > 0)
+    field.push_back({"Float64", "decay", " NumberOfTuples=\"1\"", sizeof m.decay,
+                     [&](std::ostream& o) { write_bytes(o, &m.decay, sizeof m.decay); }});
   for (const NamedText& t : m.named_text)
     field.push_back(bytes_array(escaped(t.name), t.text));
   std::vector<Array> label = {label_array("region", m, &m.region, nullptr),

@@ -36,6 +36,7 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
                              std::string(options.drop_below > 0 ? ", or --drop-below has taken all of it" : "") +
                              ": nothing to mesh");
   mesh.isovalue = grid.info.isovalue;
+  mesh.decay = grid.info.decay;
   mesh.source = grid.info.source;
 
   stages.count(summary);

@@ -35,8 +35,8 @@ struct TetMesh {
   std::vector<int32_t> region; ///< [tets] Region; any positive label of a foreign mesh
   std::vector<int32_t> part;   ///< [tets] METIS part, or empty
   std::vector<Tri> tri;
-  std::vector<int32_t> boundary; ///< [tris] Boundary; any positive label of a foreign mesh
-  double isovalue = 1;
+  std::vector<int32_t> boundary;  ///< [tris] Boundary; any positive label of a foreign mesh
+  double isovalue = 1, decay = 0; ///< of the field that the surface is of; κ in Å⁻², 0: not known
   std::string source, creator;
   std::vector<CellArray> cell_array; ///< labels of tetlabel, or of a foreign mesh
   std::vector<NamedText> named_text;

@@ -74,6 +74,7 @@ void check_same(const TetMesh& a, const TetMesh& b) {
   CHECK(a.tri == b.tri);
   CHECK(a.boundary == b.boundary);
   CHECK(a.isovalue == b.isovalue);
+  CHECK(a.decay == b.decay);
   CHECK(a.source == b.source);
   CHECK(a.creator == b.creator);
 }
@@ -92,6 +93,7 @@ TEST_CASE("what is written is read back exactly, and written again as the same b
   TetMesh m = two_tets();
   m.point[4] = {0x1.fffffffffffffp+3, -0.0, 1e-17};
   m.isovalue = 0.1;
+  m.decay = GENERATE(0., 0.7);
   m.source = "caf\xc3\xa9 & <1tii>.pdb </AppendedData> _";
   for (bool parts : {false, true}) {
     m.part = parts ? std::vector<int32_t>{7, 0} : std::vector<int32_t>{};
