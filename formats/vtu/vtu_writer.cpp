@@ -51,6 +51,11 @@ Array bytes_array(const std::string& name, const std::string& s) {
           [&s](std::ostream& out) { write_bytes(out, s.data(), s.size()); }};
 }
 
+Array number_array(const char* name, const double& value) {
+  return {"Float64", name, " NumberOfTuples=\"1\"", sizeof value,
+          [&value](std::ostream& out) { write_bytes(out, &value, sizeof value); }};
+}
+
 /// Labels of the tetrahedra, then of the triangles; null: 0.
 Array label_array(const char* name, const TetMesh& m, const std::vector<int32_t>* tet,
                   const std::vector<int32_t>* tri) {
@@ -99,13 +104,10 @@ void declare(std::ostream& out, const std::vector<Array>& arrays, uint64_t& end)
 void write_vtu(std::ostream& out, const TetMesh& m) {
   assert(m.region.size() == m.tet.size() && m.boundary.size() == m.tri.size());
   assert(m.part.empty() || m.part.size() == m.tet.size());
-  std::vector<Array> field = {{"Float64", "isovalue", " NumberOfTuples=\"1\"", sizeof m.isovalue,
-                               [&](std::ostream& o) { write_bytes(o, &m.isovalue, sizeof m.isovalue); }},
-                              bytes_array("source", m.source),
+  std::vector<Array> field = {number_array("isovalue", m.isovalue), bytes_array("source", m.source),
                               bytes_array("creator", m.creator)};
   if (m.decay > 0)
-    field.push_back({"Float64", "decay", " NumberOfTuples=\"1\"", sizeof m.decay,
-                     [&](std::ostream& o) { write_bytes(o, &m.decay, sizeof m.decay); }});
+    field.push_back(number_array("decay", m.decay));
   for (const NamedText& t : m.named_text)
     field.push_back(bytes_array(escaped(t.name), t.text));
   std::vector<Array> label = {label_array("region", m, &m.region, nullptr),

@@ -57,9 +57,8 @@ void require_labels(size_t before) {
 }
 
 // Labels in the order of their first triangles; the index of each triangle's.
-std::vector<uint8_t> set_labels(DynamicMesh& m, const TetMesh& mesh, std::vector<int64_t>& first) {
+std::vector<uint8_t> set_labels(DynamicMesh& m, const TetMesh& mesh) {
   m.labels.assign(1, {});
-  first.assign(1, -1);
   std::map<int32_t, uint8_t> index;
   std::vector<uint8_t> label(mesh.tri.size());
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
@@ -67,17 +66,15 @@ std::vector<uint8_t> set_labels(DynamicMesh& m, const TetMesh& mesh, std::vector
     if (fresh) {
       require_labels(m.labels.size());
       m.labels.push_back({mesh.boundary[t], -1});
-      first.push_back(int64_t(t));
     }
     label[t] = entry->second;
   }
   return label;
 }
 
-// Of a triangle: it points into the lower of the two regions, or into the mesh; it is of the molecular surface but
-// a face of another region alone, and so looks into it (VTUv1) where those between two regions look out of the
-// lower.
-enum : uint8_t { reversed = 1, lone = 2 };
+// Beside `reversed`: it is of the molecular surface but a face of another region alone, and so looks into it
+// (VTUv1) where those between two regions look out of the lower.
+constexpr uint8_t lone = 2;
 
 // Faces meet the face on their other side and their triangle.
 std::vector<uint8_t> link(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, int threads) {
@@ -141,22 +138,19 @@ std::vector<uint8_t> link(DynamicMesh& m, const TetMesh& mesh, const std::vector
 }
 
 // A molecular surface of both kinds becomes two labels of one name: each has its own direction.
-void split_surface(DynamicMesh& m, const std::vector<uint8_t>& way, std::vector<uint8_t>& label,
-                   std::vector<int64_t>& first) {
+void split_surface(DynamicMesh& m, const std::vector<uint8_t>& way, std::vector<uint8_t>& label) {
   const auto surface = static_cast<uint8_t>(
       std::find_if(m.labels.begin(), m.labels.end(), [](const Label& l) { return l.name == Boundary::surface; }) -
       m.labels.begin());
-  int64_t first_lone = -1, first_other = -1;
-  for (size_t t = way.size(); t-- > 0;)
+  bool any_lone = false, any_other = false;
+  for (size_t t = 0; t < way.size(); ++t)
     if (label[t] == surface)
-      (way[t] & lone ? first_lone : first_other) = int64_t(t);
-  if (first_lone < 0 || first_other < 0)
+      (way[t] & lone ? any_lone : any_other) = true;
+  if (!any_lone || !any_other)
     return;
   require_labels(m.labels.size());
   const auto added = static_cast<uint8_t>(m.labels.size());
   m.labels.push_back(m.labels[surface]);
-  first[surface] = first_other;
-  first.push_back(first_lone);
   for (size_t t = 0; t < way.size(); ++t)
     if (way[t] & lone)
       label[t] = added;
@@ -243,16 +237,15 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
         raise_to(m.incident[size_t(v)], static_cast<int32_t>(e));
   });
   fault.fail_if_any();
-  std::vector<int64_t> first;
-  std::vector<uint8_t> label = set_labels(m, mesh, first);
+  std::vector<uint8_t> label = set_labels(m, mesh);
   const std::vector<uint8_t> way = link(m, mesh, label, threads);
-  split_surface(m, way, label, first);
-  std::vector<int64_t> turned(m.labels.size());
+  split_surface(m, way, label);
+  std::vector<int64_t> against(m.labels.size());
   for (size_t t = 0; t < label.size(); ++t)
-    turned[label[t]] += way[t] & reversed ? 1 : -1;
-  for (size_t l = 1; l < first.size(); ++l) // as most of its triangles
-    m.labels[l].reversed = turned[l] > 0;
-  set_kinds(m, mesh, label, sharp, threads);
+    against[label[t]] += way[t] & reversed ? 1 : -1;
+  for (size_t l = 1; l < m.labels.size(); ++l) // as most of its triangles
+    m.labels[l].reversed = against[l] > 0;
+  set_kinds(m, mesh, label, way, sharp, threads);
   return m;
 }
 

@@ -208,8 +208,8 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     result.counts += c;
   }
   for (int repeat = 0; density && goal > usual && repeat < 4; ++repeat) { // recovery has mended to the usual goal
-    Pass pass;
-    pass.goal = goal, pass.effort = 1, pass.cell = 8, pass.worst_first = repeat % 2 == 0, pass.guard = released;
+    Pass pass = pass_of({1, released, 8}, goal);
+    pass.worst_first = repeat % 2 == 0;
     const Counts c = schedule.run(pass);
     result.counts += c;
     if (c.total() == 0)

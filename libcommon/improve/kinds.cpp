@@ -198,22 +198,18 @@ std::vector<Edge> sorted_edges(const TetMesh& mesh, const std::vector<uint8_t>& 
 }
 
 // Ends of edges of not two triangles, and of sharp ones, are fixed. The two triangles of others are of one fan.
-void fix_kept_edges(DynamicMesh& m, const TetMesh& mesh, const std::vector<Edge>& edges, double sharp, Fans& fans,
-                    Traces& traces) {
+void fix_kept_edges(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& way,
+                    const std::vector<Edge>& edges, double sharp, Fans& fans, Traces& traces) {
   const auto normal = [&](int32_t t) {
     const Tri& f = mesh.tri[size_t(t)];
     const Vec3d p = mesh.point[size_t(f[0])];
     const Vec3d n = cross(mesh.point[size_t(f[1])] - p, mesh.point[size_t(f[2])] - p);
     return n / std::max(norm(n), 1e-300);
   };
-  // Files may turn the triangles of one label either way.
-  const auto runs_along = [&](int32_t t, const Edge& e) {
-    const Tri& f = mesh.tri[size_t(t)];
-    return (f[0] == e.a && f[1] == e.b) || (f[1] == e.a && f[2] == e.b) || (f[2] == e.a && f[0] == e.b);
-  };
-  const auto bend = [&](const Edge& e, const Edge& o) { // cosine of what the surface bends by
-    const double cosine = dot(normal(e.tri), normal(o.tri));
-    return runs_along(e.tri, e) == runs_along(o.tri, e) ? -cosine : cosine;
+  // Cosine of what the surface bends by: files may turn the triangles of one label either way.
+  const auto bend = [&](int32_t t, int32_t u) {
+    const double cosine = dot(normal(t), normal(u));
+    return (way[size_t(t)] ^ way[size_t(u)]) & reversed ? -cosine : cosine;
   };
   const auto curved = [&](const Edge& e) { return m.labels[e.label].curved(); };
   const double limit = std::cos(sharp * 3.14159265358979323846 / 180);
@@ -225,7 +221,7 @@ void fix_kept_edges(DynamicMesh& m, const TetMesh& mesh, const std::vector<Edge>
     if (two)
       for (const int32_t v : {e.a, e.b})
         fans.join(e.tri, edges[i + 1].tri, v);
-    const bool keep = !two || (!two_labels && curved(e) && bend(e, edges[i + 1]) < limit);
+    const bool keep = !two || (!two_labels && curved(e) && bend(e.tri, edges[i + 1].tri) < limit);
     const auto first = edges.begin() + std::ptrdiff_t(i), last = edges.begin() + std::ptrdiff_t(j);
     const bool of_both = (j - i == 3 || two_labels) && std::count_if(first, last, curved) == 1;
     if (keep)
@@ -251,7 +247,8 @@ void fix_touching(DynamicMesh& m, const TetMesh& mesh, Fans& fans, Traces& trace
 
 } // namespace
 
-void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label, double sharp, int threads) {
+void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label,
+               const std::vector<uint8_t>& way, double sharp, int threads) {
   find_flat_labels(m, mesh, label);
   const VertexLabels labels(mesh, label);
   Traces traces(m.point.size());
@@ -264,7 +261,7 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& 
       traces.add_candidate(v);
   }
   Fans fans(mesh.tri);
-  fix_kept_edges(m, mesh, sorted_edges(mesh, label, threads), sharp, fans, traces);
+  fix_kept_edges(m, mesh, way, sorted_edges(mesh, label, threads), sharp, fans, traces);
   fix_touching(m, mesh, fans, traces);
   traces.for_each([&](size_t v) {
     const auto& s = labels.of[v];
