@@ -1,4 +1,4 @@
-// same_source.cpp — the sums of the structures, the values of the surfaces.
+// same_source.cpp — the sums of the structures, the values and decay rates of the surfaces.
 #include "mesh/same_source.hpp"
 #include "error.hpp"
 #include <cmath>
@@ -18,11 +18,19 @@ void require_same_source(const TetMesh& m, bool has_isovalue, const FieldInfo& f
   const std::string mesh_sum = sum_of(m.source), field_sum = sum_of(field.source);
   if (!mesh_sum.empty() && !field_sum.empty() && mesh_sum != field_sum)
     fail_input(density + ": the density of " + field.source + ", expected the mesh's " + m.source);
-  if (!has_isovalue || m.source.empty() || std::abs(m.isovalue - field.isovalue) <= 1e-9 * std::abs(field.isovalue))
+  if (m.source.empty())
     return;
-  std::ostringstream s;
-  s << density << ": the isovalue " << field.isovalue << ", expected the mesh's " << m.isovalue;
-  fail_input(s.str());
+  const auto require = [&](const char* name, double here, double expected) {
+    if (std::abs(expected - here) <= 1e-9 * std::abs(here))
+      return;
+    std::ostringstream s;
+    s << density << ": the " << name << ' ' << here << ", expected the mesh's " << expected;
+    fail_input(s.str());
+  };
+  if (has_isovalue)
+    require("isovalue", field.isovalue, m.isovalue);
+  if (m.decay > 0)
+    require("decay rate", field.decay, m.decay);
 }
 
 } // namespace molmesh

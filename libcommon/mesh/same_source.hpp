@@ -6,7 +6,8 @@
 namespace molmesh {
 
 /// Throws Error(bad_input) where both name the sha256 of their structure, or a mesh with a source has its isovalue
-/// (has_isovalue), and the two differ. Meshes of other programs name neither. `density`: the grid's file.
+/// (has_isovalue) or decay rate, and the two differ. Meshes of other programs name none. `density`: the grid's
+/// file.
 void require_same_source(const TetMesh& m, bool has_isovalue, const FieldInfo& field, const std::string& density);
 
 } // namespace molmesh

@@ -1,11 +1,12 @@
-// same_source_test.cpp — a density of another structure or isovalue is refused, one that says nothing is not.
+// same_source_test.cpp — a density of another structure, isovalue or decay rate is refused, one that says nothing
+// is not.
 #include "mesh/same_source.hpp"
 #include "unit/refusal.hpp"
 #include <catch2/catch.hpp>
 
 using namespace molmesh;
 
-TEST_CASE("a density belongs to a mesh where sums and isovalues that both name are the same") {
+TEST_CASE("a density belongs to a mesh where sums, isovalues and decay rates that both name are the same") {
   TetMesh m;
   m.source = "1crn.pdb sha256:69ed";
   m.isovalue = 1;
@@ -21,9 +22,14 @@ TEST_CASE("a density belongs to a mesh where sums and isovalues that both name a
   field.isovalue = 0.5;
   CHECK(refused(true) == "c.vdb: the isovalue 0.5, expected the mesh's 1");
   passes(false);
+  field.isovalue = 1;
+  field.decay = 2;
+  passes(true); // the mesh names none
+  m.decay = 1;
+  CHECK(refused(true) == "c.vdb: the decay rate 2, expected the mesh's 1");
   m.source = ""; // of another program
   passes(true);
   m.source = "by hand";
-  field.isovalue = 1;
+  field.decay = 1;
   passes(true);
 }
