@@ -1,7 +1,25 @@
-// parts.cpp — boxes of cells around points.
+// parts.cpp — lattices over boxes, and boxes of their cells around points.
 #include "improve/parts.hpp"
+#include <cmath>
 
 namespace molmesh::improve {
+
+void Parts::set_lattice(const PointBox& box, double size, int shift, double most) {
+  low = box.low;
+  // Fractions of a cell that never line up again on all axes: every neighborhood lies inside some part soon.
+  static constexpr double stride[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+  for (int a = 0; a < 3; ++a)
+    offset[size_t(a)] = shift * stride[a] - std::floor(shift * stride[a]);
+  const Vec3d extent = box.high - box.low;
+  const auto cells_on = [&](int a) { return std::floor(extent[a] / size) + 2; };
+  while (cells_on(0) * cells_on(1) * cells_on(2) > most)
+    size *= 2;
+  cell = size;
+  box_of.clear();
+  boxes = 0;
+  for (int a = 0; a < 3; ++a)
+    n[size_t(a)] = static_cast<int64_t>(cells_on(a));
+}
 
 bool Parts::add_box(Vec3d p, int32_t reach) {
   box_of.resize(size_t(cells()), -1);

@@ -9,6 +9,17 @@
 
 namespace molmesh::improve {
 
+/// Around points; at first around none.
+struct PointBox {
+  Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  void add(const PointBox& o) {
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], o.low[a]);
+      high[a] = std::max(high[a], o.high[a]);
+    }
+  }
+};
+
 /// Parts are disjoint and convex: what keeps to its own never meets what keeps to another.
 struct Parts {
   std::vector<int32_t> owner; ///< [vertices] part it began in, or is reserved for; -1: none, or a free slot
@@ -19,6 +30,9 @@ struct Parts {
   std::vector<int32_t> box_of; ///< [cells] which box it is of, -1: none; empty: every cell is a part
   int32_t boxes = 0;
 
+  /// Every cell over the box is a part; owner is as it was. Other shifts are other places of the lattice. Cells of
+  /// that size, or doubled until there are no more than `most`.
+  void set_lattice(const PointBox& box, double size, int shift, double most);
   int32_t cells() const { return static_cast<int32_t>(n[0] * n[1] * n[2]); }
   int32_t count() const { return box_of.empty() ? cells() : boxes; }
   /// The cell at p; beyond the outermost ones, the nearest of them.

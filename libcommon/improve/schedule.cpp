@@ -1,8 +1,8 @@
-// schedule.cpp — parts, their reserved slots, and the sheets near them.
+// schedule.cpp — which parts there are, what they reserve, and the work of one part after the other.
 #include "improve/schedule.hpp"
 #include "improve/choose.hpp"
+#include "improve/crowded.hpp"
 #include "improve/element_pass.hpp"
-#include "mesh/box_tree.hpp"
 #include "par/pages.hpp"
 #include <algorithm>
 #include <atomic>
@@ -27,115 +27,16 @@ int64_t Schedule::parts_at_surface(double cell) {
   return std::count(met.begin(), met.end(), uint8_t{1});
 }
 
-namespace {
-
-// Thrice the median of the boxes: a few triangles' edges.
-double cell_for(const std::vector<SheetTriangle>& triangles) {
-  if (triangles.empty())
-    return 1;
-  std::vector<float> size;
-  for (const SheetTriangle& t : triangles) {
-    const Vec3f d = t.high - t.low;
-    size.push_back(std::max({d.x, d.y, d.z}));
-  }
-  const auto median = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
-  std::nth_element(size.begin(), median, size.end());
-  return 3. * double(*median);
-}
-
-// Whether b has a corner before the plane of a, or hardly behind it. Sheets that face away from each other have
-// elements between them, which keep them apart.
-bool reaches_before(const std::vector<Vec3d>& point, const SheetTriangle& a, const SheetTriangle& b,
-                    double hardly) {
-  const Vec3d normal{double(a.normal.x), double(a.normal.y), double(a.normal.z)};
-  return std::any_of(b.v.begin(), b.v.end(),
-                     [&](int32_t v) { return dot(normal, point[size_t(v)] - point[size_t(a.v[0])]) > -hardly; });
-}
-
-} // namespace
-
-std::vector<SheetTriangle> Schedule::end_triangles() const {
-  const auto ends = [&](const Element& e, size_t f) { return e.n[f] < 0 && m_.labels[e.label[f]].curved(); };
-  std::vector<int64_t> face;
-  for (const int32_t t : choose(
-           static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::stretch,
-           [&](int64_t s) { return m_.labelled[size_t(s)] != 0; },
-           [&](int64_t t) {
-             const Element& e = m_.element[size_t(t)];
-             return e.alive() && (ends(e, 0) || ends(e, 1) || ends(e, 2) || ends(e, 3));
-           }))
-    for (size_t f = 0; f < 4; ++f)
-      if (ends(m_.element[size_t(t)], f))
-        face.push_back(4 * int64_t(t) + int64_t(f));
-  std::vector<SheetTriangle> triangle(face.size());
-  par::for_n(static_cast<int64_t>(face.size()), threads_, [&](int64_t i) {
-    const int64_t f = face[size_t(i)];
-    triangle[size_t(i)] = sheet_triangle(m_.point, outward_triangle(m_.element[size_t(f / 4)].v, size_t(f % 4)), f);
-  });
-  return triangle;
-}
-
-// How far off the target triangles are, at their centroids and the middles of their edges (Å). A spacing where that
-// is not known, and at most: what is farther is so to first order alone.
-std::vector<float> Schedule::deviations(const std::vector<SheetTriangle>& triangle) const {
-  std::vector<float> off(triangle.size());
-  par::for_n(static_cast<int64_t>((triangle.size() + 1) / 2), threads_, [&](int64_t pair) {
-    const auto first = size_t(2 * pair), end = std::min(triangle.size(), first + 2);
-    EightPlaces place;
-    for (size_t t = first; t < end; ++t) {
-      const auto at = [&](size_t i) { return m_.point[size_t(triangle[t].v[i])]; };
-      const size_t k = 4 * (t - first);
-      place.set(k, (at(0) + at(1) + at(2)) / 3.);
-      for (size_t i = 0; i < 3; ++i)
-        place.set(k + 1 + i, 0.5 * (at(i) + at((i + 1) % 3)));
-    }
-    EightProbes probes;
-    target_->probe_eight(place, static_cast<int>(4 * (end - first)), probes);
-    for (size_t t = first; t < end; ++t)
-      for (size_t k = 4 * (t - first); k < 4 * (t - first) + 4; ++k) {
-        const double most = target_->spacing(),
-                     distance = probes.is_known(k) ? std::fabs(probes.distance[k]) : most;
-        off[t] = std::max(off[t], static_cast<float>(std::min(distance, most)));
-      }
-  });
-  return off;
-}
-
-// Which of the triangles face another one within that distance and what they are off, or may come to be: no more
-// than they are, or than the guard has it.
-std::vector<uint8_t> Schedule::facing(const std::vector<SheetTriangle>& triangle, double distance) const {
-  const std::vector<float> off = deviations(triangle);
-  const auto kept = static_cast<float>(guarded / 2 * target_->spacing());
-  const auto widened = [&](size_t n, double by) {
-    const float reach = static_cast<float>(by) + off[n] + std::max(0.f, off[n] - kept);
-    SheetTriangle wide = triangle[n];
-    wide.low = wide.low - Vec3f{reach, reach, reach};
-    wide.high = wide.high + Vec3f{reach, reach, reach};
-    return wide;
-  };
-  const BoxTree tree(
-      triangle.size(), [&](size_t n) { return widened(n, 0); }, threads_);
-  const double hardly = target_->spacing() / 4;
-  std::vector<uint8_t> faces(triangle.size());
-  par::for_n(static_cast<int64_t>(triangle.size()), threads_, [&](int64_t t) {
-    const SheetTriangle wide = widened(size_t(t), distance);
-    faces[size_t(t)] = tree.any(wide, [&](size_t n) {
-      const SheetTriangle& other = triangle[n];
-      return !wide.of_one_sheet(other, false) && reaches_before(m_.point, wide, other, hardly) &&
-             reaches_before(m_.point, other, wide, hardly);
-    });
-  });
-  return faces;
-}
-
 void Schedule::find_crowded(double apart) {
   if (!target_ || watching_)
     return;
   watching_ = apart == everywhere;
-  std::vector<SheetTriangle> triangle = end_triangles();
+  std::vector<SheetTriangle> triangle = end_triangles(m_, threads_);
   ends_in_surface_ = !triangle.empty();
   const std::vector<uint8_t> crowded =
-      watching_ ? std::vector<uint8_t>(triangle.size(), 1) : facing(triangle, apart * target_->spacing());
+      watching_ ? std::vector<uint8_t>(triangle.size(), 1)
+                : facing(m_.point, triangle, *target_,
+                         {.apart = apart * target_->spacing(), .kept = guarded / 2 * target_->spacing()}, threads_);
   for (Vertex& v : m_.vertex)
     v.crowded = false;
   for (size_t t = 0; t < triangle.size(); ++t)
@@ -175,13 +76,13 @@ int64_t Schedule::below(float goal) const {
       [](int64_t a, int64_t b) { return a + b; });
 }
 
-Schedule::Box Schedule::bounds() const {
+PointBox Schedule::bounds() const {
   return par::reduce(
-      static_cast<int64_t>(m_.point.size()), threads_, Box{},
+      static_cast<int64_t>(m_.point.size()), threads_, PointBox{},
       [&](int64_t v) {
-        return m_.incident[size_t(v)] >= 0 ? Box{m_.point[size_t(v)], m_.point[size_t(v)]} : Box{};
+        return m_.incident[size_t(v)] >= 0 ? PointBox{m_.point[size_t(v)], m_.point[size_t(v)]} : PointBox{};
       },
-      [](Box a, const Box& b) {
+      [](PointBox a, const PointBox& b) {
         a.add(b);
         return a;
       });
@@ -189,7 +90,7 @@ Schedule::Box Schedule::bounds() const {
 
 double Schedule::cell_of_all(double cell) const {
   const double most = cell * cell_ / 4;
-  const Box box = bounds();
+  const PointBox box = bounds();
   const double extent = std::max({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z});
   if (extent <= most)
     return 0;
@@ -205,22 +106,9 @@ double Schedule::cell_of_all(double cell) const {
   return any_longer ? 16 * extent / cell_ : 0;
 }
 
-void Schedule::set_lattice(int shift, double cell, const Box& box) {
-  parts_.low = box.low;
-  // Fractions of a cell that never line up again on all axes: every neighborhood lies inside some part soon.
-  static constexpr double stride[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
-  for (int a = 0; a < 3; ++a)
-    parts_.offset[size_t(a)] = shift * stride[a] - std::floor(shift * stride[a]);
+void Schedule::set_lattice(int shift, double cell, const PointBox& box) {
   const double most = std::clamp(16. * double(m_.point.size()), 1e6, 1e8); // memory as the points
-  const Vec3d size = box.high - box.low;
-  const auto cells = [&](int a) { return std::floor(size[a] / cell) + 2; };
-  while (cells(0) * cells(1) * cells(2) > most)
-    cell *= 2;
-  parts_.cell = cell;
-  parts_.box_of.clear();
-  parts_.boxes = 0;
-  for (int a = 0; a < 3; ++a)
-    parts_.n[size_t(a)] = static_cast<int64_t>(cells(a));
+  parts_.set_lattice(box, cell, shift, most);
 }
 
 void Schedule::set_parts(int shift, double cell) {
@@ -240,7 +128,7 @@ void Schedule::set_parts_around(const std::vector<int32_t>& points, int shift, d
   const double cell = size / (2 * reach + 1);
   set_lattice(shift, cell, bounds());
   if (parts_.cell > cell) { // too many for the whole mesh, as in a far box: round the points alone
-    Box around;
+    PointBox around;
     for (const int32_t v : points)
       around.add({m_.point[size_t(v)], m_.point[size_t(v)]});
     for (double now = 0, next = cell; next > now; next = parts_.cell) {

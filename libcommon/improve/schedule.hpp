@@ -53,12 +53,9 @@ public:
   double cell_of_all(double cell) const;
 
 private:
-  std::vector<int32_t> surface_points() const;      ///< those on traces too; ascending
-  std::vector<int32_t> points_off() const;          ///< of these, off the target
-  std::vector<SheetTriangle> end_triangles() const; ///< where the mesh ends in curved surfaces, in its order
-  std::vector<float> deviations(const std::vector<SheetTriangle>& triangle) const;
-  std::vector<uint8_t> facing(const std::vector<SheetTriangle>& triangle, double distance) const;
-  bool is_hopeless(size_t points_off) const; ///< recover()
+  std::vector<int32_t> surface_points() const; ///< those on traces too; ascending
+  std::vector<int32_t> points_off() const;     ///< of these, off the target
+  bool is_hopeless(size_t points_off) const;   ///< recover()
   using Work = std::function<void(Editor&, std::vector<int32_t>&)>;
   /// It is below the goal, and has changed since it was last tried.
   bool worthwhile(int32_t element, float goal) const;
@@ -68,18 +65,9 @@ private:
   Counts work_off(const std::vector<int32_t>& items, const Pass& pass, int shift, double cell);
   Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
                    const Work& work, const PartShares& shares = {});
-  struct Box {
-    Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-    void add(const Box& o) {
-      for (int a = 0; a < 3; ++a) {
-        low[a] = std::min(low[a], o.low[a]);
-        high[a] = std::max(high[a], o.high[a]);
-      }
-    }
-  };
-  Box bounds() const;
+  PointBox bounds() const;
   void find_worst(); ///< DynamicMesh::worst of the restless stretches
-  void set_lattice(int shift, double cell, const Box& box);
+  void set_lattice(int shift, double cell, const PointBox& box);
   void set_parts(int shift, double cell); ///< its cells
   /// A cube of about that size around each of the points, of which there are some, where there is room for it
   /// beside the others' cubes.
