@@ -92,10 +92,8 @@ void resolve(Options& o) {
   if (p.select.empty())
     usage("--select", "", "a selection ('*' is everything)");
 
-  const bool number =
-      !p.model.empty() && p.model[0] != '0' && p.model.find_first_not_of("0123456789") == std::string::npos;
-  if (p.model != "first" && p.model != "all" && !number)
-    usage("--model", p.model, "first, all or a number from 1");
+  if (p.model != "first" && p.model != "all" && !std::all_of(p.model.begin(), p.model.end(), is_digit))
+    usage("--model", p.model, "first, all or a number");
   if (p.altloc.size() != 1 && p.altloc != "occupancy" && p.altloc != "first" && p.altloc != "all")
     usage("--altloc", p.altloc, "occupancy, first, all or one letter");
   p.hydrogens = o.hydrogens == "keep";

@@ -3,6 +3,7 @@
 #include "error.hpp"
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/parse.hpp"
+#include "molecule/words.hpp"
 #include <algorithm>
 #include <cmath>
 #include <gemmi/numb.hpp>
@@ -83,13 +84,17 @@ int64_t name_elements(cif::Loop& loop, const AtomColumns& columns) {
   const int label = columns.find("label_atom_id");
   const auto atom = static_cast<size_t>(label < 0 ? columns.find("auth_atom_id") : label);
   int64_t named = 0;
-  for (size_t row = 0; row < loop.values.size(); row += loop.width())
-    if (cif::is_null(loop.values[row + element])) {
+  for (size_t row = 0; row < loop.values.size(); row += loop.width()) {
+    std::string& symbol = loop.values[row + element];
+    if (const auto end = std::find_if_not(symbol.begin(), symbol.end(), is_letter); end != symbol.begin())
+      symbol.erase(end, symbol.end()); // "O1-": a charge behind it
+    if (cif::is_null(symbol)) {
       const std::string name = cif::as_string(loop.values[row + atom]),
                         of = cif::as_string(loop.values[row + residue]);
-      loop.values[row + element] = named_element(name, of).name();
+      symbol = named_element(name, of).name();
       ++named;
     }
+  }
   return named;
 }
 

@@ -55,6 +55,13 @@ gemmi::Element named_element(std::string_view atom, std::string_view residue) {
   return gemmi::impl::find_single_letter_element(letters[0]);
 }
 
+bool is_protonation_variant(std::string_view residue) {
+  static constexpr std::array<std::string_view, 16> names = {"HID", "HIE", "HIP", "HSD", "HSE", "HSP",
+                                                             "ASH", "GLH", "LYN", "LYP", "ARN", "CYX",
+                                                             "CYM", "CYN", "CYP", "TYM"};
+  return std::find(names.begin(), names.end(), residue) != names.end();
+}
+
 gemmi::Element take_element(std::vector<std::string_view>& word) {
   if (word.empty() || word.back().size() > 2 || !std::all_of(word.back().begin(), word.back().end(), is_letter))
     return gemmi::El::X;

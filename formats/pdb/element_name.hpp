@@ -14,6 +14,9 @@ gemmi::Element ion_element(std::string_view atom, std::string_view residue);
 /// cofactors by their two.
 gemmi::Element named_element(std::string_view atom, std::string_view residue);
 
+/// Whether the residue is an amino acid by a name of AMBER, CHARMM or GROMACS that tells its protons.
+bool is_protonation_variant(std::string_view residue);
+
 /// Takes a last word that is an element's symbol away; X when there is none.
 gemmi::Element take_element(std::vector<std::string_view>& word);
 

@@ -1,10 +1,12 @@
 // keep.cpp — models, alternative locations, waters, hydrogens, hetero atoms, the user's selection; in this order.
 #include "formats/pdb/keep.hpp"
 #include "error.hpp"
+#include "formats/pdb/model_names.hpp"
 #include "formats/pdb/selection.hpp"
 #include <algorithm>
 #include <array>
 #include <map>
+#include <unordered_map>
 
 namespace molmesh::formats {
 namespace {
@@ -57,7 +59,8 @@ void keep_models(gemmi::Structure& st, const std::string& file, const std::strin
       names += (m ? ", " : "") + st.models[m].name;
     if (st.models.size() > 8)
       names += ", …";
-    gemmi::vector_remove_if(st.models, [&](const gemmi::Model& m) { return m.name != wanted; });
+    const std::string number = model_number(wanted);
+    gemmi::vector_remove_if(st.models, [&](const gemmi::Model& m) { return m.name != number; });
     if (st.models.empty())
       fail_input(file + ": found no model " + wanted + ", expected one of " + names);
   }
@@ -137,17 +140,38 @@ bool has_altloc(const gemmi::Structure& st, char letter) {
   return false;
 }
 
+bool has_alternatives(const gemmi::Residue& residue) {
+  return std::any_of(residue.atoms.begin(), residue.atoms.end(),
+                     [](const gemmi::Atom& a) { return a.altloc != '\0'; });
+}
+
+/// By number: all of one conformer may come before those of the next. Residues without a number only where they
+/// follow each other.
+std::vector<Place> places(gemmi::Chain& chain) {
+  std::vector<Place> all;
+  std::unordered_map<std::string, size_t> of_number; // of those with alternatives
+  const gemmi::Residue* before = nullptr;
+  size_t place = 0; // of the one before
+  for (gemmi::Residue& residue : chain.residues) {
+    const bool follows = before && before->seqid == residue.seqid && before->segment == residue.segment;
+    if (!follows)
+      place = all.size();
+    if (has_alternatives(residue) && residue.seqid.num)
+      place = of_number.try_emplace(residue.seqid.str() + ' ' + residue.segment, place).first->second;
+    if (place == all.size())
+      all.emplace_back();
+    all[place].push_back(&residue);
+    before = &residue;
+  }
+  return all;
+}
+
 int64_t keep_conformers(gemmi::Structure& st, const std::string& altloc) {
   int64_t dropped = 0;
   for (gemmi::Model& model : st.models)
     for (gemmi::Chain& chain : model.chains)
-      for (size_t r = 0; r < chain.residues.size();) {
-        Place place;
-        const gemmi::SeqId id = chain.residues[r].seqid;
-        for (; r < chain.residues.size() && chain.residues[r].seqid == id; ++r)
-          place.push_back(&chain.residues[r]);
+      for (const Place& place : places(chain))
         dropped += keep_conformer(place, altloc);
-      }
   prune(st);
   return dropped;
 }

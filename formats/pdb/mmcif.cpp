@@ -4,11 +4,14 @@
 #include "formats/pdb/chains.hpp"
 #include "formats/pdb/mmcif_assembly.hpp"
 #include "formats/pdb/mmjson.hpp"
+#include "formats/pdb/model_names.hpp"
 #include "formats/pdb/parse.hpp"
+#include "molecule/words.hpp"
 #include <algorithm>
 #include <cmath>
 #include <gemmi/cif.hpp>
 #include <gemmi/mmcif.hpp>
+#include <unordered_set>
 
 namespace molmesh::formats {
 namespace {
@@ -21,16 +24,32 @@ bool starts_with(const std::string& text, const char* start) {
 /// gemmi's message in one line; "FILE:12:5(…): what" loses its column.
 std::string one_line(const std::string& file, std::string what) {
   what = what.substr(0, what.find('\n'));
-  if (starts_with(what, (file + ":").c_str())) {
-    size_t end = file.size() + 1;
-    while (end < what.size() && what[end] >= '0' && what[end] <= '9')
+  const size_t number = file.size() + 1;
+  if (starts_with(what, (file + ":").c_str()) && number < what.size() && is_digit(what[number])) {
+    size_t end = number;
+    while (end < what.size() && is_digit(what[end]))
       ++end;
     const std::string line = what.substr(0, end);
     const size_t text = what.find(": ", end);
     return line + ": " + (text == std::string::npos ? what.substr(end) : what.substr(text + 2)) +
            ", expected mmCIF";
   }
-  return file + ": " + what;
+  return file + ": " + (starts_with(what, (file + ": ").c_str()) ? what.substr(number + 1) : what);
+}
+
+/// And models' numbers without zeros before them.
+void check_models(cif::Loop& loop, const AtomColumns& columns, const std::string& where) {
+  const int column = columns.find("pdbx_PDB_model_num");
+  std::unordered_set<std::string> models;
+  for (auto i = static_cast<size_t>(std::max(column, 0)); column >= 0 && i < loop.values.size();
+       i += loop.width()) {
+    std::string& number = loop.values[i];
+    if (number.size() > 1 && std::all_of(number.begin(), number.end(), is_digit))
+      number = model_number(number);
+    models.insert(number);
+    if (models.size() > most_models)
+      fail_input(where + ": found more than " + std::to_string(most_models) + " models, expected fewer");
+  }
 }
 
 const std::string& tag_of(const cif::Item& item) {
@@ -93,6 +112,7 @@ Parsed from_document(cif::Document& document, std::string_view text, const std::
     fail_input(where + ": found an empty _atom_site category, expected atoms");
   check_coordinates(loop, columns, text, file, item->line_number);
   check_integers(loop, columns, text, file, item->line_number);
+  check_models(loop, columns, where);
   columns.complete("id", {}, "1");
   columns.complete("type_symbol", {}, "?");
   columns.complete("label_alt_id", {}, ".");

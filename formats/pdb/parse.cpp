@@ -1,6 +1,7 @@
 // parse.cpp — which format it is, and what no format may hold.
 #include "formats/pdb/parse.hpp"
 #include "error.hpp"
+#include "formats/pdb/atom_line.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
 
@@ -32,14 +33,9 @@ void normalize(std::string& text, const std::string& file) {
     text += '\n';
 }
 
-/// Columns of the PDB format: the decimal points of %8.3f coordinates.
-bool looks_like_pdb(std::string_view line) {
-  return line.size() >= 54 && line[34] == '.' && line[42] == '.' && line[50] == '.';
-}
-
 bool are_numbers(const std::vector<std::string_view>& word, size_t last) {
   return word.size() >= last && std::all_of(word.end() - static_cast<std::ptrdiff_t>(last), word.end(),
-                                            [](std::string_view w) { return decimal(w).has_value(); });
+                                            [](std::string_view w) { return signed_decimal(w).has_value(); });
 }
 
 /// Occupancy and temperature factor, two %6.2f behind the coordinates; an occupancy is not negative.
@@ -49,9 +45,11 @@ bool has_occupancy(std::string_view line) {
 }
 
 /// "pdb" or "pqr"; empty for a line that could be either.
-std::string format_of_atom(std::string_view line) {
-  if (!looks_like_pdb(line))
-    return words(line).size() >= 9 && are_numbers(words(line), 5) ? "pqr" : "pdb";
+std::string format_of_atom(std::string_view as_it_is) {
+  std::string room;
+  const std::string_view line = in_columns(as_it_is, room).text;
+  if (!has_pdb_columns(line))
+    return words(as_it_is).size() >= 9 && are_numbers(words(as_it_is), 5) ? "pqr" : "pdb";
   const std::vector<std::string_view> behind = words(line.substr(54));
   if (behind.size() != 2 || !are_numbers(behind, 2))
     return "pdb";
@@ -94,6 +92,10 @@ bool is_record(std::string_view line, std::string_view name) {
 
 bool is_atom_record(std::string_view line) {
   return is_record(line, "ATOM") || is_record(line, "HETATM");
+}
+
+bool has_pdb_columns(std::string_view line) {
+  return line.size() >= 54 && line[34] == '.' && line[42] == '.' && line[50] == '.';
 }
 
 std::string in_quotes(std::string_view text) {

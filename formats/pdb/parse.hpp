@@ -7,6 +7,10 @@
 
 namespace molmesh::formats {
 
+/// Of a file: gemmi's numbers of PDB models have four digits, and it looks through mmCIF's for every atom of
+/// another.
+inline constexpr size_t most_models = 9999;
+
 struct Parsed {
   gemmi::Structure structure;
   std::string format; ///< "PDB", "mmCIF", "mmJSON", "PQR"
@@ -43,6 +47,8 @@ void for_each_line(std::string_view text, Take take) {
 bool is_record(std::string_view line, std::string_view name);
 /// Is it an ATOM or HETATM line?
 bool is_atom_record(std::string_view line);
+/// Does an atom line have the decimal points of three %8.3f in the PDB format's columns?
+bool has_pdb_columns(std::string_view line);
 /// The text without what does not print, quoted, for messages.
 std::string in_quotes(std::string_view text);
 

@@ -1,28 +1,20 @@
 // pdb_text.cpp — the PDB format: our own strict look at each line, then gemmi's reader on the records that matter.
 #include "error.hpp"
+#include "formats/pdb/atom_line.hpp"
 #include "formats/pdb/element_name.hpp"
+#include "formats/pdb/model_names.hpp"
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/remark350.hpp"
 #include "molecule/words.hpp"
 #include <gemmi/pdb.hpp>
-#include <set>
 
 namespace molmesh::formats {
 namespace {
 
-constexpr size_t first_x = 30, width = 8; // columns 31-38, 39-46, 47-54
-
-bool is_coordinate(std::string_view field) {
-  field = trimmed(field);
-  if (!field.empty() && field[0] == '+')
-    field.remove_prefix(1);
-  return decimal(field).has_value();
-}
-
 /// Where columns 77-78 hold no element (then true): an ion's; in amino acids and nucleotides the first letter of
 /// the atom's name ("CA  " is no calcium there), elsewhere gemmi decides, unless all that it finds is X.
 bool set_element(std::string& line) {
-  if (line.size() > 77 && (is_letter(line[76]) || is_letter(line[77])))
+  if (line.size() > 76 && (is_letter(line[76]) || (line.size() > 77 && is_letter(line[77]))))
     return false;
   const std::string name = line.substr(12, 4), residue(trimmed(std::string_view(line).substr(17, 3)));
   const auto set = [&line](std::string_view symbol) { // right-adjusted
@@ -37,29 +29,22 @@ bool set_element(std::string& line) {
   if (first == std::string::npos)
     return true;
   const gemmi::ResidueInfo info = gemmi::find_tabulated_residue(residue);
-  const bool polymer = (info.is_amino_acid() || info.is_nucleic_acid()) && name.find("SE") == std::string::npos;
+  const bool polymer = (info.is_amino_acid() || info.is_nucleic_acid() || is_protonation_variant(residue)) &&
+                       name.find("SE") == std::string::npos;
   if (!polymer && gemmi::Element(name.c_str()) != gemmi::El::X)
     return true;
   return set(std::string_view(name).substr(first, 1));
 }
 
-/// Three %8.3f fields that begin one column late, as some programs write residue numbers of five digits.
-bool is_shifted(std::string_view line) {
-  if (line.size() < first_x + 3 * width + 1 || line[first_x] != ' ')
-    return false;
-  for (size_t axis = 0; axis < 3; ++axis) {
-    const std::string_view field = line.substr(first_x + 1 + axis * width, width);
-    if (field[4] != '.' || !is_coordinate(field))
-      return false;
-  }
-  return true;
-}
-
-/// Residue numbers are integers, hybrid-36, or missing.
+/// Residue numbers are integers, hybrid-36 in capitals, or missing. gemmi takes small letters for capitals, and
+/// -999 for none.
 bool is_residue_number(std::string_view field) {
   field = trimmed(field);
-  if (field.size() == 4 && is_letter(field[0]))
-    return std::all_of(field.begin(), field.end(), [](char c) { return is_digit(c) || is_letter(c); });
+  const auto is_capital = [](char c) { return c >= 'A' && c <= 'Z'; };
+  if (field.size() == 4 && is_capital(field[0]))
+    return std::all_of(field.begin(), field.end(), [&](char c) { return is_digit(c) || is_capital(c); });
+  if (field == "-999")
+    return false;
   if (!field.empty() && (field[0] == '-' || field[0] == '+'))
     field.remove_prefix(1);
   return std::all_of(field.begin(), field.end(), is_digit);
@@ -76,7 +61,7 @@ public:
     else if (is_atom_record(line))
       atom(line);
     else if (is_record(line, "MODEL"))
-      model(line);
+      open_model(line);
     else if (is_record(line, "ENDMDL"))
       in_model_ = false;
     else if (is_record(line, "END") && (line.size() == 3 || line[3] == ' '))
@@ -92,6 +77,7 @@ public:
     if (atoms_ == 0)
       fail_input(file_ + ":" + std::to_string(std::max<int64_t>(line_, 1)) +
                  ": found the end without an ATOM or HETATM record, expected a structure");
+    remark350_.finish();
     const auto note = [&](int64_t count, const std::string& what) {
       if (count > 0)
         parsed.notes.push_back(what + ": " + std::to_string(count));
@@ -99,15 +85,15 @@ public:
     note(shifted_, "atom lines whose coordinates stand one column to the right, read there");
     note(pushed_, "atom lines that a wide serial has moved to the right, read there");
     if (odd_numbers_ > 0)
-      note(odd_numbers_, "residue numbers that are no integers, read as far as they go, the first in line " +
+      note(odd_numbers_, "residue numbers that are none, read as far as they go, the first in line " +
                              std::to_string(first_odd_number_));
     note(guessed_, "atoms without an element, taken from the name");
     note(after_end_, "atom lines after END, not read");
-    note(renumbered_, "models without a number of their own, numbered in order");
+    note(names_.renumbered(), "models without a number of their own, numbered in order");
   }
 
-  std::string text;                ///< the records that matter, checked, for gemmi
-  std::vector<std::string> models; ///< names, in order
+  std::string text; ///< the records that matter, checked, for gemmi
+  const std::vector<std::string>& models() const { return names_.all(); }
   const std::vector<gemmi::Assembly>& assemblies() const { return remark350_.assemblies; }
 
 private:
@@ -119,41 +105,19 @@ private:
     if (!in_model_)
       open_model("");
     ++atoms_;
-    std::string narrowed;
-    if (is_pushed(line)) {
-      narrowed = line;
-      do
-        narrowed.erase(narrowed.begin() + 11);
-      while (is_pushed(narrowed));
-      line = narrowed;
-      ++pushed_;
-    }
-    const bool shifted = is_shifted(line) && !is_standard(line);
-    shifted_ += shifted;
-    if (!shifted)
-      check_coordinates(line);
-    record_ = line.substr(0, first_x);
-    record_ +=
-        line.substr(first_x + (shifted ? 1 : 0), 48); // up to column 78: the formal charge behind is not used
+    const AtomLine in_place = in_columns(line, room_);
+    pushed_ += in_place.pushed;
+    shifted_ += in_place.shifted;
+    check_coordinates(in_place.text);
+    record_ = in_place.text.substr(0, 78); // the formal charge behind is not used
     guessed_ += set_element(record_);
     if (!is_residue_number(std::string_view(record_).substr(22, 4)) && odd_numbers_++ == 0)
       first_odd_number_ = line_;
     text += record_;
   }
 
-  static bool is_standard(std::string_view line) {
-    for (size_t at = first_x; at < first_x + 3 * width; at += width)
-      if (!is_coordinate(line.substr(at, width)))
-        return false;
-    return true;
-  }
-
-  /// A serial wider than its columns 7-11 that has moved the rest of the line to the right.
-  static bool is_pushed(std::string_view line) {
-    return line.size() > first_x + 3 * width && is_digit(line[10]) && is_digit(line[11]) && !is_standard(line);
-  }
-
   void check_coordinates(std::string_view line) const {
+    constexpr size_t width = coordinate_width;
     if (line.size() < first_x + 3 * width)
       refuse("found an atom line of " + std::to_string(line.size()) +
              " columns, expected coordinates in columns 31-54");
@@ -163,42 +127,27 @@ private:
                std::to_string(at + width) + ", expected a coordinate (Å)");
   }
 
-  void model(std::string_view line) {
-    const std::vector<std::string_view> word = words(line);
-    open_model(word.size() > 1 && decimal(word[1]) &&
-                       word[1].find_first_not_of("0123456789") == std::string_view::npos
-                   ? std::string(word[1])
-                   : "");
-  }
-
-  /// name: empty, or already taken: the next free number.
-  void open_model(std::string name) {
+  /// record: its MODEL line, empty without one.
+  void open_model(std::string_view record) {
     in_model_ = true;
-    if (name.empty() || seen_.count(name) != 0) {
-      renumbered_ += !models.empty() || !name.empty();
-      size_t next = models.size() + 1;
-      while (seen_.count(std::to_string(next)) != 0)
-        ++next;
-      name = std::to_string(next);
-    }
-    seen_.insert(name);
-    models.push_back(name);
+    names_.next(record);
+    const size_t models = names_.all().size();
     // gemmi reads four digits and wants ENDMDL and distinct numbers; the names come back afterwards.
-    if (models.size() > 9999)
-      refuse("found more than 9999 models, expected fewer");
-    if (models.size() > 1)
+    if (models > most_models)
+      refuse("found more than " + std::to_string(most_models) + " models, expected fewer");
+    if (models > 1)
       text += "ENDMDL\n";
-    std::string number = std::to_string(models.size());
+    const std::string number = std::to_string(models);
     text += "MODEL     " + std::string(4 - number.size(), ' ') + number + "\n";
   }
 
   const std::string& file_;
   const bool assemblies_wanted_;
   Remark350 remark350_;
-  std::string record_;
-  std::set<std::string> seen_;
-  int64_t line_ = 0, atoms_ = 0, shifted_ = 0, after_end_ = 0, renumbered_ = 0, guessed_ = 0, pushed_ = 0,
-          odd_numbers_ = 0, first_odd_number_ = 0;
+  ModelNames names_;
+  std::string record_, room_;
+  int64_t line_ = 0, atoms_ = 0, shifted_ = 0, after_end_ = 0, guessed_ = 0, pushed_ = 0, odd_numbers_ = 0,
+          first_odd_number_ = 0;
   bool in_model_ = false, ended_ = false;
 };
 
@@ -218,7 +167,7 @@ Parsed parse_pdb(std::string_view text, const std::string& file, const std::stri
     fail_input(file + ": " + std::string(e.what()).substr(0, std::string_view(e.what()).find('\n')));
   }
   for (size_t m = 0; m < st.models.size(); ++m)
-    st.models[m].name = lines.models.at(m);
+    st.models[m].name = lines.models().at(m);
   st.assemblies = lines.assemblies(); // gemmi loses its columns from the 1000th operator on
   return parsed;
 }

@@ -41,6 +41,17 @@ bool is_finite(const Numbers& n) {
   return std::all_of(n.begin(), n.end(), [](double v) { return std::isfinite(v); });
 }
 
+/// Of the few decimals that old files have.
+bool is_rotation(const gemmi::Mat33& m) {
+  constexpr double rounding = 0.05;
+  const gemmi::Mat33 product = m.transpose().multiply(m);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (!(std::fabs(product[i][j] - (i == j)) <= rounding))
+        return false;
+  return m.determinant() > 0;
+}
+
 /// The residues of a chain that a generator names: all of them (PDB: by chain), or those of its subchains (mmCIF).
 std::vector<int64_t> generated(const Flat& flat, const Flat::Chain& chain, const gemmi::Assembly::Gen& gen) {
   std::vector<int64_t> residues;
@@ -139,9 +150,9 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
       if (!is_finite(numbers(op.transform)))
         fail_input(file + ": found operator " + op.name + " of assembly " + assembly +
                    " with a number that is not finite");
-      if (std::fabs(std::fabs(op.transform.mat.determinant()) - 1) > 0.05)
+      if (!is_rotation(op.transform.mat))
         fail_input(file + ": found operator " + op.name + " of assembly " + assembly +
-                   " that squeezes or stretches, expected a rotation and a shift");
+                   " that squeezes, stretches or mirrors, expected a rotation and a shift");
       int& copy = copies.try_emplace({op.name, numbers(op.transform)}, 0).first->second;
       if (copy == 0 || !used.insert(copy).second)
         used.insert(copy = ++count);

@@ -2,6 +2,7 @@
 // together, the columns of the PDB format. GROMACS and Open Babel add the element.
 #include "error.hpp"
 #include "formats/pdb/element_name.hpp"
+#include "formats/pdb/model_names.hpp"
 #include "formats/pdb/parse.hpp"
 #include "molecule/words.hpp"
 #include <charconv>
@@ -20,9 +21,7 @@ struct PqrAtom {
 
 class PqrLines {
 public:
-  PqrLines(const std::string& file, Parsed& parsed) : file_(file), parsed_(parsed) {
-    parsed.structure.models.emplace_back("1");
-  }
+  PqrLines(const std::string& file, Parsed& parsed) : file_(file), parsed_(parsed) {}
 
   void take(std::string_view line, int64_t number) {
     line_ = number;
@@ -30,13 +29,17 @@ public:
       after_end_ += is_atom_record(line);
     else if (is_atom_record(line))
       add(atom(line), is_record(line, "HETATM"));
-    else if (is_record(line, "ENDMDL") || (is_record(line, "END") && (line.size() == 3 || line[3] == ' ')))
+    else if (is_record(line, "MODEL"))
+      open_model(line);
+    else if (is_record(line, "ENDMDL"))
+      in_model_ = false;
+    else if (is_record(line, "END") && (line.size() == 3 || line[3] == ' '))
       ended_ = true;
   }
 
   void finish() const {
     if (after_end_ > 0)
-      parsed_.notes.push_back("atom lines after END or ENDMDL, not read: " + std::to_string(after_end_));
+      parsed_.notes.push_back("atom lines after END, not read: " + std::to_string(after_end_));
     if (parsed_.pqr.empty())
       fail_input(file_ + ":" + std::to_string(std::max<int64_t>(line_, 1)) +
                  ": found the end without an ATOM or HETATM record, expected PQR");
@@ -47,6 +50,14 @@ private:
     fail_input(file_ + ":" + std::to_string(line_) + ": " + what);
   }
 
+  void open_model(std::string_view record) {
+    in_model_ = true;
+    parsed_.structure.models.emplace_back(names_.next(record));
+    if (parsed_.structure.models.size() > most_models)
+      refuse("found more than " + std::to_string(most_models) + " models, expected fewer");
+    chain_.clear();
+  }
+
   PqrAtom atom(std::string_view line) const {
     const size_t record = is_record(line, "HETATM") ? 6 : 4;
     std::vector<std::string_view> word = words(line.substr(record));
@@ -54,7 +65,9 @@ private:
     a.element = take_element(word);
     if (word.size() >= 5 + 3) {
       const size_t head = word.size() - 5;
-      if (numbers({word.begin() + static_cast<std::ptrdiff_t>(head), word.end()}, a) && labels(word, head, a))
+      const bool names_run_together = word[1].size() > 4 && has_pdb_columns(line);
+      if (!names_run_together && numbers({word.begin() + static_cast<std::ptrdiff_t>(head), word.end()}, a) &&
+          labels(word, head, a))
         return a;
     }
     return columns(line);
@@ -64,7 +77,7 @@ private:
   static bool numbers(const std::vector<std::string_view>& word, PqrAtom& a) {
     double* const value[] = {&a.x, &a.y, &a.z, &a.charge, &a.radius};
     for (size_t i = 0; i < 5; ++i) {
-      const std::optional<double> v = i < word.size() ? decimal(word[i]) : std::nullopt;
+      const std::optional<double> v = i < word.size() ? signed_decimal(word[i]) : std::nullopt;
       if (!v)
         return false;
       *value[i] = *v;
@@ -120,7 +133,9 @@ private:
   void add(const PqrAtom& a, bool hetero) {
     if (a.radius < 0)
       refuse("found radius " + std::to_string(a.radius) + ", expected a number ≥ 0 (Å)");
-    gemmi::Model& model = parsed_.structure.models[0];
+    if (!in_model_)
+      open_model("");
+    gemmi::Model& model = parsed_.structure.models.back();
     const auto [found, is_new] = chain_.try_emplace(a.chain, model.chains.size());
     if (is_new)
       model.chains.emplace_back(a.chain);
@@ -141,9 +156,10 @@ private:
 
   const std::string& file_;
   Parsed& parsed_;
-  std::unordered_map<std::string, size_t> chain_;
+  ModelNames names_;
+  std::unordered_map<std::string, size_t> chain_; ///< of the model
   int64_t line_ = 0, after_end_ = 0;
-  bool ended_ = false;
+  bool in_model_ = false, ended_ = false;
 };
 
 } // namespace

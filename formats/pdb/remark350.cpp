@@ -26,10 +26,16 @@ void add_chains(std::string_view list, std::vector<std::string>& chains) {
 
 } // namespace
 
+void Remark350::finish() const {
+  if (rows_ > 0)
+    fail_input(where_ + ": found operator " + serial_ + " without BIOMT" + "123"[rows_] + ", expected three rows");
+}
+
 void Remark350::take(std::string_view line, const std::string& where) {
   const std::string_view text = trimmed(line.substr(std::min<size_t>(line.size(), 10)));
   std::string_view value;
   if (heading(text, "BIOMOLECULE", value)) {
+    finish();
     assemblies.emplace_back(std::string(value.substr(0, value.find_first_of(", "))));
     return;
   }
@@ -37,16 +43,17 @@ void Remark350::take(std::string_view line, const std::string& where) {
     return;
   std::vector<gemmi::Assembly::Gen>& generators = assemblies.back().generators;
   if (heading(text, "APPLY THE FOLLOWING TO CHAINS", value)) {
+    finish();
     add_chains(value, generators.emplace_back().chains);
-    rows_ = 0;
   } else if (heading(text, "AND CHAINS", value) && !generators.empty()) {
     add_chains(value, generators.back().chains);
   } else if (text.substr(0, 5) == "BIOMT" && !generators.empty()) {
     const std::vector<std::string_view> word = words(text);
     const auto row = static_cast<size_t>(rows_);
-    bool good = word.size() == 6 && word[0].size() == 6 && word[0][5] == "123"[row];
+    bool good =
+        word.size() == 6 && word[0].size() == 6 && word[0][5] == "123"[row] && (rows_ == 0 || word[1] == serial_);
     for (size_t i = 0; good && i < 4; ++i) {
-      const std::optional<double> number = decimal(word[2 + i]);
+      const std::optional<double> number = signed_decimal(word[2 + i]);
       good = number.has_value();
       if (!good)
         break;
@@ -54,7 +61,9 @@ void Remark350::take(std::string_view line, const std::string& where) {
     }
     if (!good)
       fail_input(where + ": found '" + std::string(text) + "', expected BIOMT" + "123"[row] +
-                 " SERIAL and four numbers");
+                 (rows_ == 0 ? " SERIAL" : " " + serial_) + " and four numbers");
+    serial_ = word[1];
+    where_ = where;
     if (++rows_ < 3)
       return;
     rows_ = 0;

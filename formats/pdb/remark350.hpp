@@ -13,9 +13,12 @@ class Remark350 {
 public:
   /// where: "FILE:LINE". Throws Error(bad_input) for a matrix that is none.
   void take(std::string_view line, const std::string& where);
+  /// Throws where the last matrix lacks rows.
+  void finish() const;
   std::vector<gemmi::Assembly> assemblies;
 
 private:
+  std::string serial_, where_; ///< of the operator that has some rows
   gemmi::Transform transform_;
   int rows_ = 0;
 };

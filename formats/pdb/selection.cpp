@@ -8,6 +8,14 @@
 namespace molmesh::formats {
 namespace {
 
+/// gemmi's integers overflow unnoticed.
+bool has_large_number(std::string_view cid) {
+  constexpr size_t most_digits = 9;
+  size_t digits = 0;
+  return std::any_of(cid.begin(), cid.end(),
+                     [&](char c) { return (digits = is_digit(c) ? digits + 1 : 0) > most_digits; });
+}
+
 /// Does the residue field end with '-', as "45-" (45 and all behind it) does?
 bool is_open_range(std::string_view cid) {
   cid = cid.substr(0, cid.find(';'));
@@ -39,6 +47,8 @@ Selection::Selection(const std::string& text, const std::string& where, bool aro
     around_ = distance;
     cid = trimmed(std::string_view(word[1].data(), static_cast<size_t>(word.back().data() - word[1].data())));
   }
+  if (has_large_number(cid))
+    fail(status, where + ": found selection " + in_quotes(text) + ", expected numbers of nine digits at most");
   try {
     selection_ = gemmi::Selection(cid);
   } catch (const std::exception& e) {

@@ -27,8 +27,8 @@ private:
   std::map<std::string, double, std::less<>> element_, atom_; ///< keys in upper case; atoms as "RESIDUE ATOM"
 };
 
-/// Lines `ELEMENT RADIUS` or `RESIDUE ATOM RADIUS`, RESIDUE may be `*`; `#` starts a comment. Radii in Å, > 0.
-/// Throws Error(bad_input) "FILE:LINE: …".
+/// Lines `ELEMENT RADIUS` or `RESIDUE ATOM RADIUS`, RESIDUE may be `*`; a line that begins with `#` is a comment.
+/// Radii in Å, > 0. Throws Error(bad_input) "FILE:LINE: …".
 Radii read_radii(std::istream& in, const std::string& file);
 
 } // namespace molmesh

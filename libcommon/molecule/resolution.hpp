@@ -31,9 +31,9 @@ struct DomainPart {
 
 /// "SELECTION P_R=… P_C=… P_D=…", at least one of the three. Throws Error(status) naming `where`.
 Rule parse_rule(const std::string& text, const std::string& where, Status status = Status::bad_input);
-/// One rule a line; `#` starts a comment. Throws Error(bad_input) "FILE:LINE: …".
+/// One rule a line; a line that begins with `#` is a comment. Throws Error(bad_input) "FILE:LINE: …".
 std::vector<Rule> read_rules(std::istream& in, const std::string& file);
-/// Lines `NAME SELECTION`; `#` starts a comment. Throws Error(bad_input) "FILE:LINE: …".
+/// Lines `NAME SELECTION`; a line that begins with `#` is a comment. Throws Error(bad_input) "FILE:LINE: …".
 std::vector<DomainPart> read_domains(std::istream& in, const std::string& file);
 
 } // namespace molmesh

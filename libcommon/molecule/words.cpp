@@ -37,6 +37,12 @@ std::optional<double> decimal(std::string_view text) {
   return value;
 }
 
+std::optional<double> signed_decimal(std::string_view text) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-')
+    text.remove_prefix(1);
+  return decimal(text);
+}
+
 void read_lines(std::istream& in, const std::string& file,
                 const std::function<void(const std::string&, const std::string&)>& take) {
   std::string line;

@@ -23,6 +23,8 @@ std::vector<std::string_view> words(std::string_view text);
 std::string_view trimmed(std::string_view text);
 /// The whole of `text` as a finite decimal number.
 std::optional<double> decimal(std::string_view text);
+/// The same with or without a plus sign, as Fortran and C may write it.
+std::optional<double> signed_decimal(std::string_view text);
 /// Calls take(line, "FILE:LINE") for each line that is neither blank nor a comment (`#`), without blanks at its
 /// ends and carriage return. Throws Error(bad_input) when the stream breaks or a line holds a NUL byte.
 void read_lines(std::istream& in, const std::string& file,

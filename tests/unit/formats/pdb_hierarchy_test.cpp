@@ -229,6 +229,31 @@ TEST_CASE("an assembly of the PDB format: copies with unique names") {
   std::string broken = remarks;
   broken.replace(broken.find("100.00000"), 9, "1e9999999");
   CHECK(refusal(broken + structure(), missing).substr(0, 8) == "x.pdb:6:");
+  const size_t last_row = remarks.rfind("REMARK 350   BIOMT3");
+  CHECK(refusal(remarks.substr(0, last_row) + structure(), missing).find("without BIOMT3") != std::string::npos);
+  std::string other_serial = remarks;
+  other_serial[remarks.find_first_not_of(' ', last_row + 19)] = '9';
+  CHECK(refusal(other_serial + structure(), missing).find("expected BIOMT3") != std::string::npos);
+}
+
+TEST_CASE("operators of an assembly that shear or mirror are refused") {
+  formats::PdbOptions o;
+  o.assembly = "1";
+  for (const char* row : {"1.000000  0.500000  0.000000", "-1.000000  0.000000  0.000000"}) {
+    const std::string text = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n"
+                             "REMARK 350   BIOMT1   1  " +
+                             std::string(row) +
+                             "  0.00000\n"
+                             "REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000  0.00000\n"
+                             "REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000  0.00000\n";
+    CHECK(refusal(text + structure(), o).find("expected a rotation and a shift") != std::string::npos);
+  }
+}
+
+TEST_CASE("numbers of selections that overflow are refused") {
+  formats::PdbOptions o;
+  o.select = "//A/4294967301";
+  CHECK(refusal(structure(), o, "x.pdb", Status::usage).find("nine digits") != std::string::npos);
 }
 
 TEST_CASE("operator expressions of mmCIF") {

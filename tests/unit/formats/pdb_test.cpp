@@ -140,6 +140,11 @@ TEST_CASE("where the sequence has alternatives, one residue stays") {
       pdb_atom(" CA", "SER", "A", 1, 1, "C", 'A', 0.3) + pdb_atom(" CA", "THR", "A", 1, 2, "C", 'B', 0.7) +
       pdb_atom(" CA", "GLY", "A", 2, 3, "C") + pdb_atom(" CA", "GLY", "A", 2, 4, "C", ' ', 1, 'A');
   CHECK(listing(convert(text).hierarchy) == "A/THR:1/CA A/GLY:2/CA A/GLY:2A/CA");
+  // All of one conformer, then all of the other.
+  CHECK(listing(
+            convert(pdb_atom(" CA", "SER", "A", 1, 1, "C", 'A', 0.6) + pdb_atom(" CA", "GLY", "A", 2, 3, "C", 'A') +
+                    pdb_atom(" CA", "THR", "A", 1, 2, "C", 'B', 0.4) + pdb_atom(" CA", "GLY", "A", 2, 4, "C", 'B'))
+                .hierarchy) == "A/SER:1/CA A/GLY:2/CA");
 }
 
 TEST_CASE("waters, hydrogens, hetero atoms and selections drop what they say, and count it") {
@@ -180,6 +185,20 @@ TEST_CASE("models: the first, one by number, or all with unique chain names") {
   CHECK(listing(convert(text, o).hierarchy) == "A_1/GLY:1/CA A_2/GLY:1/CA B/GLY:1/CA");
   o.model = "2";
   CHECK(refusal(text, o) == "x.pdb: found no model 2, expected one of 1, 7");
+  o.model = "0";
+  const std::string zeros = "MODEL     0000\n" + pdb_atom(" CA", "GLY", "A", 1, 1, "C") +
+                            "ENDMDL\nMODEL     0012\n" + pdb_atom(" CA", "GLY", "A", 1, 2, "C") + "ENDMDL\n";
+  CHECK(convert(zeros, o).hierarchy.atom[0].center.x == 1);
+  o.model = "12";
+  CHECK(convert(zeros, o).hierarchy.atom[0].center.x == 2);
+}
+
+TEST_CASE("mmCIF: so many models are refused before gemmi looks for each among all") {
+  std::string text = "data_x\nloop_\n_atom_site.label_atom_id\n_atom_site.pdbx_PDB_model_num\n_atom_site.Cartn_x\n"
+                     "_atom_site.Cartn_y\n_atom_site.Cartn_z\n";
+  for (int m = 1; m <= 10000; ++m)
+    text += "CA " + std::to_string(m) + " 1 2 3\n";
+  CHECK(refusal(text) == "x.pdb:2: found more than 9999 models, expected fewer");
 }
 
 TEST_CASE("elements without a radius get the stated one, or are refused") {

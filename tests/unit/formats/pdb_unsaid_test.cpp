@@ -37,6 +37,15 @@ TEST_CASE("PQR in the columns of the PDB format is told by what stands behind th
   const std::string both = "ATOM      1  N   ALA A   7      10.500  -2.250   3.125  0.30  1.85\n";
   CHECK(convert(both + "ATOM      2  C   ALA A   7      10.500  -2.250   3.125 -0.30  1.85\n").report.format ==
         "PQR");
+  // A field that is too wide moves the rest, of PDB too.
+  const auto moved = [](const std::string& line) { return convert(line + "\n", {}, "<stdin>"); };
+  for (const char* line : {"ATOM      1  N   ALA A10000       1.000   2.000   3.000  1.00 20.00",
+                           "ATOM  1000000  N   ALA A   1       1.000   2.000   3.000  1.00 20.00"}) {
+    const Converted c = moved(line);
+    CHECK(c.report.format == "PDB");
+    CHECK(c.hierarchy.atom[0].center == Vec3d{1, 2, 3});
+    CHECK(c.hierarchy.atom[0].radius == 1.55);
+  }
 }
 
 TEST_CASE("ions without an element are not taken for carbon or nitrogen") {
@@ -48,6 +57,24 @@ TEST_CASE("ions without an element are not taken for carbon or nitrogen") {
   CHECK(first_element(pdb_atom(" CAL", "CAL", "A", 1, 1, "  ")) == "Ca");
   CHECK(first_element(pdb_atom(" CD2", "LEU", "A", 1, 1, "  ")) == "C");
   CHECK(notes(convert(pdb_atom(" NA", " NA", "A", 1, 1, "  ")), "taken from the name: 1"));
+}
+
+TEST_CASE("amino acids named for their protons hold no metals") {
+  for (const char* residue : {"HID", "HSD", "CYX", "ASH", "GLH", "LYN"})
+    for (const char* name : {"CA  ", "CD  ", "CE  ", "HG  "}) {
+      INFO(residue << ' ' << name);
+      CHECK(first_element(pdb_atom(name, residue, "A", 1, 1, "  ")) == std::string(1, name[0]));
+    }
+}
+
+TEST_CASE("an element may stand in column 77 alone, or have its charge behind it in mmCIF") {
+  std::string line = pdb_atom(" A1", "LIG", "A", 1, 1, "C ");
+  line.erase(77, 1); // as editors strip blanks
+  CHECK(first_element(line) == "C");
+  const std::string loop = "data_x\nloop_\n_atom_site.type_symbol\n_atom_site.label_atom_id\n_atom_site.Cartn_x\n"
+                           "_atom_site.Cartn_y\n_atom_site.Cartn_z\n";
+  CHECK(first_element(loop + "O1- OXT 1 2 3\n") == "O");
+  CHECK(first_element(loop + "Fe3+ X 1 2 3\n") == "Fe");
 }
 
 TEST_CASE("mmCIF without element symbols: the names tell, counted") {
@@ -84,13 +111,15 @@ TEST_CASE("a serial wider than its columns may move the rest of its line to the 
   CHECK(listing(convert(line).hierarchy) == "A/GLY:7/CA");
 }
 
-TEST_CASE("residue numbers that are no integers are counted") {
+TEST_CASE("residue numbers that are none are counted") {
   std::string line = pdb_atom(" CA", "GLY", "A", 7, 12, "C");
-  CHECK(!notes(convert(line), "no integers"));
+  CHECK(!notes(convert(line), "residue numbers"));
   line.replace(22, 4, "****");
   CHECK(notes(convert(pdb_atom(" N", "GLY", "A", 7, 12, "N") + line), "the first in line 2"));
   line.replace(22, 4, "A000"); // hybrid-36
-  CHECK(!notes(convert(line), "no integers"));
+  CHECK(!notes(convert(line), "residue numbers"));
+  for (const char* number : {"a000", "-999"}) // its further half, and what gemmi takes for none
+    CHECK(notes(convert(line.replace(22, 4, number)), "residue numbers that are none"));
 }
 
 TEST_CASE("atoms of radius 0 go with their charge on record, an assembly's missing chains are counted") {

@@ -48,6 +48,22 @@ TEST_CASE("PQR: coordinates that run together stand in the columns of the PDB fo
   CHECK(r.radius == 1.908);
 }
 
+TEST_CASE("PQR: a name beside its residue's, plus signs") {
+  CHECK(one("ATOM      2 HD11ALEU A   7      10.500  -2.250   3.125  0.0962 1.9080").listing == "A/LEU:7/HD11");
+  CHECK(one("ATOM 1 N ALA A 7 +10.5 -2.25 3.125 +0.3 1.85").charge == 0.3);
+}
+
+TEST_CASE("PQR: models as the PDB format has them") {
+  const std::string text =
+      "MODEL 1\nATOM 1 N ALA A 7 1 0 0 0 1\nENDMDL\nMODEL 2\nATOM 1 N ALA A 7 2 0 0 0 1\nENDMDL\n";
+  formats::PdbOptions o;
+  CHECK(convert(text, o, "x.pqr").report.other_models == 1);
+  o.model = "2";
+  CHECK(convert(text, o, "x.pqr").hierarchy.atom[0].center.x == 2);
+  o.model = "all";
+  CHECK(convert(text, o, "x.pqr").report.atoms == 2);
+}
+
 TEST_CASE("PQR: an element behind the radius, as GROMACS and Open Babel write it") {
   for (const char* line : {"ATOM      1  CA  CA  A   7      10.500  -2.250   3.125  0.30  1.85          Ca", // ion
                            "ATOM      1  CA   CA A   7      10.500  -2.250   3.125  0.30000000   1.850 CA  ",
