@@ -132,9 +132,9 @@ Status run_tool(const Options& o, cli::Run& run) {
   output.commit();
   if (run.verbose)
     run.note("dihedral angles " + improve::text(result.before) + "; now " + improve::text(result.after));
-  if (result.after.min >= o.min_dihedral && result.after.max <= o.max_dihedral)
-    return Status::good;
   const AngleLimits limits{o.min_dihedral, o.max_dihedral};
+  if (limits.hold(result.after.min) && limits.hold(result.after.max))
+    return Status::good;
   run.note("below the quality asked for: " + std::to_string(count_beyond(mesh, limits, threads)) +
            " elements beyond it, dihedral angles " + range_text(result.after.min, result.after.max));
   for (const WorstTet& t : worst_tets(mesh, limits, 10, threads))

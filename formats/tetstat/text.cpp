@@ -40,6 +40,8 @@ std::string angle_histogram(const Distribution& d) {
     }
   }
   std::string s;
+  if (d.min < 0)
+    s += "  (angles of inverted tetrahedra, below 0°, are counted in the first row)\n";
   for (size_t i = first; i <= last; ++i) {
     const double share = double(wide[i]) / double(std::max<int64_t>(total, 1));
     s += print("  %3zu° to %3zu° %14s %8.3f %%", 10 * i, 10 * i + 10, grouped(wide[i]).c_str(), 100 * share);
@@ -100,7 +102,8 @@ std::string tetstat_text(const MeshReport& r) {
   s += measure("Joe-Liu eta", q.eta, 4);
   s += measure("edge ratio", q.edge_ratio, 3);
   s += "\ndihedral angles\n" + angle_histogram(q.dihedral);
-  if (!r.good())
+  const AngleLimits any;
+  if (!r.good() && (r.asked.min > any.min || r.asked.max < any.max))
     s += print("\nBELOW THE QUALITY ASKED FOR: %s tetrahedra with angles outside %g° to %g°\n",
                grouped(q.outside).c_str(), r.asked.min, r.asked.max);
   return s;

@@ -22,7 +22,8 @@ struct Sum : Distribution {
       max = v, max_tet = tet;
     sum += v;
     ++count;
-    const double place = (v - low) / width;
+    constexpr double rounding = 1e-9; // of a bin: 60° of a lattice are 60°
+    const double place = (v - low) / width + rounding;
     ++bin[place < 1 ? 0 : place < double(bin.size()) ? static_cast<size_t>(place) : bin.size() - 1];
   }
   void add(const Sum& later) {
@@ -56,7 +57,7 @@ struct Sums {
       double degree = angles.degree[e];
       if (degree != degree)
         degree = e % 2 * 180.0; // flat: half are 0, half are 180
-      beyond |= degree < limits.min || degree > limits.max;
+      beyond |= !limits.hold(degree);
       dihedral.add(degree, tet);
     }
     outside += beyond;

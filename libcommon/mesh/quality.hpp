@@ -8,13 +8,16 @@ namespace molmesh {
 struct Distribution {
   double min = 0, max = 0, mean = 0;
   int64_t min_tet = -1, max_tet = -1; ///< where; the first of equals. -1: no values
-  double low = 0, width = 0;          ///< bin i counts values in [low + i width, low + (i + 1) width)
-  std::vector<int64_t> bin;           ///< what lies beyond either end is counted in the bin there
+  double low = 0, width = 0; ///< bin i counts values in [low + i width, low + (i + 1) width), ends but for rounding
+  std::vector<int64_t> bin;  ///< what lies beyond either end is counted in the bin there
 };
 
 /// Degrees; the quality asked for.
 struct AngleLimits {
   double min = 0, max = 180;
+  /// Angles that are 45° or 90° by construction come out of rounding beside it.
+  static constexpr double rounding = 1e-9;
+  bool hold(double degree) const { return degree >= min - rounding && degree <= max + rounding; }
 };
 
 struct Quality {

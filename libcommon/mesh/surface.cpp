@@ -2,6 +2,7 @@
 #include "mesh/surface.hpp"
 #include "geom/tet_measures.hpp"
 #include "mesh/group.hpp"
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -16,7 +17,8 @@ constexpr int64_t previous_half(int64_t h) {
   return h % 3 == 0 ? h + 2 : h - 1;
 }
 
-enum Kind : uint8_t { none, good, open, crowded };
+/// torn: crowded, and with more triangles that run along it one way than the other.
+enum Kind : uint8_t { none, good, open, crowded, torn };
 
 struct HalfEdges {
   std::vector<int32_t> mate;   ///< [halves] the half edge on the other side, or -1
@@ -63,7 +65,8 @@ HalfEdges pair_halves(const std::vector<Tri>& tri, const std::vector<int32_t>& l
           e.mate[h[0]] = static_cast<int32_t>(h[1]);
           e.mate[h[1]] = static_cast<int32_t>(h[0]);
         }
-        e.edge[h[0]] = n == 1 ? open : n == 2 && from(h[0]) != from(h[1]) ? good : crowded;
+        const auto one_way = std::count_if(h, h + n, [&](uint32_t k) { return from(k) == from(h[0]); });
+        e.edge[h[0]] = n == 1 ? open : 2 * one_way != n ? torn : n == 2 ? good : crowded;
       });
   const Walker walker(e.mate);
   for_each_group(
@@ -116,7 +119,9 @@ std::vector<SurfaceSummary> summarize_surfaces(const std::vector<Vec3d>& point, 
       s.points += e.corner[h] != none;
       if (e.edge[h] == open && s.faults.open_edges++ == 0)
         s.faults.open_edge = ends;
-      if (e.edge[h] == crowded && s.faults.crowded_edges++ == 0)
+      if (e.edge[h] == torn)
+        s.volume = std::nan("");
+      if ((e.edge[h] == crowded || e.edge[h] == torn) && s.faults.crowded_edges++ == 0)
         s.faults.crowded_edge = ends;
       if (e.corner[h] == crowded && s.faults.pinched_points++ == 0)
         s.faults.pinched_point = tri[t][i];

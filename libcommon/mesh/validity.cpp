@@ -2,6 +2,7 @@
 #include "mesh/validity.hpp"
 #include "geom/predicates.hpp"
 #include "mesh/adjacency.hpp"
+#include "mesh/covering.hpp"
 #include "mesh/crossing.hpp"
 #include "mesh/duplicates.hpp"
 #include "mesh/triangle_match.hpp"
@@ -50,6 +51,8 @@ public:
     check_triangles();
     check_regions();
     check_box();
+    if (v_.valid())
+      check_skin();
     return std::move(v_);
   }
 
@@ -217,6 +220,15 @@ private:
     if (!(std::fabs(v_.volume - box) <= tolerance * box))
       fault("box_volume", 1,
             "volumes add up to " + std::to_string(v_.volume) + " Å³, the box has " + std::to_string(box) + " Å³");
+  }
+
+  void check_skin() {
+    std::vector<int64_t> skin;
+    for (const int64_t f : side_)
+      if (across_[static_cast<size_t>(f)] == no_face)
+        skin.push_back(f);
+    const Covering c = check_covering(m_, skin, threads_);
+    fault("overlap", c.wrong, c.wrong > 0 ? face(c.face) : "");
   }
 
   const TetMesh& m_;

@@ -23,7 +23,7 @@ int64_t count_beyond(const TetMesh& m, AngleLimits limits, int threads) {
       static_cast<int64_t>(m.tet.size()), threads, int64_t{0},
       [&](int64_t t) {
         const WorstTet w = measure(m, t);
-        return int64_t{w.min < limits.min || w.max > limits.max};
+        return int64_t{!limits.hold(w.min) || !limits.hold(w.max)};
       },
       [](int64_t a, int64_t b) { return a + b; });
 }
@@ -42,7 +42,7 @@ std::vector<WorstTet> worst_tets(const TetMesh& m, AngleLimits limits, size_t mo
       static_cast<int64_t>(m.tet.size()), threads, std::vector<WorstTet>{},
       [&](int64_t t) {
         const WorstTet w = measure(m, t);
-        return beyond(w) > 0 ? std::vector<WorstTet>{w} : std::vector<WorstTet>{};
+        return beyond(w) > AngleLimits::rounding ? std::vector<WorstTet>{w} : std::vector<WorstTet>{};
       },
       [&](std::vector<WorstTet> a, const std::vector<WorstTet>& b) {
         return b.empty() ? std::move(a) : merge(std::move(a), b);

@@ -1,7 +1,9 @@
 // tetstat_test.cpp — the report's keys and figures, in JSON and in text.
 #include "formats/tetstat/tetstat.hpp"
 #include "unit/mesh/meshes.hpp"
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 using namespace molmesh;
 using namespace molmesh::testing;
@@ -44,6 +46,27 @@ TEST_CASE("a valid mesh in JSON") {
   CHECK(j["labels"][6]["triangles"] == 32);
   CHECK(j["quality"]["dihedral"]["histogram"]["counts"][9] == 2 * 384); // 45° to 50°
   CHECK(j["quality"]["dihedral"]["min"] == Approx(45));
+}
+
+TEST_CASE("what is asked for and met but for rounding is met") {
+  const TetMesh m = cubes(
+      3, [](Vec3i) -> int32_t { return Region::molecule; }, 0.1);
+  const auto j = formats::tetstat_json(report(m, {45, 90}));
+  CHECK(j["asked"]["met"] == true);
+  const auto& counts = j["quality"]["dihedral"]["histogram"]["counts"]; // Kuhn's tetrahedra: 45°, 60° and 90°
+  CHECK(counts[9] == 2 * 162);
+  CHECK(counts[12] == 162);
+  CHECK(counts[18] == 3 * 162);
+  CHECK(formats::tetstat_json(report(m, {45.001, 90}))["asked"]["met"] == false);
+}
+
+TEST_CASE("a surface with more triangles one way than the other along an edge encloses no volume") {
+  // Two blocks side by side in one mesh, labels as a foreign file has them: the wall between them is there once.
+  TetMesh m = cubes(2, [](Vec3i c) -> int32_t { return c.x < 1 ? Region::molecule : Region::outside; });
+  std::fill(m.boundary.begin(), m.boundary.end(), Boundary::surface);
+  const Validity v = check_validity(m, 1);
+  CHECK(std::isnan(v.surface.volume));
+  CHECK(v.surface.faults.crowded_edges == 8);
 }
 
 TEST_CASE("a surface that the box cuts encloses no volume") {
