@@ -23,8 +23,8 @@ struct Options : cli::Common {
 /// By the ending of the output's name. Those of several files are named by any of them.
 const std::vector<std::pair<const char*, const char*>> endings = {
     {".msh", "gmsh"},   {".msh2", "gmsh22"}, {".mesh", "medit"}, {".node", "tetgen"},
-    {".ele", "tetgen"}, {".face", "tetgen"}, {".xdmf", "xdmf"},  {".m", "mcsf"},
-    {".stl", "stl"},    {".ply", "ply"},     {".off", "off"}};
+    {".ele", "tetgen"}, {".face", "tetgen"}, {".xdmf", "xdmf"},  {".h5", "xdmf"},
+    {".m", "mcsf"},     {".stl", "stl"},     {".ply", "ply"},    {".off", "off"}};
 
 void describe(CLI::App& app, Options& o) {
   app.add_option("--format", o.format,
@@ -54,7 +54,7 @@ std::string format_of(const Options& o) {
 
 /// The output's name without its ending.
 std::string stem(const Options& o, const std::string& format) {
-  if (o.output == "-")
+  if (cli::standard_stream(o.output) >= 0)
     fail(Status::usage, "--format " + format + ": several files, expected -o FILE");
   const std::string end = ending(o.output);
   const bool known = std::any_of(endings.begin(), endings.end(), [&](const auto& e) { return end == e.first; });
@@ -73,9 +73,11 @@ std::vector<std::string> Options::outputs() const {
 /// In the order of Options::outputs().
 using Outputs = std::deque<cli::OutputFile>;
 
-void write_mesh(Outputs& outputs, const Options& o, const std::string& format, const TetMesh& m,
-                const std::string& input) {
+/// Returns how many triangles' labels have no place.
+int64_t write_mesh(Outputs& outputs, const Options& o, const std::string& format, const TetMesh& m,
+                   const std::string& input) {
   std::ostream& out = outputs[0].stream();
+  int64_t unplaced = 0;
   if (format == "tetgen") {
     formats::write_tetgen(out, outputs[1].stream(), outputs[2].stream(), m);
   } else if (format == "xdmf") {
@@ -88,23 +90,33 @@ void write_mesh(Outputs& outputs, const Options& o, const std::string& format, c
   else if (format == "medit")
     formats::write_medit(out, m);
   else if (format == "mcsf")
-    formats::write_mcsf(out, m);
+    unplaced = formats::write_mcsf(out, m, input);
   else
     (format == "stl"   ? formats::write_stl
      : format == "ply" ? formats::write_ply
                        : formats::write_off)(out, m, input);
   for (cli::OutputFile& output : outputs)
     output.commit();
+  return unplaced;
 }
 
 /// What the format has no place for.
-void note_losses(const cli::Run& run, const std::string& format, const TetMesh& m) {
-  if (format == "gmsh" || format == "xdmf")
+void note_losses(const cli::Run& run, const std::string& format, const TetMesh& m, int64_t unplaced) {
+  if (format == "xdmf")
     return;
-  std::string lost = m.part.empty() ? "" : "part";
+  std::string lost;
+  const auto lose = [&](const std::string& what) { lost += (lost.empty() ? "" : ", ") + what; };
+  const bool has_arrays = format == "gmsh" || format == "ply";
+  if (!m.part.empty() && format != "gmsh")
+    lose("part");
   for (const CellArray& a : m.cell_array)
-    if (format != "ply" && (a.name != "patch" || format == "stl" || format == "off"))
-      lost += (lost.empty() ? "" : ", ") + a.name;
+    if (!has_arrays && (a.name != "patch" || format == "stl" || format == "off"))
+      lose(a.name);
+  for (const NamedText& t : m.named_text)
+    if (has_arrays && t.name != "patch_names")
+      lose(t.name);
+  if (unplaced > 0)
+    lose("labels of " + std::to_string(unplaced) + " triangles between regions");
   if (!lost.empty())
     run.note("left out, " + format + " has no place for them: " + lost);
 }
@@ -116,13 +128,16 @@ Status run_tool(const Options& o, cli::Run& run) {
   Outputs outputs;
   for (const std::string& name : o.outputs())
     outputs.emplace_back(name, format == "stl" ? cli::OutputFile::Content::binary : cli::OutputFile::Content::text);
-  const TetMesh mesh = formats::read_vtu(input.stream(), input.name(), nullptr, formats::CellArrays::keep);
+  formats::VtuNotes notes;
+  const TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes, formats::CellArrays::keep);
+  for (const std::string& line : described(notes))
+    run.note(line);
   run.counts["points"] = mesh.point.size();
   run.counts["tetrahedra"] = mesh.tet.size();
   run.counts["triangles"] = mesh.tri.size();
   run.phase("write");
-  write_mesh(outputs, o, format, mesh, input.name());
-  note_losses(run, format, mesh);
+  const int64_t unplaced = write_mesh(outputs, o, format, mesh, input.name());
+  note_losses(run, format, mesh, unplaced);
   return Status::good;
 }
 

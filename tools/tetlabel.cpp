@@ -6,9 +6,11 @@
 #include "formats/vtu/names.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "label/mesh_labels.hpp"
+#include "molecule/words.hpp"
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <sstream>
 
 using namespace molmesh;
@@ -28,9 +30,8 @@ void describe(CLI::App& app, Options& o) {
       ->required();
   app.add_option(
          "--decay", o.decay,
-         "decay rate of an atom's term, as hier2density had it; auto: as the mesh says, 1 where it does not")
-      ->type_name("Å⁻²")
-      ->check(CLI::PositiveNumber | CLI::IsMember({"auto"}));
+         "decay rate of an atom's term (> 0), as hier2density had it; auto: as the mesh says, 1 where it does not")
+      ->type_name("Å⁻²");
   app.add_option(
          "--boundary", o.boundary,
          "NAME=SELECTION: triangles of the molecular surface that belong to these atoms (gemmi's selection "
@@ -62,28 +63,42 @@ std::vector<label::NamedBoundary> select(const Options& o, const Hierarchy& h) {
   return boundary;
 }
 
+/// 0: auto.
+double parse_decay(const std::string& text) {
+  if (text == "auto")
+    return 0;
+  const std::optional<double> decay = decimal(text);
+  if (!decay || !(*decay > 0))
+    fail(Status::usage, "--decay: found '" + text + "', expected auto or a number > 0");
+  return *decay;
+}
+
 double decay_of(const Options& o, const TetMesh& mesh) {
-  if (o.decay == "auto")
-    return mesh.decay > 0 ? mesh.decay : 1;
-  const double decay = cli::numbers("--decay", o.decay, 1)[0];
-  if (mesh.decay > 0 && std::fabs(decay - mesh.decay) > 1e-9 * mesh.decay)
+  const double asked = parse_decay(o.decay);
+  if (asked > 0 && mesh.decay > 0 && std::fabs(asked - mesh.decay) > 1e-9 * mesh.decay)
     fail(Status::usage, "--decay: found " + o.decay + ", expected " + std::to_string(mesh.decay) +
                             ", which the mesh was made with");
-  return decay;
+  return asked > 0 ? asked : mesh.decay > 0 ? mesh.decay : 1;
 }
 
 Status run_tool(const Options& o, cli::Run& run) {
   if (o.input == "-" && o.hierarchy == "-")
     fail(Status::usage, "both inputs are standard input, expected at most one");
+  parse_decay(o.decay); // before any work
   run.phase("read");
   cli::InputFile structure(o.hierarchy), input(o.input);
   cli::OutputFile output(o.output, cli::OutputFile::Content::binary);
   const Hierarchy h = formats::read_hier(structure.stream(), structure.name());
   const std::vector<label::NamedBoundary> boundary = select(o, h);
-  TetMesh mesh = formats::read_vtu(input.stream(), input.name(), nullptr, formats::CellArrays::keep);
+  formats::VtuNotes notes;
+  TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes, formats::CellArrays::keep);
+  for (const std::string& line : described(notes))
+    run.note(line);
 
   run.phase("label");
   const label::Places places = label::places_of(mesh, o.resolved_threads());
+  if (places.cell.empty())
+    fail_input(input.name() + ": no tetrahedron of region 1 and no triangle of boundary 1, expected a molecule");
   label::Labels labels =
       label::find_labels(h, places.centroid, {decay_of(o, mesh), mesh.isovalue, o.resolved_threads()});
   run.counts["tetrahedra"] = places.tets;

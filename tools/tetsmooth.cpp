@@ -9,6 +9,7 @@
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "improve/improve.hpp"
+#include "improve/report.hpp"
 #include "mesh/carry.hpp"
 #include "mesh/partition.hpp"
 #include "mesh/same_source.hpp"
@@ -44,22 +45,6 @@ void describe(CLI::App& app, Options& o) {
   cli::add_dihedral_limits(app, o.min_dihedral, o.max_dihedral, ", and aimed at up to 34 and 125");
 }
 
-nlohmann::ordered_json json(const improve::Angles& a) {
-  return {{"min_dihedral", a.min}, {"max_dihedral", a.max}, {"below_25", a.below_25}, {"above_140", a.above_140}};
-}
-nlohmann::ordered_json json(const improve::Fidelity& f) {
-  return {{"points", f.points},
-          {"points_off", f.points_off},
-          {"points_off_cavity", f.points_off_cavity},
-          {"points_off_wall", f.points_off_wall},
-          {"triangles", f.triangles},
-          {"centroids_off", f.centroids_off},
-          {"turned_45", f.turned},
-          {"area", f.area},
-          {"volume", f.volume},
-          {"volume_missing", f.missing}};
-}
-
 Status run_tool(const Options& o, cli::Run& run) {
   const int threads = o.resolved_threads();
   run.phase("read");
@@ -78,6 +63,8 @@ Status run_tool(const Options& o, cli::Run& run) {
     hierarchy = formats::read_hier(structure->stream(), structure->name());
   formats::VtuNotes notes;
   TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes, formats::CellArrays::keep);
+  for (const std::string& line : described(notes))
+    run.note(line);
   if (grid)
     require_same_source(mesh, !notes.isovalue_missing, grid->info, density->name());
   const CarriedArrays arrays(mesh);

@@ -30,11 +30,8 @@ formats::MeshReport report(const std::string& path, const Options& o, cli::Run& 
   cli::InputFile input(path);
   formats::VtuNotes notes;
   const TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes);
-  if (notes.dropped_cells > 0)
-    run.note("dropped " + std::to_string(notes.dropped_cells) + " vertices and lines");
-  if (notes.dropped_triangles > 0)
-    run.note("the file has no array 'boundary': " + std::to_string(notes.dropped_triangles) +
-             " triangles dropped, " + std::to_string(mesh.tri.size()) + " rebuilt");
+  for (const std::string& line : described(notes))
+    run.note(line);
   run.phase("validity");
   Validity validity = check_validity(mesh, threads);
   if (o.crossings) {

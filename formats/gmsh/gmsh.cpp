@@ -34,12 +34,19 @@ Groups groups(const TetMesh& m, const Cells& cells, const std::vector<int32_t>& 
   return g;
 }
 
+/// Between quotes, on one line.
+std::string quotable(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == '"' || (c >= 0 && c < ' ') || c == 0x7F; }, '_');
+  return name;
+}
+
 void write_physical_names(TextOut& out, const Groups& surfaces, const Groups& volumes) {
   out << "$PhysicalNames\n" << surfaces.size() + volumes.size() << '\n';
   for (const auto& [tag, g] : surfaces)
-    out << "2 " << tag << " \"" << g.name << "\"" << '\n';
+    out << "2 " << tag << " \"" << quotable(g.name) << "\"" << '\n';
   for (const auto& [tag, g] : volumes)
-    out << "3 " << tag << " \"" << g.name << "\"" << '\n';
+    out << "3 " << tag << " \"" << quotable(g.name) << "\"" << '\n';
   out << "$EndPhysicalNames" << '\n';
 }
 
@@ -129,7 +136,7 @@ void write_mesh_4_1(TextOut& out, const TetMesh& m, const Groups& surfaces, cons
 
 void write_data(TextOut& out, const TetMesh& m, const std::string& name, const Groups& surfaces,
                 const Groups& volumes, const std::vector<int32_t>& integer, const std::vector<double>& real) {
-  out << "$ElementData\n1\n\"" << name << "\"\n1\n0\n3\n0\n1\n" << m.tri.size() + m.tet.size() << '\n';
+  out << "$ElementData\n1\n\"" << quotable(name) << "\"\n1\n0\n3\n0\n1\n" << m.tri.size() + m.tet.size() << '\n';
   for_each_element(surfaces, volumes, [&](size_t number, int dimension, int32_t, size_t c) {
     const size_t cell = dimension == 3 ? c : m.tet.size() + c;
     out << number << ' ';

@@ -1,5 +1,6 @@
 // mcsf.cpp — simplices with their material and the types of their faces.
 #include "formats/mcsf/mcsf.hpp"
+#include "error.hpp"
 #include "formats/text_out.hpp"
 #include "formats/vtu/names.hpp"
 #include "mesh/adjacency.hpp"
@@ -8,6 +9,8 @@
 namespace molmesh::formats {
 namespace {
 
+constexpr int32_t most_label = 1 << 30; // twice that is a type
+
 /// Odd is Dirichlet for MC, even Neumann, 0 a face within the mesh; (type + 1) / 2 is the label.
 int32_t face_type(int32_t label) {
   return label == Boundary::surface ? 2 : 2 * label - 1;
@@ -15,8 +18,10 @@ int32_t face_type(int32_t label) {
 
 } // namespace
 
-void write_mcsf(std::ostream& stream, const TetMesh& m) {
+int64_t write_mcsf(std::ostream& stream, const TetMesh& m, const std::string& file) {
   const std::vector<int32_t> patch = patches(m);
+  if (const auto most = std::max_element(patch.begin(), patch.end()); most != patch.end() && *most > most_label)
+    fail_input(file + ": a triangle of label " + std::to_string(*most) + ", expected 2^30 at most for mcsf");
   std::vector<std::pair<Tri, int32_t>> face; // sorted corners, label
   for (size_t t = 0; t < m.tri.size(); ++t) {
     Tri f = m.tri[t];
@@ -24,6 +29,7 @@ void write_mcsf(std::ostream& stream, const TetMesh& m) {
     face.emplace_back(f, patch[t]);
   }
   std::sort(face.begin(), face.end());
+  auto unplaced = static_cast<int64_t>(patch.size()) - std::count(patch.begin(), patch.end(), Boundary::surface);
   const LargeArray<int32_t> across = face_neighbors(m, 1);
   TextOut out(stream);
   out << "mcsf_begin=1;\n\ndim=3;\ndimii=3;\nvertices=" << m.point.size() << ";\nsimplices=" << m.tet.size()
@@ -39,7 +45,9 @@ void write_mcsf(std::ostream& stream, const TetMesh& m) {
         Tri corner = face_points(m, static_cast<int64_t>(4 * t + f));
         std::sort(corner.begin(), corner.end());
         const auto found = std::lower_bound(face.begin(), face.end(), std::make_pair(corner, int32_t{0}));
-        type = face_type(found != face.end() && found->first == corner ? found->second : Boundary::surface);
+        const int32_t label = found != face.end() && found->first == corner ? found->second : Boundary::surface;
+        type = face_type(label);
+        unplaced -= label != Boundary::surface;
       }
       out << ' ' << type;
     }
@@ -48,6 +56,7 @@ void write_mcsf(std::ostream& stream, const TetMesh& m) {
     out << '\n';
   }
   out << "];\n\nmcsf_end=1;" << '\n';
+  return unplaced;
 }
 
 } // namespace molmesh::formats

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <set>
 
 namespace molmesh::formats {
 namespace {
@@ -49,11 +50,13 @@ void put(std::ostream& out, const T* values, size_t n) {
   out.write(reinterpret_cast<const char*>(values), static_cast<std::streamsize>(n * sizeof(T)));
 }
 
-/// A PLY property is a word.
-std::string word(const std::string& name) {
+/// A PLY property is a word that no other one is.
+std::string property(const std::string& name, std::set<std::string>& taken) {
   std::string s;
   for (const char c : name)
     s += c > ' ' && c < 0x7F ? c : '_';
+  while (!taken.insert(s).second)
+    s += '_';
   return s;
 }
 
@@ -96,9 +99,10 @@ void write_ply(std::ostream& stream, const TetMesh& m, const std::string& file) 
   out << "element vertex " << s.point.size()
       << "\nproperty double x\nproperty double y\nproperty double z\nelement face " << s.tri.size()
       << "\nproperty list uchar int vertex_indices\nproperty int patch\n";
+  std::set<std::string> taken{"vertex_indices", "patch"};
   for (const CellArray& a : m.cell_array)
     if (a.name != "patch")
-      out << (a.real.empty() ? "property int " : "property double ") << word(a.name) << '\n';
+      out << (a.real.empty() ? "property int " : "property double ") << property(a.name, taken) << '\n';
   out << "end_header\n";
   for (const Vec3d& p : s.point)
     out << p.x << ' ' << p.y << ' ' << p.z << '\n';

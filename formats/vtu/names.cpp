@@ -84,10 +84,13 @@ std::map<int32_t, std::string> boundary_names(const TetMesh& m, const std::vecto
 }
 
 std::vector<int32_t> patches(const TetMesh& m) {
+  std::vector<int32_t> label = m.boundary;
   for (const CellArray& a : m.cell_array)
     if (a.name == "patch" && a.integer.size() == m.tet.size() + m.tri.size())
-      return {a.integer.begin() + static_cast<std::ptrdiff_t>(m.tet.size()), a.integer.end()};
-  return m.boundary;
+      for (size_t t = 0; t < label.size(); ++t)
+        if (const int32_t patch = a.integer[m.tet.size() + t]; patch > 0)
+          label[t] = patch;
+  return label;
 }
 
 } // namespace molmesh::formats

@@ -18,7 +18,7 @@ std::string region_name(int32_t region);
 /// Names of the boundary labels that occur in `label`: surface, box_x0 … box_z1, then what patch_names has, else
 /// boundary_N. Lines that are not "ID NAME" name nothing.
 std::map<int32_t, std::string> boundary_names(const TetMesh& m, const std::vector<int32_t>& label);
-/// The label of each triangle for boundary conditions: `patch` where the mesh has it, else `boundary`.
+/// The label of each triangle for boundary conditions: `patch` where the mesh has a positive one, else `boundary`.
 std::vector<int32_t> patches(const TetMesh& m);
 
 } // namespace molmesh::formats

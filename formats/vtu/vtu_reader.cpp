@@ -1,8 +1,8 @@
 // vtu_reader.cpp — tetrahedra, triangles and labels out of a VTK unstructured grid (VTUv1.md).
 #include "error.hpp"
+#include "formats/vtu/foreign.hpp"
 #include "formats/vtu/vtk_array.hpp"
 #include "formats/vtu/vtu.hpp"
-#include "mesh/adjacency.hpp"
 #include "par/pages.hpp"
 #include <algorithm>
 #include <cmath>
@@ -177,14 +177,10 @@ private:
           m_.part.push_back(part.at(c));
       } else if (type == 5) {
         corner(3);
-        if (notes_.boundary_missing) {
-          ++notes_.dropped_triangles;
-        } else {
-          m_.tri.push_back({point(0), point(1), point(2)});
-          m_.boundary.push_back(boundary.positive(c, 1));
-          if (!kept.empty())
-            kept[c] = 2;
-        }
+        m_.tri.push_back({point(0), point(1), point(2)});
+        m_.boundary.push_back(boundary.positive(c, 1));
+        if (!kept.empty())
+          kept[c] = 2;
       } else if (type >= 1 && type <= 4) {
         ++notes_.dropped_cells;
         if (end < begin)
@@ -226,17 +222,31 @@ private:
       for (size_t c = 0; c < kept.size(); ++c) {
         if (kept[c] == 0)
           continue;
+        if (!real_[a] && !is_label(values.integer(c)))
+          make_real(a);
         CellArray& to = kept[c] == 1 ? m_.cell_array[a] : triangles_[a];
         if (real_[a])
           to.real.push_back(values.is_integer() ? static_cast<double>(values.integer(c)) : values.real(c));
         else
-          to.integer.push_back(label(tag, c, values.integer(c)));
+          to.integer.push_back(static_cast<int32_t>(values.integer(c)));
       }
     }
   }
 
+  /// Integers that are too wide are carried as reals.
+  void make_real(size_t a) {
+    real_[a] = true;
+    for (CellArray* part : {&m_.cell_array[a], &triangles_[a]}) {
+      part->real.assign(part->integer.begin(), part->integer.end());
+      part->integer.clear();
+    }
+  }
+
+  static bool is_label(int64_t v) {
+    return v >= std::numeric_limits<int32_t>::min() && v <= std::numeric_limits<int32_t>::max();
+  }
   int32_t label(const ArrayTag& tag, size_t c, int64_t v) const {
-    if (v < std::numeric_limits<int32_t>::min() || v > std::numeric_limits<int32_t>::max())
+    if (!is_label(v))
       d_.refuse(tag.line, "R9",
                 "cell " + std::to_string(c) + " has " + tag.name + ' ' + std::to_string(v) +
                     ", expected a 32-bit label");
@@ -337,15 +347,8 @@ TetMesh read_vtu(std::istream& in, const std::string& file, VtuNotes* notes, Cel
   VtuNotes& n = notes ? *notes : own;
   n = {};
   TetMesh mesh = Reader(document, n, arrays).read();
-  if (n.boundary_missing) {
-    rebuild_triangles(mesh);
-    label_walls(mesh);
-    for (CellArray& a : mesh.cell_array) { // nothing is known of the new triangles
-      const size_t cells = mesh.tet.size() + mesh.tri.size();
-      a.real.resize(a.real.empty() ? 0 : cells, 0);
-      a.integer.resize(a.integer.empty() ? 0 : cells, 0);
-    }
-  }
+  if (n.boundary_missing)
+    take_rebuilt_triangles(mesh, n);
   return mesh;
 }
 

@@ -17,6 +17,35 @@
 #endif
 
 namespace molmesh::cli {
+namespace {
+
+/// One printable line: control characters and bytes that are no UTF-8 become \xHH, and 2,000 characters are enough.
+std::string one_line(const std::string& text) {
+  std::string line;
+  for (size_t i = 0; i < text.size() && line.size() < 2000;) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const size_t length = byte < 0x80                   ? 1
+                          : byte >= 0xC2 && byte < 0xE0 ? 2
+                          : byte >= 0xE0 && byte < 0xF0 ? 3
+                          : byte >= 0xF0 && byte < 0xF5 ? 4
+                                                        : 0;
+    bool valid = length > 0 && i + length <= text.size() && byte >= 0x20 && byte != 0x7F;
+    for (size_t k = 1; valid && k < length; ++k)
+      valid = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
+    if (valid) {
+      line.append(text, i, length);
+      i += length;
+    } else {
+      char hex[8];
+      std::snprintf(hex, sizeof hex, "\\x%02x", byte);
+      line += text[i] == '\n' && i + 1 == text.size() ? "" : text[i] == '\n' ? "; " : hex;
+      ++i;
+    }
+  }
+  return line;
+}
+
+} // namespace
 
 int Common::resolved_threads() const {
   if (on_device()) {
@@ -47,7 +76,7 @@ void Run::end_phase() {
 
 void Run::note(const std::string& line) const {
   if (!quiet)
-    std::cerr << tool << ": " << line << '\n';
+    std::cerr << tool << ": " << one_line(line) << '\n';
 }
 
 std::string creator(const std::string& tool) {
@@ -100,32 +129,6 @@ nlohmann::ordered_json options_json(const CLI::App& app) {
       j[name] = value_json(option->count() > 0 ? option->results().back() : option->get_default_str());
   }
   return j;
-}
-
-/// One printable line: control characters and bytes that are no UTF-8 become \xHH, and 2,000 characters are enough.
-std::string one_line(const std::string& text) {
-  std::string line;
-  for (size_t i = 0; i < text.size() && line.size() < 2000;) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const size_t length = byte < 0x80                   ? 1
-                          : byte >= 0xC2 && byte < 0xE0 ? 2
-                          : byte >= 0xE0 && byte < 0xF0 ? 3
-                          : byte >= 0xF0 && byte < 0xF5 ? 4
-                                                        : 0;
-    bool valid = length > 0 && i + length <= text.size() && byte >= 0x20 && byte != 0x7F;
-    for (size_t k = 1; valid && k < length; ++k)
-      valid = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
-    if (valid) {
-      line.append(text, i, length);
-      i += length;
-    } else {
-      char hex[8];
-      std::snprintf(hex, sizeof hex, "\\x%02x", byte);
-      line += text[i] == '\n' && i + 1 == text.size() ? "" : text[i] == '\n' ? "; " : hex;
-      ++i;
-    }
-  }
-  return line;
 }
 
 /// No output is a file that is read, from standard input too, and the report is neither.

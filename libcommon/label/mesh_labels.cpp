@@ -94,11 +94,14 @@ void remove_named(TetMesh& m, const std::set<std::string>& gone) {
 } // namespace
 
 void remove_labels(TetMesh& m) {
-  std::set<std::string> gone;
+  std::set<std::string> gone, texts;
+  for (const NamedText& t : m.named_text)
+    texts.insert(t.name);
   for (const CellArray& a : m.cell_array)
     if (const size_t n = a.name.size(); n > 6 && a.name.compare(n - 6, 6, "_share") == 0) {
       const std::string level = a.name.substr(0, n - 6);
-      gone.insert({level, a.name, level + "_names"});
+      if (texts.count(level + "_names") > 0) // else another program's
+        gone.insert({level, a.name, level + "_names"});
     }
   remove_named(m, gone);
 }

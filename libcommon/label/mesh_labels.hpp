@@ -36,7 +36,7 @@ struct Patches {
 Patches add_patches(TetMesh& m, const Places& places, const Labels& labels,
                     const std::vector<NamedBoundary>& boundary);
 
-/// Removes what a former run added: arrays and texts of levels (those with a NAME_share).
+/// Removes what a former run added: arrays and texts of levels (those with a NAME_share and NAME_names).
 void remove_labels(TetMesh& m);
 /// Removes the named boundaries of a former run.
 void remove_patches(TetMesh& m);

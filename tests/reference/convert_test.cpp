@@ -92,7 +92,7 @@ void write_all(const TetMesh& m, const Folder& folder) {
   formats::write_medit(medit, m);
   formats::write_tetgen(node, ele, face, m);
   formats::write_xdmf(xdmf, h5, "mesh.h5", m);
-  formats::write_mcsf(mcsf, m);
+  formats::write_mcsf(mcsf, m, "x.vtu");
   formats::write_stl(stl, m, "mesh");
   formats::write_ply(ply, m, "mesh");
   formats::write_off(off, m, "mesh");

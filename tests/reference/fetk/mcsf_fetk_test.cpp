@@ -28,7 +28,7 @@ TEST_CASE("MC reads .m: points, materials, boundary types; its own check of the 
       (std::filesystem::temp_directory_path() / ("molmesh_mcsf." + std::to_string(getpid()) + ".m")).string();
   {
     std::ofstream out(path);
-    formats::write_mcsf(out, m);
+    formats::write_mcsf(out, m, "x.vtu");
   }
   Vio_start();
   Gem* gem = Gem_ctor(nullptr, PDE_ctor_default());
