@@ -9,7 +9,9 @@
 #include "formats/hier/hier.hpp"
 #include "formats/vdb/leaves.hpp"
 #include "formats/vdb/vdb.hpp"
+#include "molecule/words.hpp"
 #include "par/par.hpp"
+#include <optional>
 
 using namespace molmesh;
 
@@ -17,7 +19,7 @@ namespace {
 
 struct Options : cli::Common {
   Options() { require_device = cuda::require_device; }
-  double spacing = 0.5;
+  std::optional<double> spacing;
   int64_t grid = 0;
   std::string margin = "auto";
   double decay = 1, isovalue = 1, tolerance = 1e-4;
@@ -25,12 +27,13 @@ struct Options : cli::Common {
 };
 
 void describe(CLI::App& app, Options& o) {
-  CLI::Option* spacing =
-      app.add_option("--spacing", o.spacing, "grid spacing h")->type_name("Å")->check(CLI::PositiveNumber);
+  app.add_option("--spacing", o.spacing, "grid spacing h")
+      ->type_name("Å")
+      ->check(CLI::PositiveNumber)
+      ->default_str("0.5");
   app.add_option("--grid", o.grid,
                  "points along the longest axis, 4 or more, instead of --spacing; 0: use --spacing")
-      ->check(CLI::Range(0, 1 << 29))
-      ->excludes(spacing);
+      ->check(CLI::Range(0, 1 << 29));
   app.add_option(
          "--margin", o.margin,
          "grid beyond the outermost atom centres, 0 or more; auto: as far as the surface and its band can reach")
@@ -55,10 +58,12 @@ density::Options density_options(const Options& o) {
     fail(Status::usage, "--band: found '" + o.band + "', expected LO,HI with 0 < LO < 1 < HI");
   if (o.grid > 0 && o.grid < 4)
     fail(Status::usage, "--grid: found " + std::to_string(o.grid) + ", expected 4 or more");
-  d.spacing = o.spacing;
+  if (o.grid > 0 && o.spacing)
+    fail(Status::usage, "--spacing excludes --grid, expected one of them");
+  d.spacing = o.spacing.value_or(0.5);
   d.grid_points = o.grid;
   if (o.margin != "auto") {
-    d.margin = cli::numbers("--margin", o.margin, 1)[0];
+    d.margin = decimal(o.margin).value_or(-1);
     if (!(d.margin >= 0))
       fail(Status::usage, "--margin: found '" + o.margin + "', expected auto or a number >= 0");
   }

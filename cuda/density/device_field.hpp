@@ -8,13 +8,14 @@
 namespace molmesh::cuda {
 
 /// Single precision holds: every exponent above the innermost level is 1, the tolerance is well above rounding, no
-/// term that matters underflows and no power overflows (ln of float: -103 … 88).
+/// term that matters underflows, nor what EvaluateBlock multiplies of it without its peak, and no power overflows
+/// (ln of float: -103 … 88, without loss of digits from -87).
 inline bool single_holds(const density::Field& f, double tolerance) {
   if (!f.plain_above || tolerance < 2e-5 * std::max(1.0, f.steepest))
     return false;
   std::vector<double> largest(f.level[0].exponent.size(), 0.0);
   for (size_t c = 0; c < f.group.size(); ++c) {
-    if (f.ln_peak[c] - f.decay * f.cutoff2[c] < -95)
+    if (f.ln_peak[c] - f.decay * f.cutoff2[c] < -95 || f.decay * f.cutoff2[c] > 87)
       return false;
     largest[static_cast<size_t>(f.group[c])] += std::exp(std::min(f.ln_peak[c], 80.0));
   }

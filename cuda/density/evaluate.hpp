@@ -106,8 +106,8 @@ struct LongSum {
 };
 
 /// In single precision, when everything above the innermost level is a plain sum: value[512·b + 64·i + 8·j + k] of
-/// block b = order[n]. A term is a product of three factors that are at most 1, so nothing overflows; terms that
-/// underflow are those that may be dropped (single_holds).
+/// block b = order[n]. A term is a product of three factors, the atom's peak in the first, the others at most 1;
+/// terms of which some underflow are those that may be dropped, and nothing overflows (single_holds).
 struct EvaluateBlock {
   FieldView f;
   BlockFrame frame;

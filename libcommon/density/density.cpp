@@ -17,8 +17,8 @@ void check_band(const Options& o) {
                room = std::min(o.band_upper - o.isovalue, o.isovalue - o.band_lower);
   char text[200];
   if (!(o.band_upper <= 1e38)) {
-    std::snprintf(text, sizeof text, "the band reaches up to %g, expected at most 1e38: a lower --isovalue",
-                  o.band_upper);
+    std::snprintf(text, sizeof text,
+                  "the band reaches up to %g, expected at most 1e38: a lower --isovalue or --band", o.band_upper);
     fail(Status::usage, text);
   }
   if (off <= room * (1 + 1e-12))
@@ -28,6 +28,17 @@ void check_band(const Options& o) {
       "--tolerance: found %g, expected at most %g, the band's reach from the isovalue of %g: a wider --band "
       "or a larger --isovalue would do, too",
       o.tolerance, room / std::max(1.0, o.isovalue), o.isovalue);
+  fail(Status::usage, text);
+}
+
+/// Terms over a block are known to κh²·1e-14 or so, and clusters near it to 1e-6 h (field.md §4).
+void check_spacing(const Options& o, double h) {
+  constexpr double most = 1e7;
+  if (o.decay * h * h <= most)
+    return;
+  char text[200];
+  std::snprintf(text, sizeof text, "the spacing is %g Å, expected at most %g Å at this --decay: %s", h,
+                std::sqrt(most / o.decay), o.grid_points > 0 ? "a larger --grid" : "a smaller --spacing");
   fail(Status::usage, text);
 }
 
@@ -90,6 +101,7 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
     fail_without_band(o, 0, margin, enough());
   const GridFrame frame = o.grid_points > 0 ? frame_with_points(box, margin, o.grid_points)
                                             : frame_with_spacing(box, margin, o.spacing);
+  check_spacing(o, frame.spacing);
   bool cut = false;
   const BandSink look = [&](const FieldInfo& info, std::span<const BandBlocks> runs) {
     for (const BandBlocks& blocks : runs) {

@@ -193,19 +193,18 @@ bool take_units_simd(const LocalClusters& node, const NearUnits& from, const int
                        hn::Set(f, decay)};
   const int32_t clusters = find_centers(node, from, list, n, middle, to);
   const float log2_within = within > 0 ? hn::GetLane(log2(hn::Set(f, within))) : -1e30f;
-  const auto safe = [&](int32_t atoms) {
-    return log2_within - hn::GetLane(log2(hn::Set(f, static_cast<float>(atoms)))) - 1e-5f;
-  };
+  const auto safe = [&](float atoms) { return log2_within - hn::GetLane(log2(hn::Set(f, atoms))) - 1e-5f; };
   if (!log2_upper) { // relative to each unit
     const auto relative = to.direct ? take<false, true> : take<false, false>;
-    return relative(node, from, list, n, block, decay, middle, nullptr, safe(16 * clusters), to);
+    return relative(node, from, list, n, block, decay, middle, nullptr, safe(16.f * float(clusters)), to);
   }
   // A threshold that mostly does; what it drops is summed. The last one cannot fail.
   const auto absolute = to.direct ? take<true, true> : take<true, false>;
   float least = log2_within - 2.5f;
   bool holds = absolute(node, from, list, n, block, decay, middle, log2_upper, least, to);
   if (to.dropped > within)
-    for (const float last = safe(16 * std::max(1, clusters * n)); to.dropped > within && least > last;) {
+    for (const float last = safe(16.f * std::max(1.f, float(clusters) * float(n)));
+         to.dropped > within && least > last;) {
       least = std::max(last, least - 1.5f);
       holds = absolute(node, from, list, n, block, decay, middle, log2_upper, least, to);
     }

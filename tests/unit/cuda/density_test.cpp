@@ -93,6 +93,18 @@ TEST_CASE("device density: sums of very many terms are within the tolerance") {
     CHECK(test::worst_error(h, on_backend(h, test::around_a_crowd(4.1e-5)).grid, 40) <= 1);
 }
 
+TEST_CASE("device density: an atom's term may matter where its factors without the peak underflow") {
+  Hierarchy h; // large atoms, small powers: of κd² up to 150
+  h.level.push_back({"bead", {}});
+  for (int64_t i = 0; i < 400; ++i) {
+    h.atom.push_back({{0, 0, 0}, 8.8});
+    h.level[0].group.push_back({"b", 0.2, i, i + 1});
+  }
+  density::Options o;
+  o.spacing = 2;
+  CHECK(test::worst_error(h, on_backend(h, o).grid, 200) <= 1);
+}
+
 TEST_CASE("device density: no band cell is missed, no point is on the wrong side, and the host finds the same") {
   for (const std::vector<double>& exponents :
        {std::vector<double>{0.3, 1}, {0.5, 1}, {0.1, 0.5}, {1, 2}, {}, {0.4, 0.7, 1}}) {

@@ -235,6 +235,32 @@ TEST_CASE("fields without an end are refused, not searched for it") {
   CHECK(refused(1.7, 1e-300, 1));
 }
 
+TEST_CASE("a hundred thousand atoms and ten thousand groups in one block are counted in more than 31 bits") {
+  Hierarchy h;
+  h.level.push_back({"crowd", {}});
+  for (int64_t i = 0; i < 216000; ++i)
+    h.atom.push_back({{0, 0, 0}, i == 0 ? 1.5 : 1});
+  h.level[0].group.push_back({"big", 0.9, 0, 216000});
+  for (int64_t i = 0; i < 12000; ++i) {
+    h.atom.push_back({{0, 0, 0}, 1.41});
+    h.level[0].group.push_back({"s", 1, 216000 + i, 216001 + i});
+  }
+  density::Options o;
+  o.spacing = 0.3;
+  CHECK(test::worst_error(h, test::compute(h, o), 20) <= 1);
+}
+
+TEST_CASE("spacings far beyond an atom's reach are refused") {
+  Hierarchy h;
+  h.atom = {{{0, 0, 0}, 1.7}, {{14000000.6, 0.3, 0}, 1.7}};
+  density::Options o;
+  o.spacing = o.margin = 1e6;
+  CHECK(test::refusal(Status::usage, [&] { test::compute(h, o); }).find("a smaller --spacing") !=
+        std::string::npos);
+  o.grid_points = 5;
+  CHECK(test::refusal(Status::usage, [&] { test::compute(h, o); }).find("a larger --grid") != std::string::npos);
+}
+
 TEST_CASE("sums of very many terms are within the tolerance") {
   for (const Hierarchy& h : test::crowds(30000))
     for (const double tolerance : {1e-3, 1e-4, 4.1e-5})
