@@ -11,7 +11,7 @@ namespace molmesh::cuda {
 /// term that matters underflows, nor what EvaluateBlock multiplies of it without its peak, and no power overflows
 /// (ln of float: -103 … 88, without loss of digits from -87).
 inline bool single_holds(const density::Field& f, double tolerance) {
-  if (!f.plain_above || tolerance < 2e-5 * std::max(1.0, f.steepest))
+  if (!f.plain_above || tolerance < 4e-5 * std::max(1.0, f.steepest))
     return false;
   std::vector<double> largest(f.level[0].exponent.size(), 0.0);
   for (size_t c = 0; c < f.group.size(); ++c) {

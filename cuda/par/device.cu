@@ -21,6 +21,9 @@ void require_device() {
   if (10 * major + minor < 75)
     fail(Status::mode_unavailable, "--mode cuda: found a GPU of compute capability " + std::to_string(major) + "." +
                                        std::to_string(minor) + ", expected 7.5 or higher; use seq or omp");
+  int has_pools = 0;
+  if (cudaDeviceGetAttribute(&has_pools, cudaDevAttrMemoryPoolsSupported, 0) != cudaSuccess || has_pools == 0)
+    fail(Status::mode_unavailable, "--mode cuda: found a GPU without memory pools, use seq or omp");
 }
 
 std::string device_name() {

@@ -79,8 +79,7 @@ public:
       void* const to = to_.data();
       check(cudaEventRecord(done_.get(), owner.work_.get()), "an event");
       check(cudaStreamWaitEvent(owner.copy_.get(), done_.get()), "an event");
-      owner.copy_timed(to, from, static_cast<size_t>(n_) * sizeof(T), cudaMemcpyDeviceToHost, owner.copy_.get(),
-                       "copies to the host");
+      owner.copy_timed(to, from, static_cast<size_t>(n_) * sizeof(T), owner.copy_.get(), "copies to the host");
       check(cudaEventRecord(done_.get(), owner.copy_.get()), "an event");
       own_ = std::move(own);
     }
@@ -119,15 +118,13 @@ public:
   template <class T>
   Array<T> upload(const T* from, int64_t n) {
     Array<T> a(*memory_, n);
-    copy_timed(a.data(), from, static_cast<size_t>(n) * sizeof(T), cudaMemcpyHostToDevice, work_.get(),
-               "copies to the device");
+    copy_timed(a.data(), from, static_cast<size_t>(n) * sizeof(T), work_.get(), "copies to the device");
     wait(); // `from` may go
     return a;
   }
   template <class T>
   void download(const Array<T>& from, int64_t n, T* to) {
-    copy_timed(to, from.data(), static_cast<size_t>(n) * sizeof(T), cudaMemcpyDeviceToHost, work_.get(),
-               "copies to the host");
+    copy_timed(to, from.data(), static_cast<size_t>(n) * sizeof(T), work_.get(), "copies to the host");
     wait();
   }
   template <class T>
@@ -167,7 +164,7 @@ public:
       check(cub::DeviceScan::ExclusiveSum(scratch.data(), bytes, count, count, n + 1, work_.get()), name);
     });
     T total{};
-    check(cudaMemcpyAsync(&total, count + n, sizeof(T), cudaMemcpyDeviceToHost, work_.get()), name);
+    check(cudaMemcpyAsync(&total, count + n, sizeof(T), cudaMemcpyDefault, work_.get()), name);
     wait();
     return total;
   }
@@ -245,21 +242,20 @@ private:
       fail(Status::failed, std::string("GPU: ") + name + ": too many items for one launch");
     timed(name, n, work, [&] { f(static_cast<unsigned>(blocks)); });
   }
-  void copy_timed(void* to, const void* from, size_t bytes, cudaMemcpyKind kind, cudaStream_t stream,
-                  const char* name) {
+  /// Where pages do not move, arrays may be the host's memory: the driver knows from the addresses.
+  void copy_timed(void* to, const void* from, size_t bytes, cudaStream_t stream, const char* name) {
     if (bytes == 0)
       return;
     Launch l{name, 1, detail::make_event(cudaEventDefault), detail::make_event(cudaEventDefault), {double(bytes)}};
     check(cudaEventRecord(l.begin.get(), stream), "an event");
-    check(cudaMemcpyAsync(to, from, bytes, kind, stream), name);
+    check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, stream), name);
     check(cudaEventRecord(l.end.get(), stream), "an event");
     launches_.push_back(std::move(l));
   }
   template <class T>
   void copy_if_other(T* to, const T* from, int64_t n, const char* name) {
     if (to != from)
-      check(cudaMemcpyAsync(to, from, static_cast<size_t>(n) * sizeof(T), cudaMemcpyDeviceToDevice, work_.get()),
-            name);
+      check(cudaMemcpyAsync(to, from, static_cast<size_t>(n) * sizeof(T), cudaMemcpyDefault, work_.get()), name);
   }
 
   detail::Stream work_, copy_;
