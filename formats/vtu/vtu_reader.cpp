@@ -131,6 +131,9 @@ private:
     const ArrayTag& connectivity_tag = need(p, p.cell, "connectivity");
     const ArrayTag& types_tag = need(p, p.cell, "types");
     const Column types = column(types_tag, cells, true), offsets = column(offsets_tag, cells, true);
+    if (cells > 0 && offsets.integer(cells - 1) < 0)
+      d_.refuse(offsets_tag.line, "R8",
+                "the last cell ends at corner " + std::to_string(offsets.integer(cells - 1)));
     const Column corners =
         column(connectivity_tag, cells == 0 ? 0 : static_cast<uint64_t>(offsets.integer(cells - 1)), true);
     const Labels region(*this, p, "region", notes_.region_missing),

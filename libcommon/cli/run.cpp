@@ -2,6 +2,7 @@
 #include "cli/run.hpp"
 #include "cli/cpus.hpp"
 #include "cli/help.hpp"
+#include "par/par.hpp"
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -55,6 +56,8 @@ int Common::resolved_threads() const {
   }
   if (mode == "seq")
     return 1;
+  if (threads > 1 && !par::has_threads())
+    fail(Status::mode_unavailable, "-t: found " + std::to_string(threads) + ", expected 1: built without OpenMP");
   return threads > 0 ? threads : default_threads();
 }
 

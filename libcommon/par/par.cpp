@@ -6,6 +6,14 @@
 
 namespace molmesh::par {
 
+bool has_threads() {
+#ifdef _OPENMP
+  return true;
+#else
+  return false;
+#endif
+}
+
 int default_threads() {
 #ifdef _OPENMP
   return omp_get_max_threads();

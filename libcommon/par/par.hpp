@@ -12,6 +12,8 @@
 
 namespace molmesh::par {
 
+/// Whether this is built with OpenMP: else every loop runs on the calling thread.
+bool has_threads();
 /// Number of threads OpenMP would use by default (1 without OpenMP).
 int default_threads();
 

@@ -158,7 +158,7 @@ TEST_CASE("TetGen reads .node, .ele and .face, tags intact, and finds the mesh w
   CHECK(out.numberoftetrahedra == int(m.tet.size()));
 }
 
-TEST_CASE("Writers: same mesh, same bytes; meshes without a surface, patches or labels") {
+TEST_CASE("Writers: same mesh, same bytes, and meshes without a surface, patches or labels") {
   TetMesh m = labelled_box();
   const Folder folder;
   const auto contents = [&] {

@@ -11,7 +11,7 @@
 
 using namespace molmesh;
 
-TEST_CASE("MC reads .m: points, materials, boundary types; its own check of the mesh passes") {
+TEST_CASE("MC reads .m: points, materials, boundary types, and its own check of the mesh passes") {
   TetMesh m = testing::cubes(
       4, [](Vec3i p) { return p.x > 0 && p.x < 3 && p.y > 0 && p.y < 3 && p.z > 0 && p.z < 3 ? 1 : 2; }, 1.0 / 3);
   bool outside_only = false;

@@ -43,7 +43,7 @@ TEST_CASE("a sphere: volume and area converge, every region is valid") {
   }
 }
 
-TEST_CASE("chords of merged cells cut off little, whatever the tolerance; large bodies merge") {
+TEST_CASE("chords of merged cells cut off little, whatever the tolerance, and large bodies merge") {
   for (int radius : {6, 12, 40}) { // spacings
     CAPTURE(radius);
     const double h = 3. / radius;

@@ -44,7 +44,7 @@ contour::Elements fan(Vec3d middle, int32_t label) {
 
 } // namespace
 
-TEST_CASE("a vertex near one side of its star moves to the middle; those on the surface stay") {
+TEST_CASE("a vertex near one side of its star moves to the middle, and those on the surface stay") {
   contour::Elements e = fan({0.95, -0.3, 0.2}, surface);
   REQUIRE(least_angle(e) < 3);
   const auto before = e.position;

@@ -82,7 +82,7 @@ TEST_CASE("flow: the worst element rises, none is inverted, what is bound stays 
   CHECK(stale == 0);
 }
 
-TEST_CASE("flow: the same points at any number of threads; a goal that is met moves nothing") {
+TEST_CASE("flow: the same points at any number of threads, and a goal that is met moves nothing") {
   const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
   const improve::Isosurface surface(grid, 1);
   improve::DynamicMesh one = improve::build(lattice_mesh(three_atoms, {0, 0, 0}, h, n), 180, 1), more = one;

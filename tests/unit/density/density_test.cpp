@@ -103,7 +103,7 @@ TEST_CASE("full and neighbor search, and any number of threads, give the same gr
   check_equal(compute(h, o), one);
 }
 
-TEST_CASE("a kd-tree finds what the boxes find; all atoms give the same field within the tolerance") {
+TEST_CASE("a kd-tree finds what the boxes find, and all atoms give the same field within the tolerance") {
   for (const std::vector<double>& exponents : {std::vector<double>{0.4, 1}, {0.3, 0.5}, {}}) {
     const Hierarchy h = test::random_chains(3, 12, 8, exponents, 3);
     density::Options o;

@@ -91,7 +91,7 @@ TEST_CASE("Labels do not depend on the number of threads, nor on the isovalue be
   }
 }
 
-TEST_CASE("Nothing underflows far from every atom; of equal structures the first is taken") {
+TEST_CASE("Nothing underflows far from every atom, and of equal structures the first is taken") {
   Hierarchy h;
   h.level = {{"chain", {{"A", 1, 0, 1}, {"B", 1, 1, 2}}}, {"residue", {{"X:1", 0.3, 0, 2}, {"X:2", 0.3, 2, 4}}}};
   h.atom = {{{1, 0, 0}, 1.5}, {{-1, 0, 0}, 1.5}, {{0, 1, 0}, 1.5}, {{0, -1, 0}, 1.5}};

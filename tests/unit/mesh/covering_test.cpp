@@ -74,7 +74,7 @@ TetMesh joined(TetMesh a, const TetMesh& b) {
 
 } // namespace
 
-TEST_CASE("a hanging node is found, on its face and beyond it; a void is none") {
+TEST_CASE("a hanging node is found, on its face and beyond it, and a void is none") {
   CHECK(rules(with_hanging_node(0)) == "overlap 1 ");
   CHECK(rules(with_hanging_node(1e-7)) == "overlap 1 "); // as coordinates of single precision have it
   CHECK(rules(with_hanging_node(-0.1)) == "overlap 1 ");
