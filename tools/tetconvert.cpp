@@ -10,6 +10,7 @@
 #include "formats/xdmf/xdmf.hpp"
 #include <algorithm>
 #include <deque>
+#include <filesystem>
 
 using namespace molmesh;
 
@@ -54,7 +55,7 @@ std::string format_of(const Options& o) {
 
 /// The output's name without its ending.
 std::string stem(const Options& o, const std::string& format) {
-  if (cli::standard_stream(o.output) >= 0)
+  if (o.output == "-" || std::filesystem::is_other(o.output)) // a pipe, a terminal
     fail(Status::usage, "--format " + format + ": several files, expected -o FILE");
   const std::string end = ending(o.output);
   const bool known = std::any_of(endings.begin(), endings.end(), [&](const auto& e) { return end == e.first; });

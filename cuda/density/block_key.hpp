@@ -32,17 +32,6 @@ struct BlockFrame {
     const Vec3i low = corner(b);
     return {grid.position(low), grid.position(low + Vec3i{1, 1, 1} * (8 * edge - 1))};
   }
-  /// Points of the block that belong to the grid.
-  HD int64_t points(Vec3i b) const {
-    const Vec3i c = corner(b);
-    int64_t n = 1;
-    for (int a = 0; a < 3; ++a) {
-      const int32_t begin = c[a] > grid.lower[a] ? c[a] : grid.lower[a];
-      const int32_t end = c[a] + 8 < grid.lower[a] + grid.points[a] ? c[a] + 8 : grid.lower[a] + grid.points[a];
-      n *= end - begin;
-    }
-    return n;
-  }
 };
 
 /// Position of `k` among n ascending keys, or -1.

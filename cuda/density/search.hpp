@@ -195,15 +195,9 @@ private:
                work);
     b_.for_n(
         "compare with the band", 8 * n,
-        PointMasks{float_at_least(o_.band_lower), -float_at_least(-o_.band_upper), e.value.data(), e.mask.data()},
+        PointMasks{density::float_band(o_).lower, density::float_band(o_).upper, e.value.data(), e.mask.data()},
         {double(n) * (2048 + 128)});
     return e;
-  }
-
-  /// The smallest float >= v: comparing floats with it is comparing them with v.
-  static float float_at_least(double v) {
-    const auto f = static_cast<float>(v);
-    return f >= v ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
   }
 
   SlabResult run_slab(SlabRange slab) {

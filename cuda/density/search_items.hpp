@@ -108,7 +108,7 @@ struct CountPoints {
   int64_t* points;
   HD void operator()(int64_t i) const {
     const Vec3i b = BlockFrame::block(key[i]);
-    points[i] = b.x >= begin_x && b.x < end_x ? frame.points(b) : 0;
+    points[i] = b.x >= begin_x && b.x < end_x ? frame.grid.points_of_block(frame.corner(b)) : 0;
   }
 };
 

@@ -200,6 +200,9 @@ BlockGrid Reader::read() {
   read_frame();
   read_tiles();
   read_leaves();
+  for (const Vec3i& c : grid_.inside) // both ascending
+    if (std::binary_search(grid_.corner.begin(), grid_.corner.end(), c))
+      refuse("R3: a leaf within an inside tile");
   return std::move(grid_);
 }
 

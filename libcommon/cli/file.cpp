@@ -100,6 +100,15 @@ bool is_terminal(const std::string& path) {
   return found;
 }
 
+/// Through symbolic links, also to what is not there yet.
+std::string followed(fs::path path) {
+  std::error_code none;
+  constexpr int most = 40; // as the system has it
+  for (int n = 0; n < most && fs::is_symlink(fs::symlink_status(path, none)); ++n)
+    path = path.parent_path() / fs::read_symlink(path, none);
+  return path.string();
+}
+
 [[noreturn]] void refuse_terminal() {
   fail(Status::usage, "--output: found a terminal, expected a file or a pipe for what is not text");
 }
@@ -123,8 +132,8 @@ OutputFile::OutputFile(const std::string& path, Content content)
   }
   std::error_code none;
   const fs::file_status status = fs::status(path, none);
-  if (fs::is_symlink(fs::symlink_status(path, none)) && fs::is_regular_file(status))
-    target_ = fs::canonical(path).string();
+  if (!fs::exists(status) || fs::is_regular_file(status))
+    target_ = followed(path);
   if (content == Content::binary && fs::is_character_file(status) && is_terminal(path))
     refuse_terminal();
   errno = 0;

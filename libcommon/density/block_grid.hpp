@@ -18,6 +18,15 @@ struct GridFrame {
   Vec3i lower;        ///< lowest index of the grid
   Vec3i points;       ///< nx, ny, nz
   HD Vec3d position(Vec3i p) const { return origin + spacing * to_double(p); }
+  /// Of the block of 8³ points from `corner` on, which meets the grid.
+  HD int64_t points_of_block(Vec3i corner) const {
+    int64_t n = 1;
+    for (int a = 0; a < 3; ++a) {
+      const int32_t begin = corner[a] > lower[a] ? corner[a] : lower[a], end = lower[a] + points[a];
+      n *= (corner[a] + 8 < end ? corner[a] + 8 : end) - begin;
+    }
+    return n;
+  }
 };
 
 /// The grid metadata of the .vdb file.

@@ -6,16 +6,9 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 namespace molmesh::density {
 namespace {
-
-/// The smallest float >= v: comparing floats with it is comparing them with v.
-float float_at_least(double v) {
-  const auto f = static_cast<float>(v);
-  return f >= v ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
-}
 
 /// What G is multiplied with from a point to the next, at most, in all but a few places: near the surface the atoms
 /// that matter are 2 Å away.
@@ -23,20 +16,11 @@ float usual_step(const Field& f, double h) {
   return static_cast<float>(std::exp(std::min(40.0, 4 * f.decay * f.steepest * h)));
 }
 
-/// Points of the block that belong to the grid.
-int64_t points_in_grid(const GridFrame& frame, Vec3i corner) {
-  int64_t n = 1;
-  for (int a = 0; a < 3; ++a)
-    n *= std::min(corner[a] + 8, frame.lower[a] + frame.points[a]) - std::max(corner[a], frame.lower[a]);
-  return n;
-}
-
 } // namespace
 
 NodeSearch::NodeSearch(const Field& f, const GridFrame& frame, const SearchOptions& o, const NodeList& nodes)
-    : f_(f), frame_(frame), nodes_(nodes), full_(o.full), lower_(float_at_least(o.band_lower)),
-      upper_(-float_at_least(-o.band_upper)), far_below_(lower_ / usual_step(f, frame.spacing)),
-      far_above_(upper_ * usual_step(f, frame.spacing)) {
+    : f_(f), frame_(frame), nodes_(nodes), full_(o.full), lower_(float_band(o).lower), upper_(float_band(o).upper),
+      far_below_(lower_ / usual_step(f, frame.spacing)), far_above_(upper_ * usual_step(f, frame.spacing)) {
   if (const double digits = budget_for(o).digits; digits > 0)
     dropped_bits_ = std::clamp(24 + static_cast<int>(std::floor(std::log2(digits))), 0, 20);
 }
@@ -59,7 +43,7 @@ void NodeSearch::work_through_block(int b, int octant, Vec3i corner, NodeState& 
     return;
   float* const value = w.value[b];
   evaluate(w, value);
-  w.points += points_in_grid(frame_, 8 * corner);
+  w.points += frame_.points_of_block(8 * corner);
   uint64_t *const below = w.below.word[b], *const above = w.above.word[b];
   classify_points(value, dropped_bits_, {lower_, upper_}, {far_below_, far_above_}, {below, above},
                   {w.far_below.word[b], w.far_above.word[b]});
@@ -131,7 +115,7 @@ void NodeSearch::evaluate_left_out(uint64_t blocks, uint64_t before, Vec3i node,
       w.selection.select_alone(i);
       evaluate(w, w.value[b]);
       if (!(before >> b & 1))
-        w.points += points_in_grid(frame_, 8 * (node + block_at(b)));
+        w.points += frame_.points_of_block(8 * (node + block_at(b)));
       round_values(w.value[b], dropped_bits_);
     }
   }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
+#include <limits>
 
 namespace molmesh::density {
 namespace {
@@ -162,6 +164,14 @@ Budget budget_for(const SearchOptions& o) {
   if (o.atoms == AtomSearch::all)
     b.far = b.part = b.block = b.within = b.roots = b.digits = 0;
   return b;
+}
+
+FloatBand float_band(const SearchOptions& o) {
+  const auto at_least = [](double v) {
+    const auto f = static_cast<float>(v);
+    return f >= v ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
+  };
+  return {at_least(o.band_lower), -at_least(-o.band_upper)};
 }
 
 Band find_band(const Field& f, const GridFrame& frame, const SearchOptions& options, SearchCounts& counts) {

@@ -34,6 +34,11 @@ struct SearchOptions {
 /// The field must be made with budget_for(options).far. The result has frame, values, sides and the numbers of
 /// `info` that it knows; the texts are the caller's. Same result for any number of threads.
 Budget budget_for(const SearchOptions& options);
+/// Comparing floats with these is comparing them with the options' doubles.
+struct FloatBand {
+  float lower, upper;
+};
+FloatBand float_band(const SearchOptions& options);
 /// What a search starts from: the frame and the numbers of `info`, nothing found.
 Band empty_band(const Field& f, const GridFrame& frame, const SearchOptions& options);
 Band find_band(const Field& f, const GridFrame& frame, const SearchOptions& options, SearchCounts& counts);

@@ -61,9 +61,12 @@ std::optional<double> Radii::find(std::string_view residue, std::string_view ato
     for (const std::string_view scope : {residue, std::string_view("*")})
       if (const auto found = atom_.find(atom_key(scope, atom)); found != atom_.end())
         return found->second;
-  if (!element_.empty())
-    if (const auto found = element_.find(upper(element)); found != element_.end())
+  for (std::string symbol = upper(element); !element_.empty(); symbol = "H") {
+    if (const auto found = element_.find(symbol); found != element_.end())
       return found->second;
+    if (symbol != "D")
+      break;
+  }
   return bondi_radius(element);
 }
 

@@ -88,6 +88,9 @@ TEST_CASE("radii: Bondi's, Mantina's, and a user's over them") {
   CHECK(radii.find("HEM", "FE", "Fe") == 1.5);
   CHECK(radii.find("GLY", "N", "N") == 1.55);
   CHECK_FALSE(radii.find("X", "MN", "Mn").has_value());
+  std::istringstream hydrogens("H 1\n"), both("H 1\nD 1.1\n");
+  CHECK(read_radii(hydrogens, "F").find("GLY", "DA", "D") == 1);
+  CHECK(read_radii(both, "F").find("GLY", "DA", "D") == 1.1);
 
   const auto refused = [](const std::string& text) {
     std::istringstream bad(text);
