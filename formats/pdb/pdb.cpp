@@ -9,6 +9,7 @@
 #include "formats/pdb/keep.hpp"
 #include "formats/pdb/notes.hpp"
 #include "formats/pdb/sha256.hpp"
+#include "formats/read_all.hpp"
 #include <algorithm>
 #include <gemmi/polyheur.hpp>
 #include <istream>
@@ -24,20 +25,6 @@ struct PdbHierarchy::Parts {
 };
 
 namespace {
-
-std::string read_all(std::istream& in, const std::string& file) {
-  std::string bytes;
-  size_t size = 0;
-  do {
-    bytes.resize(std::max<size_t>(size_t{1} << 16, 2 * size));
-    in.read(bytes.data() + size, static_cast<std::streamsize>(bytes.size() - size));
-    size += static_cast<size_t>(in.gcount());
-  } while (in);
-  if (in.bad())
-    fail_input(file + ": cannot read");
-  bytes.resize(size);
-  return bytes;
-}
 
 bool has(const std::vector<std::string>& levels, const char* name) {
   return std::find(levels.begin(), levels.end(), name) != levels.end();

@@ -1,6 +1,7 @@
 // vdb.cpp — the rules that make a decoded OpenVDB file a BlockGrid (VDBv1.md).
 #include "formats/vdb/vdb.hpp"
 #include "error.hpp"
+#include "formats/read_all.hpp"
 #include "formats/vdb/decode.hpp"
 #include "par/pages.hpp"
 #include <algorithm>
@@ -206,20 +207,10 @@ BlockGrid Reader::read() {
   return std::move(grid_);
 }
 
-std::string slurp(std::istream& in, const std::string& file) {
-  std::string all;
-  std::vector<char> buffer(1 << 20);
-  while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || in.gcount() > 0)
-    all.append(buffer.data(), static_cast<size_t>(in.gcount()));
-  if (in.bad())
-    fail_input(file + ": cannot read");
-  return all;
-}
-
 } // namespace
 
 BlockGrid read_vdb(std::istream& in, const std::string& file, int threads) {
-  const std::string bytes = slurp(in, file);
+  const std::string bytes = read_all(in, file);
   const vdb::FloatGrid decoded = vdb::decode(bytes, "density", file);
   return Reader(decoded, file, threads).read();
 }

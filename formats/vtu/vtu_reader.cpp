@@ -1,5 +1,6 @@
 // vtu_reader.cpp — tetrahedra, triangles and labels out of a VTK unstructured grid (VTUv1.md).
 #include "error.hpp"
+#include "formats/read_all.hpp"
 #include "formats/vtu/foreign.hpp"
 #include "formats/vtu/vtk_array.hpp"
 #include "formats/vtu/vtu.hpp"
@@ -17,31 +18,6 @@ using namespace vtk;
 
 constexpr double coordinate_limit = 1e30; // Å; squares and cubes of it stay finite
 constexpr int64_t tet_limit = int64_t{1} << 29, point_limit = std::numeric_limits<int32_t>::max();
-
-std::string read_all(std::istream& in, const std::string& file) {
-  constexpr size_t step = size_t{1} << 20;
-  std::string text;
-  const auto start = in.tellg();
-  if (start >= 0 && in.seekg(0, std::ios::end)) {
-    const auto size = static_cast<size_t>(std::max<std::streamoff>(in.tellg() - start, 0));
-    text.reserve(size + step); // the last step finds the end
-    prepare_pages(text.data(), size);
-    in.seekg(start);
-  }
-  in.clear();
-  for (size_t size = 0;;) {
-    text.resize(size + step);
-    in.read(text.data() + size, step);
-    size += static_cast<size_t>(in.gcount());
-    if (static_cast<size_t>(in.gcount()) < step) {
-      text.resize(size);
-      break;
-    }
-  }
-  if (in.bad())
-    fail_input(file + ": cannot read");
-  return text;
-}
 
 const ArrayTag* find(const std::vector<ArrayTag>& arrays, const char* name) {
   const auto a = std::find_if(arrays.begin(), arrays.end(), [&](const ArrayTag& t) { return t.name == name; });

@@ -1,5 +1,6 @@
 // vtu_writer.cpp — a TetMesh as .vtu, appended raw (VTUv1.md).
 #include "formats/vtu/vtu.hpp"
+#include "formats/xml_text.hpp"
 #include <bit>
 #include <cassert>
 #include <functional>
@@ -36,14 +37,6 @@ void write_values(std::ostream& out, size_t n, F f) {
       buffer[k] = static_cast<T>(f(i + k));
     write_bytes(out, buffer, m * sizeof(T));
   }
-}
-
-/// As an attribute's value. Entities in names of foreign files were not resolved, so `&` is left alone.
-std::string escaped(const std::string& name) {
-  std::string s;
-  for (const char c : name)
-    s += c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
-  return s;
 }
 
 Array bytes_array(const std::string& name, const std::string& s) {

@@ -2,18 +2,11 @@
 #include "formats/xdmf/xdmf.hpp"
 #include "formats/vtu/names.hpp"
 #include "formats/xdmf/hdf5.hpp"
+#include "formats/xml_text.hpp"
 #include <ostream>
 
 namespace molmesh::formats {
 namespace {
-
-/// In an attribute's value or in text. Entities in names of foreign files were not resolved, so `&` is left alone.
-std::string escaped(const std::string& name) {
-  std::string s;
-  for (const char c : name)
-    s += c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
-  return s;
-}
 
 /// A file's name in text.
 std::string escaped_file(std::string name) {

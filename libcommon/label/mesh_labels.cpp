@@ -1,6 +1,7 @@
 // mesh_labels.cpp — centroids out of the mesh, labels into it.
 #include "label/mesh_labels.hpp"
 #include "error.hpp"
+#include "mesh/centroid.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
@@ -26,16 +27,8 @@ Places places_of(const TetMesh& m, int threads) {
       places.cell.push_back(static_cast<int64_t>(m.tet.size() + t));
   places.centroid.resize(places.cell.size());
   par::for_n(static_cast<int64_t>(places.cell.size()), threads, [&](int64_t i) {
-    const auto p = [&](int32_t v) { return m.point[static_cast<size_t>(v)]; };
     const auto s = static_cast<size_t>(i);
-    auto c = static_cast<size_t>(places.cell[s]);
-    if (i < places.tets) {
-      const Tet& t = m.tet[c];
-      places.centroid[s] = 0.25 * (p(t[0]) + p(t[1]) + p(t[2]) + p(t[3]));
-    } else {
-      const Tri& t = m.tri[c -= m.tet.size()];
-      places.centroid[s] = (p(t[0]) + p(t[1]) + p(t[2])) / 3.0;
-    }
+    places.centroid[s] = cell_centroid(m, static_cast<size_t>(places.cell[s]));
   });
   return places;
 }

@@ -1,5 +1,6 @@
 // carry.cpp — nanoflann over the centroids of each region and each boundary label.
 #include "mesh/carry.hpp"
+#include "mesh/centroid.hpp"
 #include "par/par.hpp"
 #include <map>
 #include <memory>
@@ -7,17 +8,6 @@
 
 namespace molmesh {
 namespace {
-
-/// Tetrahedra first, then triangles.
-Vec3d centroid(const TetMesh& m, size_t cell) {
-  const auto p = [&](int32_t v) { return m.point[static_cast<size_t>(v)]; };
-  if (cell < m.tet.size()) {
-    const Tet& t = m.tet[cell];
-    return 0.25 * (p(t[0]) + p(t[1]) + p(t[2]) + p(t[3]));
-  }
-  const Tri& t = m.tri[cell - m.tet.size()];
-  return (p(t[0]) + p(t[1]) + p(t[2])) / 3.0;
-}
 
 int32_t label(const TetMesh& m, size_t cell) {
   return cell < m.tet.size() ? m.region[cell] : m.boundary[cell - m.tet.size()];
@@ -50,7 +40,7 @@ CarriedArrays::CarriedArrays(TetMesh& m)
   if (array_.empty())
     return;
   for (size_t c = 0; c < m.tet.size() + m.tri.size(); ++c) {
-    centroid_.push_back(centroid(m, c));
+    centroid_.push_back(cell_centroid(m, c));
     label_.push_back(label(m, c));
   }
 }
@@ -76,7 +66,7 @@ void CarriedArrays::put_into(TetMesh& m, int threads) const {
     const auto tree = trees.find({c >= m.tet.size(), label(m, c)});
     if (tree == trees.end())
       return;
-    const Vec3d p = centroid(m, c);
+    const Vec3d p = cell_centroid(m, c);
     const double place[3] = {p.x, p.y, p.z};
     uint32_t found = 0;
     double distance2 = 0;

@@ -1,6 +1,7 @@
 // worst.cpp — one pass, each part of the mesh keeps its worst.
 #include "mesh/worst.hpp"
 #include "geom/tet_measures.hpp"
+#include "mesh/centroid.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <sstream>
@@ -12,7 +13,7 @@ namespace {
 WorstTet measure(const TetMesh& m, int64_t t) {
   const auto p = [&](size_t i) { return m.point[size_t(m.tet[size_t(t)][i])]; };
   const Dihedrals d = dihedrals(p(0), p(1), p(2), p(3));
-  return {t, 0.25 * (p(0) + p(1) + p(2) + p(3)), *std::min_element(d.degree, d.degree + 6),
+  return {t, cell_centroid(m, size_t(t)), *std::min_element(d.degree, d.degree + 6),
           *std::max_element(d.degree, d.degree + 6)};
 }
 
