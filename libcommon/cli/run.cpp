@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <stdexcept>
@@ -146,6 +147,10 @@ void require_distinct_files(const CLI::App& app, const Common& o) {
   if (o.keep_input)
     inputs.push_back(o.input);
   std::replace(inputs.begin(), inputs.end(), std::string("-"), std::string("/dev/stdin"));
+  std::erase_if(inputs, [](const std::string& input) { // a keyword, or what cannot be opened
+    std::error_code none;
+    return !std::filesystem::exists(input, none);
+  });
   for (const std::string& output : o.outputs())
     for (const std::string& input : inputs)
       if (same_file(output, input))
