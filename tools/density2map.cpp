@@ -45,7 +45,7 @@ Status run(const Options& o, cli::Run& r) {
   r.counts["grid_points"] = {grid.frame.points.x, grid.frame.points.y, grid.frame.points.z};
   r.phase("write");
   (format == "dx" ? formats::write_dx : formats::write_ccp4)(out.stream(), grid, in.name());
-  out.commit();
+  r.complete(out);
   return Status::good;
 }
 

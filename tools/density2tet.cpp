@@ -131,7 +131,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.phase("write");
   mesh.creator = cli::creator("density2tet");
   formats::write_vtu(output.stream(), mesh);
-  output.commit();
+  run.complete(output);
   run.end_phase();
   if (run.verbose)
     run.note(std::to_string(mesh.tet.size()) + " tetrahedra, " + std::to_string(summary.molecule_volumes.size()) +

@@ -130,7 +130,7 @@ Status run(const Options& o, cli::Run& r) {
   report(r, band, leaves, counts);
   r.phase("write");
   formats::write_vdb(out.stream(), band.frame, band.info, band.inside, leaves);
-  out.commit();
+  r.complete(out);
   return Status::good;
 }
 

@@ -123,7 +123,7 @@ Status run(Options& o, cli::Run& run) {
 
   run.phase("write");
   hierarchy.write(out.stream());
-  out.commit();
+  run.complete(out);
 
   run.counts = {{"atoms_read", r.read},   {"models_read", r.models_read}, {"atoms", r.atoms},
                 {"residues", r.residues}, {"chains", r.chains},           {"domains", r.domains},

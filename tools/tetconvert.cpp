@@ -75,7 +75,7 @@ std::vector<std::string> Options::outputs() const {
 using Outputs = std::deque<cli::OutputFile>;
 
 /// Returns how many triangles' labels have no place.
-int64_t write_mesh(Outputs& outputs, const Options& o, const std::string& format, const TetMesh& m,
+int64_t write_mesh(cli::Run& run, Outputs& outputs, const Options& o, const std::string& format, const TetMesh& m,
                    const std::string& input) {
   std::ostream& out = outputs[0].stream();
   int64_t unplaced = 0;
@@ -84,7 +84,7 @@ int64_t write_mesh(Outputs& outputs, const Options& o, const std::string& format
   } else if (format == "xdmf") {
     const std::string h5 = o.outputs()[1];
     formats::write_xdmf(out, outputs[1].stream(), h5.substr(h5.rfind('/') + 1), m);
-    outputs[1].commit(); // first: an .xdmf without it would be of no use
+    run.complete(outputs[1]); // first: an .xdmf without it would be of no use
     outputs.pop_back();
   } else if (format == "gmsh" || format == "gmsh22")
     formats::write_gmsh(out, m, format == "gmsh" ? formats::GmshVersion::v4_1 : formats::GmshVersion::v2_2);
@@ -97,7 +97,7 @@ int64_t write_mesh(Outputs& outputs, const Options& o, const std::string& format
      : format == "ply" ? formats::write_ply
                        : formats::write_off)(out, m, input);
   for (cli::OutputFile& output : outputs)
-    output.commit();
+    run.complete(output);
   return unplaced;
 }
 
@@ -137,7 +137,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.counts["tetrahedra"] = mesh.tet.size();
   run.counts["triangles"] = mesh.tri.size();
   run.phase("write");
-  const int64_t unplaced = write_mesh(outputs, o, format, mesh, input.name());
+  const int64_t unplaced = write_mesh(run, outputs, o, format, mesh, input.name());
   note_losses(run, format, mesh, unplaced);
   return Status::good;
 }

@@ -135,7 +135,7 @@ Status run_tool(const Options& o, cli::Run& run) {
       mesh.creator.compare(mesh.creator.size() - own.size(), own.size(), own) != 0)
     mesh.creator += own;
   formats::write_vtu(output.stream(), mesh);
-  output.commit();
+  run.complete(output);
   return Status::good;
 }
 

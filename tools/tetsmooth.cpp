@@ -116,7 +116,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   mesh.creator = cli::creator("tetsmooth");
   run.phase("write");
   formats::write_vtu(output.stream(), mesh);
-  output.commit();
+  run.complete(output);
   if (run.verbose)
     run.note("dihedral angles " + improve::text(result.before) + "; now " + improve::text(result.after));
   const AngleLimits limits{o.min_dihedral, o.max_dihedral};

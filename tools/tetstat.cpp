@@ -58,7 +58,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   } else {
     output.stream() << (before ? formats::compare_text(*before, mesh) : formats::tetstat_text(mesh));
   }
-  output.commit();
+  run.complete(output);
   run.counts["points"] = mesh.points;
   run.counts["tets"] = mesh.tets;
   run.counts["triangles"] = mesh.triangles;

@@ -56,6 +56,22 @@ std::string format_of_atom(std::string_view as_it_is) {
   return has_occupancy(line) ? "" : "pqr";
 }
 
+/// A last line without its end, that has begun as an atom's and is shorter than the atom's before.
+bool ends_within_atom_line(std::string_view text) {
+  if (text.empty() || text.back() == '\n' || text.back() == '\r')
+    return false;
+  const size_t end = text.find_last_of("\r\n");
+  if (end == std::string_view::npos)
+    return false;
+  const std::string_view last = text.substr(end + 1),
+                         before = text.substr(0, text.find_last_not_of("\r\n", end) + 1),
+                         atom = before.substr(before.find_last_of("\r\n") + 1);
+  const bool has_begun =
+      is_atom_record(last) || (last.size() < 6 && (std::string_view("ATOM  ").starts_with(last) ||
+                                                   std::string_view("HETATM").starts_with(last)));
+  return has_begun && is_atom_record(atom) && last.size() < atom.size();
+}
+
 std::string detect(std::string_view text, const std::string& file) {
   std::string_view name(file);
   if (ends_with(name, ".gz"))
@@ -110,6 +126,7 @@ std::string in_quotes(std::string_view text) {
 
 Parsed parse_structure(std::string text, const std::string& file, const std::string& format,
                        const std::string& assembly) {
+  const bool cut = ends_within_atom_line(text);
   normalize(text, file);
   const std::string kind = format == "auto" ? detect(text, file) : format;
   if (kind == "mmcif")
@@ -118,7 +135,10 @@ Parsed parse_structure(std::string text, const std::string& file, const std::str
     return parse_mmjson(text, file, assembly);
   if (kind == "pqr")
     return parse_pqr(text, file);
-  return parse_pdb(text, file, assembly);
+  Parsed parsed = parse_pdb(text, file, assembly);
+  if (cut)
+    parsed.notes.push_back("the file ends within an atom's line: is it cut off?");
+  return parsed;
 }
 
 } // namespace molmesh::formats

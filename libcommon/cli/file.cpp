@@ -50,6 +50,9 @@ InputFile::InputFile(const std::string& path) : name_(path) {
       fail(Status::usage, "standard input is asked for twice, expected at most once");
     standard_ = true;
     name_ = "<stdin>";
+    struct stat file {};
+    if (fstat(STDIN_FILENO, &file) == 0 && S_ISDIR(file.st_mode))
+      fail_input(name_ + ": is a directory, expected a file");
     return;
   }
   std::error_code ignored;
@@ -139,7 +142,7 @@ OutputFile::OutputFile(const std::string& path, Content content)
   errno = 0;
   if (!fs::exists(status) || fs::is_regular_file(status)) {
     written_ = target_ + ".tmp." + std::to_string(getpid());
-    temporary_.emplace(written_);
+    temporary_ = std::make_unique<Temporary>(written_);
   }
   if (!file_.open(written_, std::ios::binary | std::ios::out | std::ios::trunc))
     refuse("cannot open");
@@ -149,31 +152,46 @@ std::ostream& OutputFile::stream() {
   return stream_;
 }
 
-void OutputFile::refuse(const char* what) const {
-  const int error = noting_.error ? noting_.error : errno ? errno : EIO;
-  fail(Status::not_written, (path_ == "-" ? "<stdout>" : path_) + ": " + what + ": " + std::strerror(error));
+namespace {
+
+[[noreturn]] void refuse_output(const std::string& path, const char* what, int error) {
+  fail(Status::not_written,
+       (path == "-" ? "<stdout>" : path) + ": " + what + ": " + std::strerror(error ? error : EIO));
 }
 
-void OutputFile::commit() {
+} // namespace
+
+void OutputFile::refuse(const char* what) const {
+  refuse_output(path_, what, noting_.error ? noting_.error : errno);
+}
+
+CompleteFile OutputFile::complete() {
   errno = 0;
   stream().flush();
   if (!stream())
     refuse("cannot write");
   if (standard_ >= 0)
-    return;
+    return {path_, {}, {}, nullptr};
   if (!file_.close())
     refuse("cannot write");
-  if (!temporary_)
+  if (temporary_) {
+    const int fd = open(written_.c_str(), O_RDONLY);
+    const bool synced = fd >= 0 && fsync(fd) == 0;
+    if (fd >= 0)
+      close(fd);
+    if (!synced)
+      refuse("cannot write");
+  }
+  return {path_, written_, target_, std::move(temporary_)};
+}
+
+void CompleteFile::publish() {
+  if (!temporary)
     return;
-  const int fd = open(written_.c_str(), O_RDONLY);
-  const bool synced = fd >= 0 && fsync(fd) == 0;
-  if (fd >= 0)
-    close(fd);
-  if (!synced)
-    refuse("cannot write");
-  if (std::rename(written_.c_str(), target_.c_str()) != 0)
-    refuse("cannot rename");
-  temporary_->keep();
+  errno = 0;
+  if (std::rename(written.c_str(), target.c_str()) != 0)
+    refuse_output(path, "cannot rename", errno);
+  temporary->keep();
 }
 
 } // namespace molmesh::cli

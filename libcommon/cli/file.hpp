@@ -3,7 +3,7 @@
 #include "cli/cleanup.hpp"
 #include <fstream>
 #include <iosfwd>
-#include <optional>
+#include <memory>
 #include <string>
 
 namespace molmesh::cli {
@@ -45,10 +45,18 @@ private:
   std::streambuf* to_;
 };
 
+/// All of it is on the disk, and it waits for its name.
+struct CompleteFile {
+  std::string path, written, target;    ///< for messages; where it is; what it becomes
+  std::unique_ptr<Temporary> temporary; ///< null: there is nothing to rename
+  /// Throws Error(not_written).
+  void publish();
+};
+
 /// "-" is standard output, and so is the regular file it was redirected to. A regular file is written as
-/// PATH.tmp.PID beside it and renamed by commit(); without commit(), or when a signal ends the process, nothing is
-/// left behind and an older file of that name stays as it was. A symbolic link is followed; a device or named pipe
-/// is written directly. Throws Error(not_written), and Error(usage) for binary content on a terminal.
+/// PATH.tmp.PID beside it and renamed when it is complete; until then, or when a signal ends the process, nothing
+/// is left behind and an older file of that name stays as it was. A symbolic link is followed; a device or named
+/// pipe is written directly. Throws Error(not_written), and Error(usage) for binary content on a terminal.
 class OutputFile {
 public:
   enum class Content { text, binary }; ///< binary: not to a terminal
@@ -56,13 +64,15 @@ public:
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
   std::ostream& stream();
-  /// Flush, check, sync, close, rename.
-  void commit();
+  /// Flush, check, sync, close.
+  CompleteFile complete();
+  /// And rename.
+  void commit() { complete().publish(); }
 
 private:
   [[noreturn]] void refuse(const char* what) const;
   std::string path_, target_, written_;
-  std::optional<Temporary> temporary_; ///< before file_: that is closed first, then removed
+  std::unique_ptr<Temporary> temporary_; ///< before file_: that is closed first, then removed
   std::filebuf file_;
   int standard_; ///< as standard_stream(path)
   NotingBuffer noting_;

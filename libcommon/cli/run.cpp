@@ -246,8 +246,10 @@ int finish(const CLI::App& app, const Common& o, Run& run, OutputFile* report, S
     j["counts"] = run.counts;
     j["peak_rss_bytes"] = peak_rss_bytes;
     report->stream() << j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
-    report->commit();
+    run.complete(*report);
   }
+  for (CompleteFile& file : run.outputs)
+    file.publish();
   return static_cast<int>(status);
 }
 

@@ -43,6 +43,9 @@ public:
   void phase(const std::string& name);
   void end_phase();
   nlohmann::ordered_json counts = nlohmann::ordered_json::object();
+  /// It gets its name when the run is over and the report, too, could be written.
+  void complete(OutputFile& output) { outputs.push_back(output.complete()); }
+  std::vector<CompleteFile> outputs; ///< in the order in which they get their names
   /// A line on stderr unless -q (prefixed with the tool's name): what the user should know, not an error.
   void note(const std::string& line) const;
 

@@ -111,6 +111,17 @@ TEST_CASE("a serial wider than its columns may move the rest of its line to the 
   CHECK(listing(convert(line).hierarchy) == "A/GLY:7/CA");
 }
 
+TEST_CASE("a file that ends within an atom's line is said to") {
+  const std::string two = pdb_atom(" N", "GLY", "A", 7, 10, "N") + pdb_atom(" CA", "GLY", "A", 7, 12, "C");
+  const size_t begin = two.size() / 2;
+  for (const size_t end : {begin + 3, begin + 60, begin + 76}) {
+    INFO(end);
+    CHECK(notes(convert(two.substr(0, end)), "is it cut off?"));
+  }
+  for (const size_t end : {begin, two.size() - 1, two.size()})
+    CHECK(!notes(convert(two.substr(0, end)), "is it cut off?"));
+}
+
 TEST_CASE("residue numbers that are none are counted") {
   std::string line = pdb_atom(" CA", "GLY", "A", 7, 12, "C");
   CHECK(!notes(convert(line), "residue numbers"));
