@@ -6,6 +6,7 @@
 #include "cuda/improve/device_isosurface.hpp"
 #include "geom/predicates.hpp"
 #include "improve/spoke_quality.hpp"
+#include <bit>
 
 namespace molmesh::cuda {
 
@@ -13,7 +14,8 @@ using contour::detail::Fate;
 using contour::detail::RelaxView;
 
 /// Of contour::detail::move_vertex: all threads of the team ask the same and get the same answer. What they share
-/// lies in memory; each write is followed by a sync before it is read, each read before the next write.
+/// comes by Team::least, or lies in memory; each write is followed by a sync before it is read, each read before
+/// the next write. A star of 32 elements at most lies in the threads' registers while places are judged.
 template <class Team>
 class TeamStar {
 public:
@@ -22,17 +24,22 @@ public:
       : r_(r), team_(team), vertex_(r.vertex[c]), n_(static_cast<int32_t>(r.first[c + 1] - r.first[c])),
         element_(r.element + r.first[c]), spoke_(spoke + r.first[c]), quality_(quality + r.first[c]), side_(side),
         origin_(r.e.position[vertex_]) {
-    for (int32_t k = n_ - 1; k >= 0; --k)
-      first_[is_asked(k)] = k;
+    int32_t first[2] = {n_, n_};
+    for (int32_t k = team_.rank(); k < n_; k += Team::size)
+      if (int32_t& f = first[is_asked(k)]; k < f)
+        f = k;
     for (const int asked : {0, 1})
-      if (const int32_t k = first_[asked]; k >= 0) {
+      if (const int32_t k = team_.least(first[asked]); k < n_) {
         const double length = norm(corner(k, 1) - corner(k, 2));
         inverse_[asked] = 1 / (length < 1e-300 ? 1e-300 : length);
       }
     for (int32_t k = team_.rank(); k < n_; k += Team::size) {
       const bool asked = is_asked(k);
-      spoke_[k] =
+      const improve::Spoke<float> made =
           improve::make_spoke(local(corner(k, 1), asked), local(corner(k, 2), asked), local(corner(k, 3), asked));
+      if (k == team_.rank())
+        mine_ = made, mine_asked_ = asked;
+      spoke_[k] = made;
     }
     team_.sync();
   }
@@ -48,16 +55,22 @@ public:
 
   HD TeamStar& spokes() { return *this; }
 
-  HD float worst(Vec3d x, float) {
-    evaluate_all(x);
-    const float w = quality_[worst_element()];
-    team_.sync();
-    return w;
+  HD float worst(Vec3d x, float) const {
+    float least = 3e38f;
+    for_each_quality(x, [&](int32_t, bool, float q) { least = q < least ? q : least; });
+    return team_.least(least);
   }
 
   HD Vec3d ascent(Vec3d x, double step) {
-    evaluate_all(x);
-    const int32_t worst = worst_element();
+    // Of equals the first, and one that is asked for before others.
+    uint64_t least = ~uint64_t{0};
+    for_each_quality(x, [&](int32_t k, bool asked, float q) {
+      uint32_t bits = std::bit_cast<uint32_t>(q + 0.0f); // in the numbers' order
+      bits ^= bits >> 31 ? ~uint32_t{0} : uint32_t{1} << 31;
+      const uint64_t key = uint64_t{bits} << 32 | uint32_t{!asked} << 31 | static_cast<uint32_t>(k);
+      least = key < least ? key : least;
+    });
+    const auto worst = static_cast<int32_t>(team_.least(least) & 0x7FFFFFFF);
     const bool asked = is_asked(worst);
     const auto d = static_cast<float>(step * inverse_[asked]);
     for (int s = team_.rank(); s < 6; s += Team::size) {
@@ -69,6 +82,7 @@ public:
     Vec3d g;
     for (int a = 0; a < 3; ++a)
       g[a] = double(side_[2 * a]) - double(side_[2 * a + 1]);
+    team_.sync(); // read before it is written again
     const double length = norm(g);
     return length > 0 ? g / length : Vec3d{};
   }
@@ -116,19 +130,17 @@ private:
     improve::spoke_quality(spoke_[k], y.x, y.y, y.z, q, static_cast<float>(r_.shape));
     return q;
   }
-  /// Of equals the first, and one that is asked for before others.
-  HD int32_t worst_element() const {
-    int32_t worst[2] = {-1, -1};
-    for (int32_t k = 0; k < n_; ++k)
-      if (int32_t& w = worst[is_asked(k)]; w < 0 || quality_[k] < quality_[w])
-        w = k;
-    return worst[1] < 0 || (worst[0] >= 0 && quality_[worst[0]] < quality_[worst[1]]) ? worst[0] : worst[1];
-  }
-  HD void evaluate_all(Vec3d x) {
+  /// see(k, asked, quality) of this thread's elements with the vertex at x.
+  template <class See>
+  HD void for_each_quality(Vec3d x, const See& see) const {
     const Vec3f y[2] = {local(x, false), local(x, true)};
-    for (int32_t k = team_.rank(); k < n_; k += Team::size)
-      quality_[k] = weight(k) * evaluate(k, y[is_asked(k)]);
-    team_.sync();
+    for (int32_t k = team_.rank(); k < n_; k += Team::size) {
+      const bool first = k == team_.rank(), asked = first ? mine_asked_ : is_asked(k);
+      const Vec3f at = asked ? y[1] : y[0];
+      float q;
+      improve::spoke_quality(first ? mine_ : spoke_[k], at.x, at.y, at.z, q, static_cast<float>(r_.shape));
+      see(k, asked, (asked ? 1 : contour::detail::unasked_weight) * q);
+    }
   }
 
   const RelaxView& r_;
@@ -139,8 +151,9 @@ private:
   float* quality_;               ///< [n]
   float* side_;
   Vec3d origin_;
-  int32_t first_[2] = {-1, -1}; ///< element that nobody asks for, or that is asked for
-  double inverse_[2] = {0, 0};  ///< of the unit of length, of either
+  improve::Spoke<float> mine_{}; ///< of the thread's first element
+  bool mine_asked_ = false;
+  double inverse_[2] = {0, 0}; ///< of the unit of length, of either
 };
 
 /// Those who have the turn.

@@ -70,6 +70,7 @@ public:
                surface_ && pass.guard.lift == 0,
                {},
                pass.guard,
+               pass.guard.tilt(),
                pass.goal,
                pass.worst_first,
                mesh.walls};

@@ -50,6 +50,7 @@ struct FlowMesh {
   bool has_surface;
   improve::IsosurfaceView surface;
   improve::Guard guard;
+  double most_tilt; ///< guard.tilt(): a device's cosine is another
   float goal;
   bool worst_first;
   improve::Walls walls;
@@ -137,7 +138,7 @@ HD inline float worst_if_kept(const FlowMesh& m, int64_t v, const Where& at, con
   if (m.vertex[v].kind == improve::Kind::surface)
     for (int64_t i = m.sails.begin[v]; i < m.sails.begin[v + 1]; ++i) {
       const Sail& s = m.sail[m.sails.item[i]];
-      if (improve::misfit(m.surface, m.guard, at(s.v[0]), at(s.v[1]), at(s.v[2])) > limits.misfit)
+      if (improve::misfit(m.surface, m.guard, m.most_tilt, at(s.v[0]), at(s.v[1]), at(s.v[2])) > limits.misfit)
         return -1;
     }
   return worst;
@@ -193,7 +194,8 @@ struct ProposeMove {
     if (m.vertex[v].kind == improve::Kind::surface)
       for (int64_t i = m.sails.begin[v]; i < m.sails.begin[v + 1]; ++i) {
         const Sail& s = m.sail[m.sails.item[i]];
-        const double f = improve::misfit(m.surface, m.guard, point[s.v[0]], point[s.v[1]], point[s.v[2]]);
+        const double f =
+            improve::misfit(m.surface, m.guard, m.most_tilt, point[s.v[0]], point[s.v[1]], point[s.v[2]]);
         l.misfit = f > l.misfit ? f : l.misfit;
       }
     limits[n] = l;

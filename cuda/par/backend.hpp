@@ -51,6 +51,11 @@ struct Solo {
   static constexpr int size = 1;
   HD int rank() const { return 0; }
   HD void sync() const {}
+  /// Of what all threads have, to all of them.
+  template <class T>
+  HD T least(T mine) const {
+    return mine;
+  }
 };
 
 /// Memory of a backend.

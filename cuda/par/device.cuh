@@ -20,6 +20,14 @@ struct Warp {
   __device__ void sync() const {
     __syncwarp();
   }
+  template <class T>
+  __device__ T least(T mine) const {
+    for (int far = 16; far > 0; far /= 2) {
+      const T other = __shfl_xor_sync(0xFFFFFFFFu, mine, far);
+      mine = other < mine ? other : mine;
+    }
+    return mine;
+  }
 #endif
 };
 
@@ -28,14 +36,14 @@ namespace detail {
 inline constexpr int threads_a_block = 256, warps_a_block = 4;
 
 template <class Item>
-__global__ void __launch_bounds__(threads_a_block) items(int64_t n, const Item item) {
+__global__ void __launch_bounds__(threads_a_block) items(int64_t n, const __grid_constant__ Item item) {
   const int64_t i = int64_t{blockIdx.x} * threads_a_block + threadIdx.x;
   if (i < n)
     item(i);
 }
 
 template <class Item>
-__global__ void __launch_bounds__(32 * warps_a_block) teams(int64_t n, const Item item) {
+__global__ void __launch_bounds__(32 * warps_a_block) teams(int64_t n, const __grid_constant__ Item item) {
   __shared__ typename Item::Shared shared[warps_a_block];
   const int64_t i = int64_t{blockIdx.x} * warps_a_block + threadIdx.y;
   if (i < n)
@@ -77,10 +85,15 @@ public:
         : n_(n), done_(detail::make_event(cudaEventDisableTiming)),
           to_(owner.locked_, static_cast<size_t>(n_) * sizeof(T)) {
       void* const to = to_.data();
-      check(cudaEventRecord(done_.get(), owner.work_.get()), "an event");
-      check(cudaStreamWaitEvent(owner.copy_.get(), done_.get()), "an event");
-      owner.copy_timed(to, from, static_cast<size_t>(n_) * sizeof(T), owner.copy_.get(), "copies to the host");
-      check(cudaEventRecord(done_.get(), owner.copy_.get()), "an event");
+      try {
+        check(cudaEventRecord(done_.get(), owner.work_.get()), "an event");
+        check(cudaStreamWaitEvent(owner.copy_.get(), done_.get()), "an event");
+        owner.copy_timed(to, from, static_cast<size_t>(n_) * sizeof(T), owner.copy_.get(), "copies to the host");
+        check(cudaEventRecord(done_.get(), owner.copy_.get()), "an event");
+      } catch (...) { // both ends stay until the copy is over
+        cudaStreamSynchronize(owner.copy_.get());
+        throw;
+      }
       own_ = std::move(own);
     }
     Pending(Pending&&) noexcept = default;

@@ -3,6 +3,7 @@
 #include "cuda/par/backend.hpp"
 #include "cuda/par/device.hpp"
 #include "cuda/par/handles.cuh"
+#include <cstdlib>
 #include <limits>
 
 namespace molmesh::cuda {
@@ -19,7 +20,7 @@ public:
     ledger_ = Ledger({most > 0 ? std::min(most, own) : own, pages ? free_host_memory() / 10 * 9 : 0});
     int moves = 0;
     check(cudaDeviceGetAttribute(&moves, cudaDevAttrConcurrentManagedAccess, 0), "asking for its memory");
-    pages_move_ = moves != 0;
+    pages_move_ = moves != 0 && !std::getenv("MOLMESH_LOCKED_PAGES");
     keep_freed(std::numeric_limits<uint64_t>::max());
   }
   DeviceMemory(const DeviceMemory&) = delete;
@@ -65,20 +66,28 @@ private:
     check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &bytes), "the memory pool");
     check(cudaMemPoolTrimTo(pool, static_cast<size_t>(std::min<uint64_t>(bytes, SIZE_MAX))), "the memory pool");
   }
-  /// Pages that move between host and device as kernels ask for them, where the device can do that (Linux); else
-  /// page-locked memory that kernels reach into.
+  /// Pages that move between host and device as kernels ask for them, where the device can do that (Linux) and
+  /// MOLMESH_LOCKED_PAGES is not set; else page-locked memory that kernels reach into.
   cudaError_t take_paged(void** to, size_t bytes) {
     if (!has_paged_) { // what is freed from now on is the pages'
       has_paged_ = true;
       check(cudaStreamSynchronize(work_), "running a kernel");
       keep_freed(0);
     }
-    return pages_move_ ? cudaMallocManaged(to, bytes) : cudaHostAlloc(to, bytes, cudaHostAllocMapped);
+    if (pages_move_) {
+      const cudaError_t e = cudaMallocManaged(to, bytes);
+      has_moving_ = has_moving_ || e == cudaSuccess;
+      if (has_moving_ || e == cudaErrorMemoryAllocation)
+        return e;
+      cudaGetLastError(); // a sandbox may have none; nothing is to be given back as such
+      pages_move_ = false;
+    }
+    return cudaHostAlloc(to, bytes, cudaHostAllocMapped);
   }
 
   cudaStream_t work_, copy_;
   Ledger ledger_{{0, 0}};
-  bool pages_move_ = false, has_paged_ = false;
+  bool pages_move_ = false, has_paged_ = false, has_moving_ = false;
 };
 
 } // namespace molmesh::cuda

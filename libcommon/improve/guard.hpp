@@ -17,7 +17,7 @@ struct Guard {
   bool operator==(const Guard&) const = default;
   /// Wider guards let triangles bend further, and those still count as bent.
   static constexpr double widest_unbent = 44;
-  HD double tilt() const { return 1 - std::cos(angle * 3.14159265358979323846 / 180); } ///< as misfit() wants it
+  double tilt() const { return 1 - std::cos(angle * 3.14159265358979323846 / 180); } ///< as misfit() wants it
 };
 
 /// Of a triangle where the target is not known: bad, but not worse than another such one.
@@ -48,10 +48,6 @@ HD double misfit(const Surface& target, const Guard& guard, double most_tilt, Ve
   double misfit;
   misfit_at(area, norm(n), distance, along, guard.distance * target.spacing(), most_tilt, misfit);
   return misfit;
-}
-template <class Surface>
-HD double misfit(const Surface& target, const Guard& guard, Vec3d a, Vec3d b, Vec3d c) {
-  return misfit(target, guard, guard.tilt(), a, b, c);
 }
 
 /// What an element below the goal lacks: goal / q - 1 when the worst matter most, (1 - q / goal)² when all do;

@@ -119,12 +119,12 @@ void time_all(const Hierarchy& h, const density::Options& o, Stage last, int rep
         return std::nullopt;
       }
     };
+    const std::optional<Times> t = by(name, device); // first: time may be short
+    const double tets = 1e-6 * double(mesh.tet.size());
     by("seq", {By::host, 1});
     by("omp", reference);
-    const std::optional<Times> t = by(name, device);
     if (!t)
       return;
-    const double tets = 1e-6 * double(mesh.tet.size());
     std::printf(
         "         %zu tetrahedra, %zu points; %d threads of the host; M tetrahedra/s: %.1f by kernels, %.1f "
         "with copies, %.1f in all\n",

@@ -79,7 +79,7 @@ private:
 /// What is known of a part before its surface is looked at.
 struct PartStart {
   int32_t vertex; ///< its lowest
-  bool inside;
+  int32_t inside; ///< 1 or 0: no byte of it is left unwritten
 };
 /// Of grid points: every part has one, and the lowest vertex of a part names it.
 struct GatherParts {
@@ -89,7 +89,7 @@ struct GatherParts {
     if (parent[v] != v)
       return 0;
     if (out)
-      *out = {static_cast<int32_t>(v), c.inside(static_cast<int32_t>(v))};
+      *out = {static_cast<int32_t>(v), c.inside(static_cast<int32_t>(v)) ? 1 : 0};
     return 1;
   }
 };

@@ -59,7 +59,7 @@ private:
     const std::vector<uint8_t> walls = downloaded<uint8_t>(m, at_wall, start.n);
     size_t i = 0;
     for (const PartStart& s : downloaded<PartStart>(m, start.array, start.n))
-      component.push_back({s.inside, walls[i++] != 0, 0, 0});
+      component.push_back({s.inside != 0, walls[i++] != 0, 0, 0});
   }
   Array<int32_t> part_; ///< [vertices of the complex] -1 for dual vertices
 };

@@ -160,7 +160,7 @@ TEST_CASE("eight triangles fit the target as one does") {
       double misfit[8];
       improve::misfits(t, probes, guard.distance * surface.spacing(), guard.tilt(), misfit);
       for (size_t i = 0; i < 8; ++i)
-        CHECK(misfit[i] == improve::misfit(surface, guard, t.a[i], t.b[i], t.c[i]));
+        CHECK(misfit[i] == improve::misfit(surface, guard, guard.tilt(), t.a[i], t.b[i], t.c[i]));
     }
   });
 }
