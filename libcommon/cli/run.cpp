@@ -122,6 +122,9 @@ nlohmann::ordered_json value_json(const std::string& text) {
 nlohmann::ordered_json options_json(const CLI::App& app) {
   nlohmann::ordered_json j = nlohmann::ordered_json::object();
   for (const CLI::Option* option : app.get_options()) {
+    if (const std::string name = option->get_name();
+        option->get_positional() && name != "input" && option->count() > 0)
+      j[name] = option->results().back();
     if (option->get_lnames().empty() || !option->get_configurable())
       continue;
     const std::string name = option->get_lnames().front();
