@@ -118,8 +118,7 @@ Status run(Options& o, cli::Run& run) {
   cli::OutputFile out(o.output);
   const formats::PdbHierarchy hierarchy(in.stream(), in.name(), o.pdb);
   const formats::PdbReport& r = hierarchy.report();
-  for (const std::string& note : r.notes)
-    run.note(note);
+  run.notes(r.notes);
 
   run.phase("write");
   hierarchy.write(out.stream());

@@ -131,8 +131,7 @@ Status run_tool(const Options& o, cli::Run& run) {
     outputs.emplace_back(name, format == "stl" ? cli::OutputFile::Content::binary : cli::OutputFile::Content::text);
   formats::VtuNotes notes;
   const TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes, formats::CellArrays::keep);
-  for (const std::string& line : described(notes))
-    run.note(line);
+  run.notes(described(notes));
   run.counts["points"] = mesh.point.size();
   run.counts["tetrahedra"] = mesh.tet.size();
   run.counts["triangles"] = mesh.tri.size();

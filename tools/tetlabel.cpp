@@ -6,6 +6,7 @@
 #include "formats/vtu/names.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "label/mesh_labels.hpp"
+#include "mesh/same_source.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
 #include <cmath>
@@ -92,8 +93,9 @@ Status run_tool(const Options& o, cli::Run& run) {
   const std::vector<label::NamedBoundary> boundary = select(o, h);
   formats::VtuNotes notes;
   TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes, formats::CellArrays::keep);
-  for (const std::string& line : described(notes))
-    run.note(line);
+  run.notes(described(notes));
+  if (other_structure(h.source, mesh.source)) // as of a PQR file's mesh and the PDB file that has its chains
+    run.note("the structure is of " + h.source + ", the mesh of " + mesh.source);
 
   run.phase("label");
   const label::Places places = label::places_of(mesh, o.resolved_threads());

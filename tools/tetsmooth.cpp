@@ -63,8 +63,7 @@ Status run_tool(const Options& o, cli::Run& run) {
     hierarchy = formats::read_hier(structure->stream(), structure->name());
   formats::VtuNotes notes;
   TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes, formats::CellArrays::keep);
-  for (const std::string& line : described(notes))
-    run.note(line);
+  run.notes(described(notes));
   if (grid)
     require_same_source(mesh, !notes.isovalue_missing, grid->info, density->name());
   const CarriedArrays arrays(mesh);

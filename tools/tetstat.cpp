@@ -30,8 +30,7 @@ formats::MeshReport report(const std::string& path, const Options& o, cli::Run& 
   cli::InputFile input(path);
   formats::VtuNotes notes;
   const TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes);
-  for (const std::string& line : described(notes))
-    run.note(line);
+  run.notes(described(notes));
   run.phase("validity");
   Validity validity = check_validity(mesh, threads);
   if (o.crossings) {

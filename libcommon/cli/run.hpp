@@ -48,6 +48,10 @@ public:
   std::vector<CompleteFile> outputs; ///< in the order in which they get their names
   /// A line on stderr unless -q (prefixed with the tool's name): what the user should know, not an error.
   void note(const std::string& line) const;
+  void notes(const std::vector<std::string>& lines) const {
+    for (const std::string& line : lines)
+      note(line);
+  }
 
   std::string tool;
   bool quiet = false, verbose = false;

@@ -14,9 +14,13 @@ std::string sum_of(const std::string& source) {
 
 } // namespace
 
+bool other_structure(const std::string& source, const std::string& of_mesh) {
+  const std::string a = sum_of(source), b = sum_of(of_mesh);
+  return !a.empty() && !b.empty() && a != b;
+}
+
 void require_same_source(const TetMesh& m, bool has_isovalue, const FieldInfo& field, const std::string& density) {
-  const std::string mesh_sum = sum_of(m.source), field_sum = sum_of(field.source);
-  if (!mesh_sum.empty() && !field_sum.empty() && mesh_sum != field_sum)
+  if (other_structure(field.source, m.source))
     fail_input(density + ": the density of " + field.source + ", expected the mesh's " + m.source);
   if (m.source.empty())
     return;

@@ -1,9 +1,12 @@
-// same_source.hpp — is this density the one that the mesh was made from?
+// same_source.hpp — is this density, or structure, the one that the mesh was made from?
 #pragma once
 #include "density/block_grid.hpp"
 #include "mesh/tet_mesh.hpp"
 
 namespace molmesh {
+
+/// Whether both texts name the sha256 of a structure's file, and not the same.
+bool other_structure(const std::string& source, const std::string& of_mesh);
 
 /// Throws Error(bad_input) where both name the sha256 of their structure, or a mesh with a source has its isovalue
 /// (has_isovalue) or decay rate, and the two differ. Meshes of other programs name none. `density`: the grid's

@@ -33,3 +33,9 @@ TEST_CASE("a density belongs to a mesh where sums, isovalues and decay rates tha
   field.decay = 1;
   passes(true);
 }
+
+TEST_CASE("structures are told apart by their sums where both have one") {
+  CHECK(other_structure("1crn.pdb sha256:69ed", "1ubq.pdb sha256:1f46"));
+  CHECK_FALSE(other_structure("1crn.pdb sha256:69ed", "renamed.pdb sha256:69ed"));
+  CHECK_FALSE(other_structure("by hand", "1ubq.pdb sha256:1f46"));
+}
