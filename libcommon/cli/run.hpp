@@ -106,6 +106,8 @@ int run_main(const char* tool, const char* purpose, int argc, char** argv, Descr
     run.tool = tool;
     run.quiet = options.quiet;
     run.verbose = options.verbose;
+    if (options.threads > threads && options.mode == "seq")
+      run.note("-t " + std::to_string(options.threads) + ": --mode seq is one thread");
     const Status result = run_tool(options, run);
     return detail::finish(app, options, run, report.get(), result);
   } catch (const std::exception& e) {

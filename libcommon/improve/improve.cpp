@@ -221,6 +221,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   if (result.counts.total() == 0 || schedule.worst() < at_first) { // the file that came in, in its own order
     result.in_vain = result.counts.total() > 0;
     result.counts = {};
+    m = DynamicMesh(); // two at a time are too much memory
     if (density)
       result.fidelity = measure_fidelity(build(mesh, 180, options.threads), *isosurface, options.threads);
     return result;

@@ -177,6 +177,11 @@ TEST_CASE("a report that cannot be written stops the run before its work, and a 
   CHECK(folder.files() == 0);
 }
 
+TEST_CASE("more threads than the mode has are said") {
+  CHECK(tool({"--mode", "seq", "-t", "4"}).err == "doubler: -t 4: --mode seq is one thread\n");
+  CHECK(tool({"--mode", "seq", "-t", "1"}).err.empty());
+}
+
 TEST_CASE("an output gets its name when the report, too, could be written") {
   const Folder folder;
   CHECK(tool({"-o", folder / "out", "--report", "/dev/full"}).status == 4);
