@@ -92,7 +92,8 @@ void resolve(Options& o) {
   if (p.select.empty())
     usage("--select", "", "a selection ('*' is everything)");
 
-  if (p.model != "first" && p.model != "all" && !std::all_of(p.model.begin(), p.model.end(), is_digit))
+  const bool number = !p.model.empty() && std::all_of(p.model.begin(), p.model.end(), is_digit);
+  if (p.model != "first" && p.model != "all" && !number)
     usage("--model", p.model, "first, all or a number");
   if (p.altloc.size() != 1 && p.altloc != "occupancy" && p.altloc != "first" && p.altloc != "all")
     usage("--altloc", p.altloc, "occupancy, first, all or one letter");
