@@ -74,8 +74,8 @@ double parse_decay(const std::string& text) {
   return *decay;
 }
 
-double decay_of(const Options& o, const TetMesh& mesh) {
-  const double asked = parse_decay(o.decay);
+/// asked: o.decay.
+double decay_of(const Options& o, double asked, const TetMesh& mesh) {
   if (asked > 0 && mesh.decay > 0 && std::fabs(asked - mesh.decay) > 1e-9 * mesh.decay)
     fail(Status::usage, "--decay: found " + o.decay + ", expected " + std::to_string(mesh.decay) +
                             ", which the mesh was made with");
@@ -85,7 +85,7 @@ double decay_of(const Options& o, const TetMesh& mesh) {
 Status run_tool(const Options& o, cli::Run& run) {
   if (o.input == "-" && o.hierarchy == "-")
     fail(Status::usage, "both inputs are standard input, expected at most one");
-  parse_decay(o.decay); // before any work
+  const double asked_decay = parse_decay(o.decay); // before any work
   run.phase("read");
   cli::InputFile structure(o.hierarchy), input(o.input);
   cli::OutputFile output(o.output, cli::OutputFile::Content::binary);
@@ -102,7 +102,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   if (places.cell.empty())
     fail_input(input.name() + ": no tetrahedron of region 1 and no triangle of boundary 1, expected a molecule");
   label::Labels labels =
-      label::find_labels(h, places.centroid, {decay_of(o, mesh), mesh.isovalue, o.resolved_threads()});
+      label::find_labels(h, places.centroid, {decay_of(o, asked_decay, mesh), mesh.isovalue, o.resolved_threads()});
   run.counts["tetrahedra"] = places.tets;
   run.counts["triangles"] = static_cast<int64_t>(places.cell.size()) - places.tets;
   if (const double off = label::median_offset(places, labels, mesh.isovalue); std::fabs(off) > std::log(3.)) {

@@ -4,6 +4,7 @@
 #include "formats/text_out.hpp"
 #include "formats/vtu/names.hpp"
 #include "mesh/adjacency.hpp"
+#include "mesh/sorted_triangle.hpp"
 #include <algorithm>
 
 namespace molmesh::formats {
@@ -22,13 +23,7 @@ int64_t write_mcsf(std::ostream& stream, const TetMesh& m, const std::string& fi
   const std::vector<int32_t> patch = patches(m);
   if (const auto most = std::max_element(patch.begin(), patch.end()); most != patch.end() && *most > most_label)
     fail_input(file + ": a triangle of label " + std::to_string(*most) + ", expected 2^30 at most for mcsf");
-  std::vector<std::pair<Tri, int32_t>> face; // sorted corners, label
-  for (size_t t = 0; t < m.tri.size(); ++t) {
-    Tri f = m.tri[t];
-    std::sort(f.begin(), f.end());
-    face.emplace_back(f, patch[t]);
-  }
-  std::sort(face.begin(), face.end());
+  const TriangleNumbers labels(m.tri, [&](size_t t) { return patch[t]; });
   auto unplaced = static_cast<int64_t>(patch.size()) - std::count(patch.begin(), patch.end(), Boundary::surface);
   const LargeArray<int32_t> across = face_neighbors(m, 1);
   TextOut out(stream);
@@ -42,10 +37,8 @@ int64_t write_mcsf(std::ostream& stream, const TetMesh& m, const std::string& fi
     for (size_t f = 0; f < 4; ++f) {
       int32_t type = 0;
       if (across[4 * t + f] < 0) {
-        Tri corner = face_points(m, static_cast<int64_t>(4 * t + f));
-        std::sort(corner.begin(), corner.end());
-        const auto found = std::lower_bound(face.begin(), face.end(), std::make_pair(corner, int32_t{0}));
-        const int32_t label = found != face.end() && found->first == corner ? found->second : Boundary::surface;
+        const int32_t* const found = labels.find(face_points(m, static_cast<int64_t>(4 * t + f)));
+        const int32_t label = found ? *found : int32_t{Boundary::surface};
         type = face_type(label);
         unplaced -= label != Boundary::surface;
       }

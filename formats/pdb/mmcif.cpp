@@ -41,12 +41,15 @@ std::string one_line(const std::string& file, std::string what) {
 void check_models(cif::Loop& loop, const AtomColumns& columns, const std::string& where) {
   const int column = columns.find("pdbx_PDB_model_num");
   std::unordered_set<std::string> models;
+  std::string before; // nearly always the same
   for (auto i = static_cast<size_t>(std::max(column, 0)); column >= 0 && i < loop.values.size();
        i += loop.width()) {
     std::string& number = loop.values[i];
-    if (number.size() > 1 && std::all_of(number.begin(), number.end(), is_digit))
+    if (number.size() > 1 && number[0] == '0' && std::all_of(number.begin(), number.end(), is_digit))
       number = model_number(number);
-    models.insert(number);
+    if (number == before)
+      continue;
+    models.insert(before = number);
     if (models.size() > most_models)
       fail_input(where + ": found more than " + std::to_string(most_models) + " models, expected fewer");
   }

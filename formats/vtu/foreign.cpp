@@ -6,39 +6,23 @@
 #include <utility>
 
 namespace molmesh::formats {
-namespace {
-
-/// Of each of b's triangles: which of a is on the same points; -1: none.
-std::vector<int32_t> same_triangles(const std::vector<Tri>& a, const std::vector<Tri>& b) {
-  const auto sorted = [](const Tri& t) { return sorted_triangle(t).v; };
-  std::vector<std::pair<Tri, int32_t>> known;
-  for (const Tri& t : a)
-    known.emplace_back(sorted(t), static_cast<int32_t>(known.size()));
-  std::sort(known.begin(), known.end());
-  std::vector<int32_t> same;
-  for (const Tri& t : b) {
-    const auto k = std::lower_bound(known.begin(), known.end(), std::make_pair(sorted(t), int32_t{0}));
-    same.push_back(k != known.end() && k->first == sorted(t) ? k->second : -1);
-  }
-  return same;
-}
-
-} // namespace
-
 void take_rebuilt_triangles(TetMesh& m, VtuNotes& notes) {
   const std::vector<Tri> before = std::move(m.tri);
   rebuild_triangles(m);
   label_walls(m);
-  const std::vector<int32_t> same = same_triangles(before, m.tri);
+  const TriangleNumbers of_before(before, [](size_t t) { return static_cast<int32_t>(t); });
+  std::vector<const int32_t*> same; // of each triangle, which one before
+  for (const Tri& t : m.tri)
+    same.push_back(of_before.find(t));
   notes.triangles = static_cast<int64_t>(before.size());
-  notes.dropped_triangles = notes.triangles - (std::ssize(same) - std::count(same.begin(), same.end(), -1));
+  notes.dropped_triangles = notes.triangles - (std::ssize(same) - std::count(same.begin(), same.end(), nullptr));
   const size_t tets = m.tet.size();
   for (CellArray& a : m.cell_array) {
     const auto take = [&](auto& values, auto standard) {
       const std::vector of_file(values.begin() + static_cast<std::ptrdiff_t>(tets), values.end());
       values.resize(tets);
       for (size_t t = 0; t < same.size(); ++t)
-        values.push_back(same[t] >= 0 ? of_file[static_cast<size_t>(same[t])] : standard(t));
+        values.push_back(same[t] ? of_file[static_cast<size_t>(*same[t])] : standard(t));
     };
     if (a.real.empty())
       take(a.integer, [&](size_t t) { return a.name == "patch" ? m.boundary[t] : 0; });

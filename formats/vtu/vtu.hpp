@@ -24,10 +24,10 @@ std::vector<std::string> described(const VtuNotes& notes);
 enum class CellArrays { drop, keep };
 
 /// Any tetrahedral .vtu: ours, or a foreign one (ascii, inline base64 or appended; raw or zlib; Float32/64;
-/// Int32/64; without our arrays: region 1 for all, triangles rebuilt; those of the file that are
-/// among them lend them their values). Throws Error(bad_input), its line names the
-/// broken rule of VTUv1.md; hexahedra and other cells are refused. Kept are arrays of one component that every
-/// piece has, integers or reals, and UInt8 arrays of the field data as texts.
+/// Int32/64; without our arrays: region 1 for all, triangles rebuilt; those of the file that are among them lend
+/// them their values). Throws Error(bad_input), its line names the broken rule of VTUv1.md; hexahedra and other
+/// cells are refused. Kept are arrays of one component that every piece has, integers or reals, and UInt8 arrays of
+/// the field data as texts.
 TetMesh read_vtu(std::istream& in, const std::string& file, VtuNotes* notes = nullptr,
                  CellArrays arrays = CellArrays::drop);
 /// Same mesh, same bytes. The stream's state tells whether all of it was written.

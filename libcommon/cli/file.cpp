@@ -135,15 +135,14 @@ OutputFile::OutputFile(const std::string& path, Content content)
   }
   std::error_code none;
   const fs::file_status status = fs::status(path, none);
-  if (!fs::exists(status) || fs::is_regular_file(status))
-    target_ = followed(path);
   if (content == Content::binary && fs::is_character_file(status) && is_terminal(path))
     refuse_terminal();
-  errno = 0;
   if (!fs::exists(status) || fs::is_regular_file(status)) {
+    target_ = followed(path);
     written_ = target_ + ".tmp." + std::to_string(getpid());
     temporary_ = std::make_unique<Temporary>(written_);
   }
+  errno = 0;
   if (!file_.open(written_, std::ios::binary | std::ios::out | std::ios::trunc))
     refuse("cannot open");
 }

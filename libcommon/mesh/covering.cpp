@@ -4,11 +4,11 @@
 #include "geom/predicates.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/box_tree.hpp"
+#include "mesh/disjoint_sets.hpp"
 #include "mesh/group.hpp"
 #include "mesh/triangle_order.hpp"
 #include <algorithm>
-#include <limits>
-#include <numeric>
+#include <cmath>
 #include <optional>
 
 namespace molmesh {
@@ -29,20 +29,13 @@ std::vector<int32_t> pieces(const std::vector<Tri>& tri, int64_t points, int thr
         for (int i = 0; i < n; ++i)
           first[half[i]] = half[0];
       });
-  std::vector<int32_t> parent(tri.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int32_t t) {
-    while (parent[static_cast<size_t>(t)] != t)
-      t = parent[static_cast<size_t>(t)] = parent[static_cast<size_t>(parent[static_cast<size_t>(t)])];
-    return t;
-  };
-  for (size_t h = 0; h < first.size(); ++h) {
-    const int32_t a = root(static_cast<int32_t>(h / 3)), b = root(static_cast<int32_t>(first[h] / 3));
-    parent[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
-  }
-  for (int32_t& t : parent)
-    t = root(t);
-  return parent;
+  DisjointSets sets(tri.size());
+  for (size_t h = 0; h < first.size(); ++h)
+    sets.join(static_cast<int32_t>(h / 3), static_cast<int32_t>(first[h] / 3));
+  std::vector<int32_t> piece;
+  for (size_t t = 0; t < tri.size(); ++t)
+    piece.push_back(sets.first(static_cast<int32_t>(t)));
+  return piece;
 }
 
 /// The skin to be met by rays.

@@ -3,6 +3,8 @@
 #include "mesh/group.hpp"
 #include "mesh/tet_mesh.hpp"
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace molmesh {
 
@@ -23,5 +25,27 @@ inline GroupKey triangle_key(const Tri& t) {
   const Tri v = sorted_triangle(t).v;
   return {v[0], uint64_t(uint32_t(v[1])) << 32 | uint32_t(v[2])};
 }
+
+/// Numbers of triangles by their three points; of several triangles on the same points the lowest.
+class TriangleNumbers {
+public:
+  /// number(t): of tri[t].
+  template <class Number>
+  TriangleNumbers(const std::vector<Tri>& tri, Number&& number) {
+    for (size_t t = 0; t < tri.size(); ++t)
+      known_.emplace_back(sorted_triangle(tri[t]).v, number(t));
+    std::sort(known_.begin(), known_.end());
+  }
+  /// Null where there is none.
+  const int32_t* find(const Tri& t) const {
+    const Tri v = sorted_triangle(t).v;
+    const auto k =
+        std::lower_bound(known_.begin(), known_.end(), v, [](const auto& a, const Tri& b) { return a.first < b; });
+    return k != known_.end() && k->first == v ? &k->second : nullptr;
+  }
+
+private:
+  std::vector<std::pair<Tri, int32_t>> known_; ///< ascending
+};
 
 } // namespace molmesh

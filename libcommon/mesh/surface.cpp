@@ -1,10 +1,10 @@
 // surface.cpp — half edges paired by their ends, fans walked around each point.
 #include "mesh/surface.hpp"
 #include "geom/tet_measures.hpp"
+#include "mesh/disjoint_sets.hpp"
 #include "mesh/group.hpp"
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace molmesh {
 namespace {
@@ -78,12 +78,6 @@ HalfEdges pair_halves(const std::vector<Tri>& tri, const std::vector<int32_t>& l
   return e;
 }
 
-int32_t root(std::vector<int32_t>& parent, int32_t t) {
-  while (parent[static_cast<size_t>(t)] != t)
-    t = parent[static_cast<size_t>(t)] = parent[static_cast<size_t>(parent[static_cast<size_t>(t)])];
-  return t;
-}
-
 } // namespace
 
 std::vector<SurfaceSummary> summarize_surfaces(const std::vector<Vec3d>& point, const std::vector<Tri>& tri,
@@ -93,15 +87,10 @@ std::vector<SurfaceSummary> summarize_surfaces(const std::vector<Vec3d>& point, 
     return summary;
   const HalfEdges e = pair_halves(tri, label, static_cast<int64_t>(point.size()), threads);
 
-  std::vector<int32_t> parent(tri.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  for (size_t h = 0; h < e.mate.size(); ++h) {
-    if (e.mate[h] < 0)
-      continue;
-    const int32_t a = root(parent, static_cast<int32_t>(h / 3)), b = root(parent, e.mate[h] / 3);
-    if (a != b)
-      parent[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
-  }
+  DisjointSets pieces(tri.size());
+  for (size_t h = 0; h < e.mate.size(); ++h)
+    if (e.mate[h] >= 0)
+      pieces.join(static_cast<int32_t>(h / 3), e.mate[h] / 3);
 
   const Vec3d origin = point[static_cast<size_t>(tri[0][0])]; // volumes cancel less when seen from nearby
   for (size_t t = 0; t < tri.size(); ++t) {
@@ -109,7 +98,7 @@ std::vector<SurfaceSummary> summarize_surfaces(const std::vector<Vec3d>& point, 
     const Vec3d a = point[static_cast<size_t>(tri[t][0])], b = point[static_cast<size_t>(tri[t][1])],
                 c = point[static_cast<size_t>(tri[t][2])];
     ++s.triangles;
-    s.components += parent[t] == static_cast<int32_t>(t);
+    s.components += pieces.first(static_cast<int32_t>(t)) == static_cast<int32_t>(t);
     s.area += tri_area(a, b, c);
     s.volume += dot(cross(a - origin, b - origin), c - origin) / 6;
     for (size_t i = 0; i < 3; ++i) {

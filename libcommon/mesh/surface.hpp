@@ -18,8 +18,7 @@ struct SurfaceSummary {
   int64_t components = 0; ///< connected through edges with two triangles
   int64_t euler = 0;      ///< points - edges + triangles
   double area = 0;        ///< Å²
-  double volume =
-      0; ///< Å³ inside, of triangles that point out; NaN when an edge is open or torn: nothing is enclosed
+  double volume = 0; ///< Å³ inside, of triangles that point out; NaN where nothing is enclosed (open, torn edges)
   SurfaceFaults faults;
 };
 
