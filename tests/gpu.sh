@@ -124,7 +124,7 @@ if [ -n "${list:-}" ]; then
 fi
 if [ -n "$compile" ]; then
   command -v nvcc >/dev/null || { echo "gpu.sh: no nvcc here"; exit 1; }
-  mkdir -p "$compile"
+  mkdir -p "$compile" && compile=$(cd "$compile" && pwd) || exit 1
   build "$compile/molmesh_gpu" "${ARCH:--gencode arch=compute_75,code=[sm_75,compute_75] -gencode arch=compute_90,code=[sm_90,compute_90]}" &&
     carry "$compile" "$@" && echo "gpu.sh: made $compile: $(cd "$compile" && ls -d molmesh_gpu bin/* *.hier 2>/dev/null | tr '\n' ' ')"
   exit
