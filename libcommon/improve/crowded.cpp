@@ -48,21 +48,28 @@ std::vector<float> deviations(const std::vector<Vec3d>& point, const std::vector
 
 std::vector<SheetTriangle> end_triangles(const DynamicMesh& m, int threads) {
   const auto ends = [&](const Element& e, size_t f) { return e.n[f] < 0 && m.labels[e.label[f]].curved(); };
-  std::vector<int64_t> face;
-  for (const int32_t t : choose(
-           static_cast<int64_t>(m.element.size()), threads, DynamicMesh::stretch,
-           [&](int64_t s) { return m.labelled[size_t(s)] != 0; },
-           [&](int64_t t) {
-             const Element& e = m.element[size_t(t)];
-             return e.alive() && (ends(e, 0) || ends(e, 1) || ends(e, 2) || ends(e, 3));
-           }))
+  const std::vector<int32_t> element = choose(
+      static_cast<int64_t>(m.element.size()), threads, DynamicMesh::stretch,
+      [&](int64_t s) { return m.labelled[size_t(s)] != 0; },
+      [&](int64_t t) {
+        const Element& e = m.element[size_t(t)];
+        return e.alive() && (ends(e, 0) || ends(e, 1) || ends(e, 2) || ends(e, 3));
+      });
+  const auto elements = static_cast<int64_t>(element.size());
+  std::vector<int64_t> start(element.size());
+  par::for_n(elements, threads, [&](int64_t i) {
+    const Element& e = m.element[size_t(element[size_t(i)])];
     for (size_t f = 0; f < 4; ++f)
-      if (ends(m.element[size_t(t)], f))
-        face.push_back(4 * int64_t(t) + int64_t(f));
-  std::vector<SheetTriangle> triangle(face.size());
-  par::for_n(static_cast<int64_t>(face.size()), threads, [&](int64_t i) {
-    const int64_t f = face[size_t(i)];
-    triangle[size_t(i)] = sheet_triangle(m.point, outward_triangle(m.element[size_t(f / 4)].v, size_t(f % 4)), f);
+      start[size_t(i)] += ends(e, f);
+  });
+  std::vector<SheetTriangle> triangle(static_cast<size_t>(par::exclusive_scan(start)));
+  par::for_n(elements, threads, [&](int64_t i) {
+    const int64_t t = element[size_t(i)];
+    const Element& e = m.element[size_t(t)];
+    auto to = triangle.begin() + start[size_t(i)];
+    for (size_t f = 0; f < 4; ++f)
+      if (ends(e, f))
+        *to++ = sheet_triangle(m.point, outward_triangle(e.v, f), 4 * t + int64_t(f));
   });
   return triangle;
 }

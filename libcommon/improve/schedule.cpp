@@ -21,9 +21,10 @@ Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int thr
 int64_t Schedule::parts_at_surface(double cell) {
   set_lattice(0, cell * cell_, bounds());
   std::vector<uint8_t> met(static_cast<size_t>(parts_.count()));
-  for (size_t v = 0; v < m_.point.size(); ++v)
-    if (m_.incident[v] >= 0 && m_.vertex[v].kind == Kind::surface)
-      met[size_t(parts_.at(m_.point[v]))] = 1;
+  par::for_n(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
+    if (m_.incident[size_t(v)] >= 0 && m_.vertex[size_t(v)].kind == Kind::surface)
+      std::atomic_ref(met[size_t(parts_.at(m_.point[size_t(v)]))]).store(1, std::memory_order_relaxed);
+  });
   return std::count(met.begin(), met.end(), uint8_t{1});
 }
 
@@ -43,11 +44,24 @@ void Schedule::find_crowded(double apart) {
     if (crowded[t])
       for (const int32_t v : triangle[t].v)
         m_.vertex[size_t(v)].crowded = true;
-  sheets_ = Sheets(cell_for(triangle));
+  sheets() = Sheets(cell_for(triangle));
   std::erase_if(triangle, [&](const SheetTriangle& t) { return !m_.crowded(t.v); });
   sheets_.reserve(triangle.size(), threads_);
-  for (const SheetTriangle& t : triangle)
-    sheets_.insert(t);
+  add([this, all = SheetChanges{std::move(triangle), {}}] { sheets_.merge(all); });
+}
+
+Sheets& Schedule::sheets() {
+  if (adding_.valid())
+    adding_.get();
+  return sheets_;
+}
+
+void Schedule::add(std::function<void()> work) {
+  sheets();
+  if (threads_ > 1)
+    adding_ = std::async(std::launch::async, std::move(work));
+  else
+    work();
 }
 
 void Schedule::find_worst() {
@@ -217,6 +231,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
   }
   std::stable_sort(largest_first.begin(), largest_first.end(),
                    [](const Job* a, const Job* b) { return a->weight > b->weight; });
+  Sheets& sheets_now = sheets();
   std::atomic<size_t> next{0};
   par::for_n(jobs.empty() ? 0 : threads_, threads_, 1, [&](int64_t) {
     for (const par::Helpers::Busy busy(helpers_);;) {
@@ -224,7 +239,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
       if (j >= jobs.size())
         break;
       Job& job = *largest_first[j];
-      Editor editor(m_, target_, ends_in_surface_ ? &sheets_ : nullptr, parts_, stamp_, job.room, guard,
+      Editor editor(m_, target_, ends_in_surface_ ? &sheets_now : nullptr, parts_, stamp_, job.room, guard,
                     last_stamp_);
       work(editor, job.items);
       job.counts = editor.counts;
@@ -234,15 +249,21 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     helpers_.help();
   });
   par::for_n(static_cast<int64_t>(jobs.size()), threads_, 1,
-             [&](int64_t j) { sheets_.move_along(jobs[size_t(j)].sheets); });
+             [&](int64_t j) { sheets_now.move_along(jobs[size_t(j)].sheets); });
   Counts sum;
+  std::vector<SheetChanges> changes;
   for (Job& job : jobs) {
     sum += job.counts;
     last_stamp_ = std::max(last_stamp_, job.clock);
-    sheets_.merge(job.sheets);
+    changes.push_back(std::move(job.sheets));
     free_element_.insert(free_element_.end(), job.room.element.begin(), job.room.element.end());
     free_vertex_.insert(free_vertex_.end(), job.room.vertex.begin(), job.room.vertex.end());
   }
+  if (ends_in_surface_)
+    add([this, changes = std::move(changes)] {
+      for (const SheetChanges& of_part : changes)
+        sheets_.merge(of_part);
+    });
   return sum;
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <vector>
 
 namespace molmesh::improve {
@@ -91,7 +92,12 @@ private:
   par::Helpers helpers_;        ///< threads that wait for the last parts
   std::vector<uint32_t> stamp_; ///< of the editors
   uint32_t last_stamp_ = 0;
+  /// As they are when all that was given to add() is in.
+  Sheets& sheets();
+  /// work() on sheets_, beside the passes that do not ask for them.
+  void add(std::function<void()> work);
   Sheets sheets_; ///< where the mesh ends in curved surfaces
+  std::future<void> adding_;
   std::vector<int32_t> free_element_, free_vertex_;
 };
 
