@@ -2,6 +2,7 @@
 #pragma once
 #include "cuda/par/run_copy.hpp"
 #include "mesh/tet_mesh.hpp"
+#include "par/pages.hpp"
 
 namespace molmesh::cuda {
 
@@ -10,7 +11,7 @@ template <class Backend>
 class DeviceMesh {
 public:
   /// As RunCopy has them.
-  DeviceMesh(Backend& b, int threads, int64_t run_bytes) : b_(b), copy_(b, threads, run_bytes) {}
+  DeviceMesh(Backend& b, int threads, int64_t run_bytes) : b_(b), threads_(threads), copy_(b, threads, run_bytes) {}
   Tet* tets(int64_t n) { return room(tet_, n); }
   int32_t* regions(int64_t n) { return room(region_, n); }
   Vec3d* points(int64_t n) { return room(point_, n); }
@@ -22,7 +23,7 @@ public:
   void renumber_tets(Renumber&& renumber) {
     send(region_, mesh_.region);
     send(point_, mesh_.point);
-    mesh_.tet.resize(static_cast<size_t>(tet_.size()));
+    par::resize_pages(mesh_.tet, static_cast<size_t>(tet_.size()), threads_);
     copy_.send(tet_.data(), tet_.size(), mesh_.tet.data(), renumber);
   }
   TetMesh on_host() {
@@ -42,10 +43,11 @@ private:
   }
   template <class T, class Vector>
   void send(const Array<T>& from, Vector& to) {
-    to.resize(static_cast<size_t>(from.size()));
+    par::resize_pages(to, static_cast<size_t>(from.size()), threads_);
     copy_.send(from.data(), from.size(), to.data());
   }
   Backend& b_;
+  int threads_;
   TetMesh mesh_;
   Array<Tet> tet_;
   Array<int32_t> region_, boundary_;

@@ -30,7 +30,7 @@ public:
   /// threads: of the host. least_run: leaves, or edges, that are made elements of at once, however little room.
   /// copy_bytes: of a run of the mesh on its way to the host.
   DeviceStages(Backend& b, int threads, int64_t least_run = int64_t{1} << 16,
-               int64_t copy_bytes = int64_t{32} << 20)
+               int64_t copy_bytes = RunCopy<Backend>::usual_bytes)
       : b_(b), threads_(threads), copy_bytes_(copy_bytes), selection_(b), maker_(b, least_run) {}
 
   void find_surface(const contour::Lattice& lattice) override {

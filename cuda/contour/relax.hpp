@@ -13,17 +13,29 @@ namespace molmesh::cuda {
 using contour::detail::Fate;
 using contour::detail::RelaxView;
 
+/// What the threads of a star's team tell each other.
+struct StarShared {
+  static constexpr int most_places = 14;
+  float side[6];
+  double place[most_places][3];
+  bool allowed[most_places];
+};
+
 /// Of contour::detail::move_vertex: all threads of the team ask the same and get the same answer. What they share
 /// comes by Team::least, or lies in memory; each write is followed by a sync before it is read, each read before
 /// the next write. A star of 32 elements at most lies in the threads' registers while places are judged.
+/// Waiting is most of the time: what can be asked at once is, several places for each element, a probe each thread.
 template <class Team>
 class TeamStar {
 public:
-  /// spoke, quality: scratch for all stars, as MoveTeams has it. side: of 6
-  HD TeamStar(const RelaxView& r, int32_t c, Team team, improve::Spoke<float>* spoke, float* quality, float* side)
+  static constexpr int most_places = StarShared::most_places;
+
+  /// spoke, quality: scratch for all stars, as MoveTeams has it.
+  HD TeamStar(const RelaxView& r, int32_t c, Team team, improve::Spoke<float>* spoke, float* quality,
+              StarShared& shared)
       : r_(r), team_(team), vertex_(r.vertex[c]), n_(static_cast<int32_t>(r.first[c + 1] - r.first[c])),
-        element_(r.element + r.first[c]), spoke_(spoke + r.first[c]), quality_(quality + r.first[c]), side_(side),
-        origin_(r.e.position[vertex_]) {
+        element_(r.element + r.first[c]), spoke_(spoke + r.first[c]), quality_(quality + r.first[c]),
+        shared_(shared), origin_(r.e.position[vertex_]) {
     int32_t first[2] = {n_, n_};
     for (int32_t k = team_.rank(); k < n_; k += Team::size)
       if (int32_t& f = first[is_asked(k)]; k < f)
@@ -57,15 +69,61 @@ public:
 
   HD float worst(Vec3d x, float) const {
     float least = 3e38f;
-    for_each_quality(x, [&](int32_t, bool, float q) { least = q < least ? q : least; });
+    for_each_spoke([&](int32_t, bool asked, const improve::Spoke<float>& s) {
+      const float q = evaluate(s, asked, x);
+      least = q < least ? q : least;
+    });
     return team_.least(least);
+  }
+
+  /// The first of place[begin, end) whose worst element is above `above`; end: none.
+  HD int first_above(const Vec3d* place, int begin, int end, float above, float& q) const {
+    constexpr int at_once = Team::size > 1 ? 7 : 1;
+    for (int first = begin; first < end; first += at_once) {
+      float least[at_once];
+      for (float& l : least)
+        l = 3e38f;
+      for_each_spoke([&](int32_t, bool asked, const improve::Spoke<float>& s) {
+        for (int i = 0; i < at_once; ++i) {
+          const float of_element = evaluate(s, asked, place[first + i < end ? first + i : end - 1]);
+          least[i] = of_element < least[i] ? of_element : least[i];
+        }
+      });
+      for (int i = 0; i < at_once; ++i)
+        least[i] = team_.least(least[i]);
+      for (int i = 0; i < at_once && first + i < end; ++i)
+        if (least[i] > above) {
+          q = least[i];
+          return first + i;
+        }
+    }
+    return end;
+  }
+
+  /// Puts those of y[0, n) in front that constrain(y[i]) allows, and where it moves them, in order; returns how
+  /// many. A thread asks for a place.
+  template <class Constrain>
+  HD int constrain_all(const Constrain& constrain, Vec3d* y, int n) const {
+    for (int i = team_.rank(); i < n; i += Team::size) {
+      Vec3d p = y[i];
+      shared_.allowed[i] = constrain(p);
+      for (int a = 0; a < 3; ++a)
+        shared_.place[i][a] = p[a];
+    }
+    team_.sync();
+    int allowed = 0;
+    for (int i = 0; i < n; ++i)
+      if (shared_.allowed[i])
+        y[allowed++] = {shared_.place[i][0], shared_.place[i][1], shared_.place[i][2]};
+    team_.sync(); // read before it is written again
+    return allowed;
   }
 
   HD Vec3d ascent(Vec3d x, double step) {
     // Of equals the first, and one that is asked for before others.
     uint64_t least = ~uint64_t{0};
-    for_each_quality(x, [&](int32_t k, bool asked, float q) {
-      uint32_t bits = std::bit_cast<uint32_t>(q + 0.0f); // in the numbers' order
+    for_each_spoke([&](int32_t k, bool asked, const improve::Spoke<float>& s) {
+      uint32_t bits = std::bit_cast<uint32_t>(evaluate(s, asked, x) + 0.0f); // in the numbers' order
       bits ^= bits >> 31 ? ~uint32_t{0} : uint32_t{1} << 31;
       const uint64_t key = uint64_t{bits} << 32 | uint32_t{!asked} << 31 | static_cast<uint32_t>(k);
       least = key < least ? key : least;
@@ -76,12 +134,12 @@ public:
     for (int s = team_.rank(); s < 6; s += Team::size) {
       Vec3f y = local(x, asked);
       y[s / 2] = s % 2 ? y[s / 2] - d : y[s / 2] + d;
-      side_[s] = evaluate(worst, y);
+      shared_.side[s] = quality(spoke_[worst], y);
     }
     team_.sync();
     Vec3d g;
     for (int a = 0; a < 3; ++a)
-      g[a] = double(side_[2 * a]) - double(side_[2 * a + 1]);
+      g[a] = double(shared_.side[2 * a]) - double(shared_.side[2 * a + 1]);
     team_.sync(); // read before it is written again
     const double length = norm(g);
     return length > 0 ? g / length : Vec3d{};
@@ -125,22 +183,22 @@ private:
     const Vec3d u = (x - origin_) * inverse_[asked];
     return {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z)};
   }
-  HD float evaluate(int32_t k, const Vec3f& y) const {
+  HD float quality(const improve::Spoke<float>& s, const Vec3f& y) const {
     float q;
-    improve::spoke_quality(spoke_[k], y.x, y.y, y.z, q, static_cast<float>(r_.shape));
+    improve::spoke_quality(s, y.x, y.y, y.z, q, static_cast<float>(r_.shape));
     return q;
   }
-  /// see(k, asked, quality) of this thread's elements with the vertex at x.
+  /// With the vertex at x.
+  HD float evaluate(const improve::Spoke<float>& s, bool asked, Vec3d x) const {
+    return (asked ? 1 : contour::detail::unasked_weight) * quality(s, local(x, asked));
+  }
+  /// see(k, asked, spoke) of this thread's elements.
   template <class See>
-  HD void for_each_quality(Vec3d x, const See& see) const {
-    const Vec3f y[2] = {local(x, false), local(x, true)};
-    for (int32_t k = team_.rank(); k < n_; k += Team::size) {
-      const bool first = k == team_.rank(), asked = first ? mine_asked_ : is_asked(k);
-      const Vec3f at = asked ? y[1] : y[0];
-      float q;
-      improve::spoke_quality(first ? mine_ : spoke_[k], at.x, at.y, at.z, q, static_cast<float>(r_.shape));
-      see(k, asked, (asked ? 1 : contour::detail::unasked_weight) * q);
-    }
+  HD void for_each_spoke(const See& see) const {
+    if (team_.rank() < n_)
+      see(team_.rank(), mine_asked_, mine_);
+    for (int32_t k = team_.rank() + Team::size; k < n_; k += Team::size)
+      see(k, is_asked(k), improve::Spoke<float>(spoke_[k]));
   }
 
   const RelaxView& r_;
@@ -149,7 +207,7 @@ private:
   const int32_t* element_;
   improve::Spoke<float>* spoke_; ///< [n]
   float* quality_;               ///< [n]
-  float* side_;
+  StarShared& shared_;
   Vec3d origin_;
   improve::Spoke<float> mine_{}; ///< of the thread's first element
   bool mine_asked_ = false;
@@ -165,14 +223,12 @@ struct MoveTeams {
   Fate* fate;
   improve::Spoke<float>* spoke; ///< [star entries]
   float* quality;               ///< [star entries]
-  struct Shared {
-    float side[6];
-  };
+  using Shared = StarShared;
   template <class Team>
   HD void operator()(int64_t i, Team team, Shared& shared) const {
     if (fate[i] != Fate::stays)
       return;
-    TeamStar<Team> star(r, active[i], team, spoke, quality, shared.side);
+    TeamStar<Team> star(r, active[i], team, spoke, quality, shared);
     if (contour::detail::move_vertex(r, surface, most_distance, active[i], star) && team.rank() == 0)
       fate[i] = Fate::moves;
   }
@@ -186,12 +242,12 @@ struct MoveNearerTeams {
   Fate* fate;
   improve::Spoke<float>* spoke; ///< [star entries]
   float* quality;               ///< [star entries]
-  using Shared = MoveTeams::Shared;
+  using Shared = StarShared;
   template <class Team>
   HD void operator()(int64_t i, Team team, Shared& shared) const {
     if (fate[i] != Fate::stays)
       return;
-    TeamStar<Team> star(v.r, active[i], team, spoke, quality, shared.side);
+    TeamStar<Team> star(v.r, active[i], team, spoke, quality, shared);
     if (contour::detail::move_nearer_or_make_room(v, surface, active[i], star) && team.rank() == 0)
       fate[i] = Fate::moves;
   }

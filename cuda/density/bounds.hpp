@@ -1,8 +1,8 @@
 // bounds.hpp — which side of the band a block is surely on: upper and lower bounds on G over its points
 // (libcommon/density/field.md §5).
 #pragma once
-#include "cuda/density/block_key.hpp"
 #include "cuda/density/log_sum.hpp"
+#include "cuda/density/near_clusters.hpp"
 
 namespace molmesh::cuda {
 
@@ -18,8 +18,7 @@ HD inline double beyond2(double c, double middle, double half) {
 /// state[i] of block key[i]. One call reads the atoms near a block once.
 template <class Real>
 struct BoundBlocks {
-  FieldView f;
-  BlockFrame frame;
+  NearClusters near;
   double lower, upper; ///< of the band
   double total;        ///< of the budget for what is dropped
   bool classify;       ///< false: every block stays open
@@ -31,11 +30,17 @@ struct BoundBlocks {
       state[i] = State::open;
       return;
     }
-    const Box box = frame.box(BlockFrame::block(key[i]), 1);
+    const FieldView& f = near.f;
+    const Vec3i block = BlockFrame::block(key[i]);
+    const Box box = near.frame.box(block, 1);
     const Vec3d m = 0.5 * (box.lo + box.hi), half = 0.5 * (box.hi - box.lo);
     OpenLevels<LogSum<Real, false>> largest(f);
     OpenLevels<LogSum<Real, true>> middle(f);
-    for_near_clusters(f, box, [&](int32_t c) {
+    const NearClusters::Range all = near.around(block);
+    for (int32_t k = 0; k < all.n; ++k) {
+      const int32_t c = all.begin[k];
+      if (!near.is_near(box, c))
+        continue;
       LogSum<Real, false>& high = largest.enter(f.group[c]);
       LogSum<Real, true>& here = middle.enter(f.group[c]);
       for (int64_t a = f.begin[c]; a < f.begin[c + 1]; ++a) {
@@ -47,8 +52,7 @@ struct BoundBlocks {
         here.add(f.peak[a] - f.decay * norm2(to),
                  Vec3<Real>{Real(2 * f.decay * to.x), Real(2 * f.decay * to.y), Real(2 * f.decay * to.z)});
       }
-      return true;
-    });
+    }
     constexpr double rounding = 1e-3; // more than single precision can do
     const double slack = rounding * (f.steepest > 1 ? f.steepest : 1);
     if ((1 + slack) * std::exp(largest.finish().ln()) + 2 * total < lower) {

@@ -4,6 +4,7 @@
 #include "cuda/density/block_key.hpp"
 #include "cuda/density/bounds.hpp"
 #include "cuda/density/log_sum.hpp"
+#include "cuda/density/near_clusters.hpp"
 
 namespace molmesh::cuda {
 
@@ -11,13 +12,13 @@ namespace molmesh::cuda {
 /// change G by at most `budget` (field.md §2). Dropped are clusters whose effect is at most one of a few
 /// thresholds: the largest that the budget allows. (S + v)^P - S^P ≤ v^P for P ≤ 1, with v bounded over the block.
 struct BlockClusters {
-  FieldView f;
-  BlockFrame frame;
+  NearClusters near;
   bool drop; ///< everything above the innermost level is a plain sum
   double budget;
   const Key* key;
 
   HD float effect(int32_t c, Vec3d middle, Vec3d half) const {
+    const FieldView& f = near.f;
     const double p = f.exponent[0][f.group[c]];
     if (p > 1)
       return HUGE_VALF;
@@ -34,15 +35,20 @@ struct BlockClusters {
     const float share[thresholds] = {0.4f, 0.2f, 0.08f, 0.03f, 0.01f, 0.003f};
     return k < thresholds ? share[k] * float(budget) : -1;
   }
-  template <class Visit>
-  HD void for_each(int64_t i, float least, Visit&& visit) const {
-    const Box box = frame.box(BlockFrame::block(key[i]), 1);
+  struct NoneShared {};
+  /// see(c, whether c is near, its effect) for the clusters round block i, a cluster for each thread of the team,
+  /// all of them as often; a thread without one gets -1, which is not near. Effects are asked for where `weigh`.
+  template <class Team, class See>
+  HD void for_each(int64_t i, Team team, bool weigh, See&& see) const {
+    const Vec3i block = BlockFrame::block(key[i]);
+    const Box box = near.frame.box(block, 1);
     const Vec3d middle = 0.5 * (box.lo + box.hi), half = 0.5 * (box.hi - box.lo);
-    for_near_clusters(f, box, [&](int32_t c) {
-      if (!drop || effect(c, middle, half) > least)
-        visit(c);
-      return true;
-    });
+    const NearClusters::Range all = near.around(block);
+    for (int32_t first = 0; first < all.n; first += Team::size) {
+      const int32_t k = first + team.rank(), c = k < all.n ? all.begin[k] : -1;
+      const bool is_near = c >= 0 && near.is_near(box, c);
+      see(c, is_near, is_near && weigh ? effect(c, middle, half) : 0);
+    }
   }
 };
 
@@ -51,22 +57,20 @@ struct ChooseLeast {
   BlockClusters in;
   float* least;
 
-  HD void operator()(int64_t i) const {
+  using Shared = BlockClusters::NoneShared;
+  template <class Team>
+  HD void operator()(int64_t i, Team team, Shared&) const {
     float total[BlockClusters::thresholds] = {};
-    if (in.drop) {
-      const Box box = in.frame.box(BlockFrame::block(in.key[i]), 1);
-      const Vec3d middle = 0.5 * (box.lo + box.hi), half = 0.5 * (box.hi - box.lo);
-      for_near_clusters(in.f, box, [&](int32_t c) {
-        const float e = in.effect(c, middle, half);
+    if (in.drop)
+      in.for_each(i, team, true, [&](int32_t, bool is_near, float e) {
         for (int k = 0; k < BlockClusters::thresholds; ++k)
-          total[k] += e <= in.threshold(k) ? e : 0;
-        return true;
+          total[k] += is_near && e <= in.threshold(k) ? e : 0;
       });
-    }
     int k = 0;
-    while (in.drop && k < BlockClusters::thresholds && total[k] * 1.001f > float(in.budget))
+    while (in.drop && k < BlockClusters::thresholds && team.sum(total[k]) * 1.001f > float(in.budget))
       ++k;
-    least[i] = in.threshold(k);
+    if (team.rank() == 0)
+      least[i] = in.threshold(k);
   }
 };
 
@@ -79,16 +83,25 @@ struct ListClusters {
   uint32_t* atoms;
   int32_t* list;
 
-  HD void operator()(int64_t i) const {
+  using Shared = BlockClusters::NoneShared;
+  template <class Team>
+  HD void operator()(int64_t i, Team team, Shared&) const {
     int32_t* const to = list ? list + begin[i] : nullptr;
-    int64_t n = 0, sum = 0;
-    in.for_each(i, least[i], [&](int32_t c) {
-      if (to)
-        to[n] = c;
-      ++n;
-      sum += in.f.begin[c + 1] - in.f.begin[c];
+    int64_t n = 0;
+    int32_t sum = 0;
+    in.for_each(i, team, in.drop, [&](int32_t c, bool is_near, float e) {
+      const bool kept = is_near && (!in.drop || e > least[i]);
+      int all;
+      const int before = team.before(kept, all);
+      if (to && kept)
+        to[n + before] = c;
+      n += all;
+      sum += kept ? int32_t(in.near.f.begin[c + 1] - in.near.f.begin[c]) : 0;
     });
     if (to)
+      return;
+    sum = team.sum(sum);
+    if (team.rank() != 0)
       return;
     begin[i] = n;
     atoms[i] = uint32_t(sum);

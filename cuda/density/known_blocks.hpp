@@ -2,9 +2,13 @@
 // the host.
 #pragma once
 #include "cuda/density/search_items.hpp"
-#include "cuda/par/backend.hpp"
+#include "cuda/par/run_copy.hpp"
 #include "density/band.hpp"
+#include "par/pages.hpp"
+#include "par/par.hpp"
 #include <algorithm>
+#include <bit>
+#include <numeric>
 #include <vector>
 
 namespace molmesh::cuda {
@@ -30,13 +34,13 @@ struct Known {
   int64_t n = 0;
 };
 
-/// A slab of the band on its way to the host.
+/// A slab of the band, packed: keys of its blocks, 16 words of bits each, values; and blocks wholly inside.
 template <class Backend>
 struct SlabResult {
-  typename Backend::template Pending<Key> key;
-  typename Backend::template Pending<uint64_t> bits;
-  typename Backend::template Pending<float> packed;
-  typename Backend::template Pending<Key> inside;
+  typename Backend::template Array<Key> key;
+  typename Backend::template Array<uint64_t> bits;
+  typename Backend::template Array<float> packed;
+  typename Backend::template Array<Key> inside;
 };
 
 template <class Backend>
@@ -119,32 +123,47 @@ public:
     Array<Key> inside_key = b_.template array<Key>(n_inside);
     item.out = inside_key.data();
     b_.for_n("find inside blocks", n, item, {double(n) * 24});
-    return {b_.fetch(std::move(out_key)), b_.fetch(std::move(bits)), b_.fetch(std::move(packed)),
-            b_.fetch(std::move(inside_key))};
+    b_.settle();
+    return {std::move(out_key), std::move(bits), std::move(packed), std::move(inside_key)};
   }
 
-  void append(SlabResult& r, density::Band& band) const {
-    const Key* const key = r.key.get();
-    const uint64_t* const bits = r.bits.get();
-    const float* const packed = r.packed.get();
-    const Key* const inside = r.inside.get();
-    LargeArray<float>& store = band.storage.emplace_back(static_cast<size_t>(r.packed.size()) + 16);
-    std::copy_n(packed, r.packed.size(), store.data());
-    const float* value = store.data();
-    for (int64_t i = 0; i < r.key.size(); ++i) {
-      density::BandBlock block{frame_.corner(BlockFrame::block(key[i])), {}, {}, {}, value};
-      for (size_t w = 0; w < 8; ++w) {
-        block.active[w] = bits[16 * i + static_cast<int64_t>(w)];
-        block.above[w] = bits[16 * i + 8 + static_cast<int64_t>(w)];
-        for (uint64_t left = block.active[w]; left; left &= left - 1)
-          ++value;
-      }
+  /// By another thread than the device's, with threads of the host, while the device goes on.
+  void append(const SlabResult& r, density::Band& band, int threads) const {
+    RunCopy<Backend> copy(b_, threads, RunCopy<Backend>::usual_bytes, true);
+    const auto all = [&](const auto& array, auto& to, size_t more = 0) {
+      par::resize_pages(to, static_cast<size_t>(array.size()) + more, threads);
+      copy.send(array.data(), array.size(), to.data());
+    };
+    LargeArray<Key> key, inside;
+    LargeArray<uint64_t> bits;
+    all(r.key, key);
+    all(r.inside, inside);
+    all(r.bits, bits);
+    LargeArray<float>& store = band.storage.emplace_back();
+    all(r.packed, store, 16); // vectors read behind them
+    copy.finish();
+    const int64_t blocks = r.key.size();
+    const size_t first = band.block.size();
+    std::vector<int64_t> start(key.size());
+    par::for_n(blocks, threads, [&](int64_t i) {
+      const uint64_t* const active = bits.data() + 16 * i;
+      start[static_cast<size_t>(i)] = std::accumulate(
+          active, active + 8, int64_t{0}, [](int64_t sum, uint64_t word) { return sum + std::popcount(word); });
+    });
+    par::exclusive_scan(start);
+    band.block.resize(first + key.size());
+    par::for_n(blocks, threads, [&](int64_t i) {
+      const auto n = static_cast<size_t>(i);
+      density::BandBlock& block = band.block[first + n];
+      block.corner = frame_.corner(BlockFrame::block(key[n]));
+      std::copy_n(bits.data() + 16 * i, 8, block.active.data());
+      std::copy_n(bits.data() + 16 * i + 8, 8, block.above.data());
       block.stored = block.active;
-      band.block.push_back(block);
-    }
+      block.value = store.data() + start[n];
+    });
     band.active_points += r.packed.size();
-    for (int64_t i = 0; i < r.inside.size(); ++i)
-      band.inside.push_back(frame_.corner(BlockFrame::block(inside[i])));
+    for (const Key k : inside)
+      band.inside.push_back(frame_.corner(BlockFrame::block(k)));
   }
 
 private:

@@ -10,6 +10,7 @@
 #include "density/search.hpp"
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <memory>
 
@@ -37,6 +38,12 @@ public:
     density::Band band = density::empty_band(field_, frame_.grid, o_);
     find_nodes();
     std::unique_ptr<SlabResult> before;
+    std::future<void> taken; // of `before`, by the host's threads
+    const auto take = [&] {
+      if (before)
+        taken.get();
+      before.reset();
+    };
     std::vector<SlabRange> todo = plan();
     std::reverse(todo.begin(), todo.end());
     while (!todo.empty()) {
@@ -47,8 +54,7 @@ public:
         result = std::make_unique<SlabResult>(run_slab(s));
       } catch (const OutOfRoom&) {
         if (before) { // what is still on its way to the host
-          blocks_.append(*before, band);
-          before.reset();
+          take();
           todo.push_back(s);
           continue;
         }
@@ -59,15 +65,14 @@ public:
         todo.push_back({s.begin, middle});
         continue;
       }
-      if (before)
-        blocks_.append(*before, band);
+      take();
       before = std::move(result);
+      taken = std::async(std::launch::async, [&, slab = before.get()] { give_away(*slab, band); });
       ++slabs_;
       if (o_.progress)
         o_.progress(s.end, frame_.blocks.x);
     }
-    if (before)
-      blocks_.append(*before, band);
+    take();
     band.info.analyzed_points =
         o_.full ? int64_t{frame_.grid.points.x} * frame_.grid.points.y * frame_.grid.points.z : analyzed_;
     counts = counts_;
@@ -81,6 +86,16 @@ private:
   using Evaluated = cuda::Evaluated<Backend>;
   using Known = cuda::Known<Backend>;
   using SlabResult = cuda::SlabResult<Backend>;
+
+  void give_away(const SlabResult& slab, density::Band& band) const {
+    blocks_.append(slab, band, o_.threads);
+    if (!o_.take || band.block.empty())
+      return;
+    const density::BandBlocks all = band.block;
+    o_.take(band.info, {&all, 1});
+    band.block.clear();
+    band.storage.clear();
+  }
 
   /// Cubes with the given edge from those of twice the edge.
   Array<Key> halve(const Array<Key>& parent, int64_t parents, int32_t edge, SlabRange x, int64_t& n) {
@@ -139,23 +154,61 @@ private:
     return slabs;
   }
 
-  Array<Key> candidates(SlabRange wide, int64_t& n) {
+  /// A slab's blocks near atoms, and the clusters near cubes of them.
+  struct Candidates {
+    Array<Key> block, cube;
+    Array<int64_t> begin;
+    Array<int32_t> list;
+    int64_t n = 0;
+    NearClusters near{};
+  };
+  /// Few blocks share a long list, many a short one: cubes of about the clusters' reach.
+  int32_t list_edge() const {
+    constexpr double reach = 10; // Å
+    int32_t edge = node_edge;
+    while (edge > 1 && 8 * edge * frame_.grid.spacing > reach)
+      edge /= 2;
+    return edge;
+  }
+  void list_near(Candidates& to, const Array<Key>& cubes, int64_t n, int32_t edge) {
+    to.cube = b_.template array<Key>(n);
+    b_.for_n("copy", n, CopyItems<Key>{cubes.data(), to.cube.data()}, {double(n) * 16});
+    sort_keys(to.cube, n);
+    to.begin = b_.template array<int64_t>(n + 1);
+    ListNearCubes item{view_, frame_, edge, to.cube.data(), to.begin.data(), nullptr};
+    b_.for_n("count near clusters", n, item, {double(n) * 16});
+    const int64_t all = b_.scan("scan", to.begin.data(), n);
+    to.list = b_.template array<int32_t>(all + 1); // never null
+    item.list = to.list.data();
+    b_.for_n("list near clusters", n, item, {double(n) * 16 + double(all) * 4});
+    to.near = {view_, frame_, edge, to.cube.data(), to.begin.data(), to.list.data(), n};
+  }
+  void sort_keys(const Array<Key>& key, int64_t n) {
+    const Array<uint32_t> none = b_.filled(n, uint32_t{0});
+    b_.sort_pairs("sort keys", key.data(), none.data(), n);
+  }
+  Candidates candidates(SlabRange wide) {
     std::vector<Key> nodes;
     for (const Key k : nodes_)
       if (const int32_t x = BlockFrame::block(k).x; x < wide.end && x + node_edge > wide.begin)
         nodes.push_back(k);
-    n = static_cast<int64_t>(nodes.size());
-    Array<Key> cubes = b_.upload(nodes.data(), n);
-    for (int32_t edge = node_edge / 2; edge >= 1; edge /= 2)
-      cubes = halve(cubes, n, edge, wide, n);
-    const Array<uint32_t> none = b_.filled(n, uint32_t{0});
-    b_.sort_pairs("sort keys", cubes.data(), none.data(), n);
-    return cubes;
+    Candidates found;
+    found.n = static_cast<int64_t>(nodes.size());
+    found.block = b_.upload(nodes.data(), found.n);
+    for (int32_t edge = node_edge;; edge /= 2) {
+      if (edge == list_edge())
+        list_near(found, found.block, found.n, edge);
+      if (edge == 1)
+        break;
+      found.block = halve(found.block, found.n, edge / 2, wide, found.n);
+    }
+    sort_keys(found.block, found.n);
+    return found;
   }
 
-  Evaluated evaluate(const Array<Key>& key, int64_t n, SlabRange slab, int64_t& analyzed,
+  Evaluated evaluate(const NearClusters& near, const Array<Key>& key, int64_t n, SlabRange slab, int64_t& analyzed,
                      density::SearchCounts& counts) {
-    const BlockClusters in{view_, frame_, field_.plain_above && budget_.block > 0, budget_.block, key.data()};
+    const BlockClusters in{near, field_.plain_above && budget_.block > 0, budget_.block, key.data()};
     Array<int64_t> begin = b_.template array<int64_t>(n + 1);
     Array<uint32_t> order = b_.template array<uint32_t>(n);
     int64_t clusters = 0, atoms = 0;
@@ -163,13 +216,13 @@ private:
     {
       const Array<uint32_t> work = b_.template array<uint32_t>(n);
       const Array<float> least = b_.template array<float>(n);
-      b_.for_n("choose clusters", n, ChooseLeast{in, least.data()}, {double(n) * 12});
+      b_.for_teams("choose clusters", n, ChooseLeast{in, least.data()}, {double(n) * 12});
       ListClusters listed{in, least.data(), begin.data(), work.data(), nullptr};
-      b_.for_n("count clusters", n, listed, {double(n) * 24});
+      b_.for_teams("count clusters", n, listed, {double(n) * 24});
       clusters = b_.scan("scan", begin.data(), n);
       list = b_.template array<int32_t>(clusters + 1); // never null
       listed.list = list.data();
-      b_.for_n("list clusters", n, listed, {double(n) * 20 + double(clusters) * 4});
+      b_.for_teams("list clusters", n, listed, {double(n) * 20 + double(clusters) * 4});
       const Array<uint32_t> sort_key = b_.template array<uint32_t>(n);
       b_.for_n("estimate work", n, SortKeys{work.data(), sort_key.data(), order.data()}, {double(n) * 12});
       b_.sort_pairs("sort by work", sort_key.data(), order.data(), n);
@@ -202,9 +255,11 @@ private:
 
   SlabResult run_slab(SlabRange slab) {
     const SlabRange wide{slab.begin - 1, slab.end + 1};
-    int64_t analyzed = 0, n = 0;
+    int64_t analyzed = 0;
     density::SearchCounts counts;
-    const Array<Key> candidate = candidates(wide, n);
+    const Candidates found = candidates(wide);
+    const int64_t n = found.n;
+    const Array<Key>& candidate = found.block;
     counts.blocks_visited = n;
     Known known;
     std::vector<Evaluated> wave; // known points into them
@@ -214,12 +269,12 @@ private:
       const Work work{double(n) * 9};
       if (single_)
         b_.for_n("bound blocks", n,
-                 BoundBlocks<float>{view_, frame_, o_.band_lower, o_.band_upper, total, !o_.full, candidate.data(),
+                 BoundBlocks<float>{found.near, o_.band_lower, o_.band_upper, total, !o_.full, candidate.data(),
                                     state.data()},
                  work);
       else
         b_.for_n("bound blocks", n,
-                 BoundBlocks<double>{view_, frame_, o_.band_lower, o_.band_upper, total, !o_.full, candidate.data(),
+                 BoundBlocks<double>{found.near, o_.band_lower, o_.band_upper, total, !o_.full, candidate.data(),
                                      state.data()},
                  work);
       const Array<int64_t> open = b_.template array<int64_t>(n + 1), at = b_.template array<int64_t>(n + 1);
@@ -228,7 +283,7 @@ private:
       known.n = b_.scan("scan", at.data(), n);
       const Array<Key> open_key = b_.template array<Key>(opens);
       b_.for_n("compact", n, Compact<Key>{candidate.data(), open.data(), open_key.data()}, {double(n) * 16});
-      wave.push_back(evaluate(open_key, opens, slab, analyzed, counts));
+      wave.push_back(evaluate(found.near, open_key, opens, slab, analyzed, counts));
       known.key = b_.template array<Key>(known.n);
       known.mask = b_.template array<const uint64_t*>(known.n);
       known.value = b_.template array<const float*>(known.n);
@@ -243,7 +298,7 @@ private:
       const Array<Key> more = blocks_.missing(known, slab, n_more);
       if (n_more == 0)
         break;
-      wave.push_back(evaluate(more, n_more, slab, analyzed, counts));
+      wave.push_back(evaluate(found.near, more, n_more, slab, analyzed, counts));
       known = blocks_.merge(known, more, n_more, wave.back());
     }
     SlabResult result = blocks_.pack(known, slab);

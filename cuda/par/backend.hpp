@@ -6,8 +6,10 @@
 //   Array<T> filled<T>(n, value)
 //   Array<T> upload(pointer, n)
 //   void download(array, n, pointer)   returns when the elements are there
-//   Pending<T> fetch(Array<T>)         starts a download beside the work that follows; get() waits for it
-//   Pending<T> fetch(pointer, n)       of an array that its owner keeps until get()
+//   Pending<T> fetch(pointer, n)       starts a download beside the work that follows; get() waits for it, and
+//                                      until then the array stays
+//   void settle()                      returns when all that was started is over
+//   Pending<T> fetch_settled(…)        of what was there then: by one other thread, beside what follows
 //   for_n(name, n, item, work)         item(i) for i in [0, n), each call independent of the others
 //   for_teams(name, n, item, work)     item(i, team, shared): Team::size threads work on i together
 //   T scan(name, pointer, n)           count[i] → sum of count[0..i), in place; slot n, one more, gets the total
@@ -51,10 +53,19 @@ struct Solo {
   static constexpr int size = 1;
   HD int rank() const { return 0; }
   HD void sync() const {}
-  /// Of what all threads have, to all of them.
+  /// Of what all threads have, to all of them: so the sum.
   template <class T>
   HD T least(T mine) const {
     return mine;
+  }
+  template <class T>
+  HD T sum(T mine) const {
+    return mine;
+  }
+  /// How many threads before this one say yes; all: how many do.
+  HD int before(bool mine, int& all) const {
+    all = mine;
+    return 0;
   }
 };
 

@@ -4,6 +4,7 @@
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -27,6 +28,17 @@ struct Warp {
       mine = other < mine ? other : mine;
     }
     return mine;
+  }
+  template <class T>
+  __device__ T sum(T mine) const {
+    for (int far = 16; far > 0; far /= 2)
+      mine += __shfl_xor_sync(0xFFFFFFFFu, mine, far);
+    return mine;
+  }
+  __device__ int before(bool mine, int& all) const {
+    const unsigned yes = __ballot_sync(0xFFFFFFFFu, mine);
+    all = __popc(yes);
+    return __popc(yes & ((1u << rank()) - 1));
   }
 #endif
 };
@@ -59,7 +71,8 @@ __global__ void __launch_bounds__(threads_a_block) fill(int64_t n, T* to, T valu
 
 } // namespace detail
 
-/// One thread of the host uses it. Kernels run one after the other; copies to the host beside them.
+/// One thread of the host uses it, and one more fetches what is settled. Kernels run one after the other; copies to
+/// the host beside them.
 class DeviceBackend {
 public:
   /// most: bytes of the device's memory that may be taken; 0: nine tenths of what is free. pages: what does not fit
@@ -81,20 +94,21 @@ public:
   template <class T>
   class Pending {
   public:
-    Pending(DeviceBackend& owner, const T* from, int64_t n, Array<T> own)
+    Pending(DeviceBackend& owner, const T* from, int64_t n, bool is_settled)
         : n_(n), done_(detail::make_event(cudaEventDisableTiming)),
           to_(owner.locked_, static_cast<size_t>(n_) * sizeof(T)) {
-      void* const to = to_.data();
       try {
-        check(cudaEventRecord(done_.get(), owner.work_.get()), "an event");
-        check(cudaStreamWaitEvent(owner.copy_.get(), done_.get()), "an event");
-        owner.copy_timed(to, from, static_cast<size_t>(n_) * sizeof(T), owner.copy_.get(), "copies to the host");
+        if (!is_settled) {
+          check(cudaEventRecord(done_.get(), owner.work_.get()), "an event");
+          check(cudaStreamWaitEvent(owner.copy_.get(), done_.get()), "an event");
+        }
+        owner.copy_timed(to_.data(), from, static_cast<size_t>(n_) * sizeof(T), owner.copy_.get(),
+                         "copies to the host");
         check(cudaEventRecord(done_.get(), owner.copy_.get()), "an event");
-      } catch (...) { // both ends stay until the copy is over
+      } catch (...) { // the page-locked memory stays until the copy is over
         cudaStreamSynchronize(owner.copy_.get());
         throw;
       }
-      own_ = std::move(own);
     }
     Pending(Pending&&) noexcept = default;
     Pending& operator=(Pending&&) = delete;
@@ -102,9 +116,8 @@ public:
       if (done_)
         cudaEventSynchronize(done_.get());
     }
-    const T* get() {
+    const T* get() const {
       check(cudaEventSynchronize(done_.get()), "copying to the host");
-      own_ = {};
       return static_cast<const T*>(to_.data());
     }
     int64_t size() const { return n_; }
@@ -113,7 +126,6 @@ public:
     int64_t n_;
     detail::Event done_;
     detail::Locked to_;
-    Array<T> own_;
   };
 
   template <class T>
@@ -141,14 +153,13 @@ public:
     wait();
   }
   template <class T>
-  Pending<T> fetch(Array<T> from) {
-    const T* const data = from.data();
-    const int64_t n = from.size();
-    return Pending<T>(*this, data, n, std::move(from));
-  }
-  template <class T>
   Pending<T> fetch(const T* from, int64_t n) {
-    return Pending<T>(*this, from, n, {});
+    return Pending<T>(*this, from, n, false);
+  }
+  void settle() { wait(); }
+  template <class T>
+  Pending<T> fetch_settled(const T* from, int64_t n) {
+    return Pending<T>(*this, from, n, true);
   }
 
   template <class Item>
@@ -237,6 +248,10 @@ private:
     check(cudaStreamSynchronize(work_.get()), "running a kernel");
   }
 
+  void add(Launch l) { // by whoever fetches, too
+    const std::lock_guard guard(adding_);
+    launches_.push_back(std::move(l));
+  }
   template <class F>
   void timed(const char* name, int64_t items, const Work& work, F&& f) {
     Launch l{name, items, detail::make_event(cudaEventDefault), detail::make_event(cudaEventDefault), work};
@@ -244,7 +259,7 @@ private:
     f();
     check(cudaGetLastError(), name);
     check(cudaEventRecord(l.end.get(), work_.get()), "an event");
-    launches_.push_back(std::move(l));
+    add(std::move(l));
   }
   template <class F>
   void launch(const char* name, int64_t n, const Work& work, F&& f, int items_a_block = detail::threads_a_block) {
@@ -263,7 +278,7 @@ private:
     check(cudaEventRecord(l.begin.get(), stream), "an event");
     check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, stream), name);
     check(cudaEventRecord(l.end.get(), stream), "an event");
-    launches_.push_back(std::move(l));
+    add(std::move(l));
   }
   template <class T>
   void copy_if_other(T* to, const T* from, int64_t n, const char* name) {
@@ -274,6 +289,7 @@ private:
   detail::Stream work_, copy_;
   detail::LockedPool locked_;
   std::optional<DeviceMemory> memory_;
+  std::mutex adding_;
   std::vector<Launch> launches_;
   std::vector<KernelTime> times_;
 };

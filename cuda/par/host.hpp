@@ -23,14 +23,13 @@ public:
   template <class T>
   class Pending {
   public:
-    Pending(const T* from, int64_t n, Array<T> own) : from_(from), n_(n), own_(std::move(own)) {}
-    const T* get() { return from_; }
+    Pending(const T* from, int64_t n) : from_(from), n_(n) {}
+    const T* get() const { return from_; }
     int64_t size() const { return n_; }
 
   private:
     const T* from_;
     int64_t n_;
-    Array<T> own_;
   };
 
   template <class T>
@@ -54,14 +53,13 @@ public:
     timed("copies to the host", 1, {double(n) * sizeof(T)}, [&] { std::copy_n(from.data(), n, to); });
   }
   template <class T>
-  Pending<T> fetch(Array<T> from) {
-    const T* const data = from.data();
-    const int64_t n = from.size();
-    return {data, n, std::move(from)};
-  }
-  template <class T>
   Pending<T> fetch(const T* from, int64_t n) {
-    return {from, n, {}};
+    return {from, n};
+  }
+  void settle() {}
+  template <class T>
+  Pending<T> fetch_settled(const T* from, int64_t n) {
+    return {from, n};
   }
 
   template <class Item>

@@ -14,8 +14,12 @@ namespace molmesh::cuda {
 template <class Backend>
 class RunCopy {
 public:
-  /// threads: of the host, from page-locked memory on. run_bytes: of a run.
-  RunCopy(Backend& b, int threads, int64_t run_bytes) : b_(b), threads_(threads), run_bytes_(run_bytes) {}
+  /// Larger runs take longer to lock than to copy.
+  static constexpr int64_t usual_bytes = int64_t{4} << 20;
+  /// threads: of the host, from page-locked memory on. run_bytes: of a run. is_settled: what is sent is, and this
+  /// is another thread than the Backend's.
+  RunCopy(Backend& b, int threads, int64_t run_bytes = usual_bytes, bool is_settled = false)
+      : b_(b), threads_(threads), run_bytes_(run_bytes), is_settled_(is_settled) {}
 
   /// to[0, n) will be from[0, n). make(begin, end) starts what writes from[begin, end) last. Both arrays stay until
   /// finish().
@@ -25,8 +29,9 @@ public:
     for (int64_t begin = 0; begin < n; begin += run) {
       const int64_t end = std::min(n, begin + run);
       make(begin, end);
-      Pending next = b_.fetch(reinterpret_cast<const std::byte*>(from + begin),
-                              (end - begin) * static_cast<int64_t>(sizeof(T)));
+      const auto* const bytes = reinterpret_cast<const std::byte*>(from + begin);
+      const int64_t n_bytes = (end - begin) * static_cast<int64_t>(sizeof(T));
+      Pending next = is_settled_ ? b_.fetch_settled(bytes, n_bytes) : b_.fetch(bytes, n_bytes);
       finish(); // the run before, while this one is on its way
       last_ = std::make_unique<Pending>(std::move(next));
       to_ = reinterpret_cast<std::byte*>(to + begin);
@@ -49,6 +54,7 @@ private:
   Backend& b_;
   int threads_;
   int64_t run_bytes_;
+  bool is_settled_;
   std::unique_ptr<Pending> last_;
   std::byte* to_ = nullptr;
 };

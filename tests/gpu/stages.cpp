@@ -21,7 +21,10 @@ namespace {
 class Watch {
 public:
   explicit Watch(Timed& t) : t_(t) {}
-  ~Watch() { t_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+  ~Watch() { t_.seconds = seconds(); }
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
 
 private:
   Timed& t_;
@@ -60,7 +63,8 @@ TetMesh run_contour(const BlockGrid& grid, const contour::Options& o, const How&
   contour::Options options = o;
   options.threads = how.threads;
   const Watch watch(time);
-  const auto phase = [](const std::string&) {};
+  time.phases.clear();
+  const auto phase = [&](const std::string& name) { time.phases.push_back({name, watch.seconds()}); };
   if (how.by == By::host)
     return contour::contour(grid, options, summary, phase);
   if (how.by == By::device)
@@ -80,13 +84,19 @@ TetMesh run_improve(const TetMesh& mesh, const BlockGrid& grid, const How& how, 
   improve::Options options;
   options.threads = how.threads;
   const Watch watch(time);
+  time.phases.clear();
+  const auto phase = [&](const std::string& name) { time.phases.push_back({name, watch.seconds()}); };
   if (how.by == By::device) {
-    cuda::improve_mesh(out, &grid, options, {}, time.device, how.most_bytes);
+    cuda::improve_mesh(out, &grid, options, phase, time.device, how.most_bytes);
+    return out;
+  }
+  if (!how.flow) {
+    improve::improve(out, &grid, options, phase);
     return out;
   }
   cuda::HostBackend backend = host_backend(how, all);
   std::unique_ptr<cuda::Flow<cuda::HostBackend>> flow;
-  improve::improve(out, &grid, options, {},
+  improve::improve(out, &grid, options, phase,
                    [&](improve::DynamicMesh& m, const improve::Isosurface* surface, const improve::Pass& pass) {
                      if (!flow)
                        flow = std::make_unique<cuda::Flow<cuda::HostBackend>>(backend, surface, how.threads);

@@ -19,11 +19,17 @@ struct How {
   By by = By::host;
   int threads = 1;        ///< of the host
   int64_t most_bytes = 0; ///< of the device's memory; 0: all
+  bool flow = true;       ///< false: improvement as omp does it
 };
 
 /// One run of a stage.
 struct Timed {
   double seconds = 0; ///< wall clock, of the whole stage
+  struct Phase {
+    std::string name;
+    double begin; ///< seconds
+  };
+  std::vector<Phase> phases; ///< of the mesh and its improvement
   cuda::DeviceReport device;
 };
 

@@ -47,8 +47,15 @@ Times time_stage(const char* stage, const char* mode, int repeats, const std::op
     floor += is_copy || !peaks ? 0 : floor_of(t.device.kernels[k], *peaks);
   }
   std::printf("%-8s %-5s %10.4f s", stage, mode, times.wall);
+  const auto tell_phases = [&] {
+    for (size_t i = 0; i < t.phases.size(); ++i)
+      std::printf("%s%s %.4f", i == 0 ? "         phases: " : ", ", t.phases[i].name.c_str(),
+                  (i + 1 < t.phases.size() ? t.phases[i + 1].begin : t.seconds) - t.phases[i].begin);
+    std::printf(t.phases.empty() ? "" : "\n");
+  };
   if (t.device.kernels.empty()) {
     std::printf("\n");
+    tell_phases();
     return times;
   }
   std::printf("   kernels %.4f s, ", times.kernels);
@@ -56,6 +63,7 @@ Times time_stage(const char* stage, const char* mode, int repeats, const std::op
     std::printf("%.1f times their floor, ", times.kernels / floor);
   std::printf("copies %.4f s, at most %.1f MiB on the device, %zu runs\n", times.copies,
               double(t.device.most_used.own) / 1048576, wall.size());
+  tell_phases();
   if (!t.device.note.empty())
     std::printf("         %s\n", t.device.note.c_str());
   for (size_t k = 0; k < t.device.kernels.size(); ++k) {
@@ -133,8 +141,12 @@ void time_all(const Hierarchy& h, const density::Options& o, Stage last, int rep
   };
   time_mesh(0);
   time_mesh(contour::default_adapt(grid.frame.spacing));
-  if (last == Stage::improve && !mesh.tet.empty())
-    tell_sweeps(time_stage("improve", name, repeats, peaks, [&](Timed& t) { run_improve(mesh, grid, device, t); }));
+  if (last != Stage::improve || mesh.tet.empty())
+    return;
+  tell_sweeps(time_stage("improve", name, repeats, peaks, [&](Timed& t) { run_improve(mesh, grid, device, t); }));
+  How alone = reference;
+  alone.flow = false;
+  time_stage("improve", "omp", repeats, peaks, [&](Timed& t) { run_improve(mesh, grid, alone, t); });
 }
 
 } // namespace molmesh::gpu

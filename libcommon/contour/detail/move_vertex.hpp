@@ -54,10 +54,19 @@ private:
   }
 };
 
+/// NearSurface where a star's team asks for many places at once.
+template <class Surface, class Star>
+struct NearSurfaceByTeam {
+  const NearSurface<Surface>& one;
+  const Star& star;
+  HD bool operator()(Vec3d& y) const { return one(y); }
+  HD int all(Vec3d* y, int n) const { return one.on_surface ? star.constrain_all(one, y, n) : n; }
+};
+
 /// most_distance: of a surface vertex from the surface, in its spacings, if it was nearer. Star, of candidate c:
 /// spokes(), what improve::pattern_search asks; length(), the mean of its edges at the vertex; and take(x, worst),
 /// which puts the vertex there unless an element is no better than `worst`, in double precision, or not positive by
-/// the exact predicate.
+/// the exact predicate; it may have constrain_all(constrain, y, n), as pattern_search's constrain.all.
 template <class Surface, class Star>
 HD bool move_vertex(const RelaxView& r, const Surface& surface, double most_distance, int32_t c, Star& star) {
   const int32_t vertex = r.vertex[c];
@@ -79,8 +88,15 @@ HD bool move_vertex(const RelaxView& r, const Surface& surface, double most_dist
   const NearSurface<Surface> constrain{surface, r.bound, vertex, on_surface, most};
   const auto accept = [](const Vec3d&) { return true; };
   float best = r.worst[c];
-  return improve::pattern_search(star.spokes(), x, best, r.goal, star.length(), axis, axes, constrain, accept) &&
-         star.take(x, r.worst[c]);
+  const auto search = [&](const auto& bound) {
+    return improve::pattern_search(star.spokes(), x, best, r.goal, star.length(), axis, axes, bound, accept);
+  };
+  bool moves = false;
+  if constexpr (requires { star.constrain_all(constrain, &x, 1); })
+    moves = search(NearSurfaceByTeam<Surface, Star>{constrain, star});
+  else
+    moves = search(constrain);
+  return moves && star.take(x, r.worst[c]);
 }
 
 } // namespace molmesh::contour::detail

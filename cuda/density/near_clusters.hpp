@@ -1,0 +1,56 @@
+// near_clusters.hpp — the clusters near cubes of a few blocks, found once through the molecule's boxes: a block's
+// own are among its cube's, which a team looks through side by side.
+#pragma once
+#include "cuda/density/block_key.hpp"
+#include "cuda/density/molecule_tree.hpp"
+
+namespace molmesh::cuda {
+
+/// Clusters nearer to a box than their cutoff, as plain views.
+struct NearClusters {
+  FieldView f;
+  BlockFrame frame;
+  int32_t edge;         ///< of a cube, in blocks: a power of two
+  const Key* cube;      ///< [cubes] ascending
+  const int64_t* begin; ///< [cubes + 1]
+  const int32_t* list;  ///< ascending in each cube
+  int64_t cubes;
+
+  struct Range {
+    const int32_t* begin;
+    int32_t n;
+  };
+  /// Of the block's cube: no other is near the block.
+  HD Range around(Vec3i block) const {
+    const int32_t below = edge - 1;
+    const int64_t i =
+        find_key(cube, cubes, BlockFrame::key({block.x & ~below, block.y & ~below, block.z & ~below}));
+    return i < 0 ? Range{nullptr, 0} : Range{list + begin[i], static_cast<int32_t>(begin[i + 1] - begin[i])};
+  }
+  HD bool is_near(const Box& box, int32_t c) const { return density::distance2(box, f.box[c]) < f.cutoff2[c]; }
+};
+
+/// Without a list: begin[i], how many clusters are near cube i; with one: which, from list[begin[i]] on.
+struct ListNearCubes {
+  FieldView f;
+  BlockFrame frame;
+  int32_t edge;
+  const Key* cube;
+  int64_t* begin;
+  int32_t* list;
+
+  HD void operator()(int64_t i) const {
+    int32_t* const to = list ? list + begin[i] : nullptr;
+    int64_t n = 0;
+    for_near_clusters(f, frame.box(BlockFrame::block(cube[i]), edge), [&](int32_t c) {
+      if (to)
+        to[n] = c;
+      ++n;
+      return true;
+    });
+    if (!to)
+      begin[i] = n;
+  }
+};
+
+} // namespace molmesh::cuda
