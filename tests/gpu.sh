@@ -1,22 +1,22 @@
 #!/usr/bin/env bash
 # gpu.sh — the cuda mode on a real GPU: parity of all stages, memory errors, times. Needs an NVIDIA GPU and the CUDA
 # toolkit, nothing else; or a folder made before, elsewhere.
-#   tests/gpu.sh [-d DIR] [-b BIN] [-s SPACING | -g POINTS] [-m MODEL] [-n REPEATS] [-l STAGE] [-t THREADS] [-T] [-H]
-#     [FILE…]
+#   tests/gpu.sh [-d DIR] [-b BIN] [-s SPACING | -g POINTS] [-m MODEL] [-n REPEATS] [-l STAGE] [-t THREADS] [-T] [-P]
+#     [-H] [FILE…]
 #   tests/gpu.sh -c DIR [-b BIN] [-m MODEL] [FILE…]
 #   tests/gpu.sh -L
 # FILE: a .hier, a .pdb, or any structure (MODEL of it: first, all, a number) where there are programs. BIN: a folder with
 # pdb2hier, hier2density, density2tet and tetsmooth: then the table of the three modes of the whole programs too.
 # -c: what can be carried, and no more: the driver, the programs and the shared libraries that they need, the
 # hierarchies of the FILEs. -d: nothing is built; without FILEs those of the folder. -l: the last stage: density, mesh
-# or improve. -t: threads of the host that the device is compared with. -T: times only, no parity. -H: no GPU, the
-# device's algorithms on the host's threads. -L: lists what is compiled. Exit status: 0 all held, 1 something did not,
+# or improve. -t: threads of the host that the device is compared with. -T: times only, no parity. -P: those of the
+# whole programs only. -H: no GPU, the device's algorithms on the host's threads. -L: lists what is compiled. Exit status: 0 all held, 1 something did not,
 # 6 no GPU.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
-compile='' dir='' bin='' spacing=1 points='' model=first repeats=5 host='' last=improve threads=$(nproc) parity=yes
-while getopts c:d:b:s:g:m:n:l:t:THL o; do
+compile='' dir='' bin='' spacing=1 points='' model=first repeats=5 host='' last=improve threads=$(nproc) parity=yes programs=''
+while getopts c:d:b:s:g:m:n:l:t:TPHL o; do
   case $o in
   c) compile=$OPTARG ;;
   d) dir=$OPTARG ;;
@@ -28,6 +28,7 @@ while getopts c:d:b:s:g:m:n:l:t:THL o; do
   l) last=$OPTARG ;;
   t) threads=$OPTARG ;;
   T) parity='' ;;
+  P) parity='' programs=only ;;
   H) host=host ;;
   L) list=yes ;;
   *) exit 2 ;;
@@ -224,8 +225,8 @@ for file in "$@"; do
   at="$(basename "$file"), $grid_name"
   [ -z "$parity" ] || echo "== $at: parity"
   [ -z "$parity" ] || held "$driver" $host parity "$hier" "$grid" "$last"
-  echo "== $at: times, medians of $repeats"
-  held "$driver" $host time "$hier" "$grid" "$last" "$repeats" "$threads"
+  [ -n "$programs" ] || echo "== $at: times, medians of $repeats"
+  [ -n "$programs" ] || held "$driver" $host time "$hier" "$grid" "$last" "$repeats" "$threads"
   [ -n "$bin" ] || continue
   echo "== $at: whole programs, medians of $repeats"
   rm -f "$work"/[123].*

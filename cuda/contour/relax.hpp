@@ -3,6 +3,7 @@
 #pragma once
 #include "contour/detail/move_nearer.hpp"
 #include "contour/detail/relax_passes.hpp"
+#include "cuda/contour/quick_division.hpp"
 #include "cuda/improve/device_isosurface.hpp"
 #include "geom/predicates.hpp"
 #include "improve/spoke_quality.hpp"
@@ -83,10 +84,17 @@ public:
       float least[at_once];
       for (float& l : least)
         l = 3e38f;
+      const auto at = [&](int i) { return place[first + i < end ? first + i : end - 1]; };
       for_each_spoke([&](int32_t, bool asked, const improve::Spoke<float>& s) {
+        QuickDivision by; // no branches: the places are in flight together
+        float here[at_once];
+        for (int i = 0; i < at_once; ++i)
+          here[i] = quality(s, local(at(i), asked), by);
+        for (int i = 0; i < at_once && !by.holds(); ++i)
+          here[i] = quality(s, local(at(i), asked));
         for (int i = 0; i < at_once; ++i) {
-          const float of_element = evaluate(s, asked, place[first + i < end ? first + i : end - 1]);
-          least[i] = of_element < least[i] ? of_element : least[i];
+          const float weighed = (asked ? 1 : contour::detail::unasked_weight) * here[i];
+          least[i] = weighed < least[i] ? weighed : least[i];
         }
       });
       for (int i = 0; i < at_once; ++i)
@@ -183,9 +191,10 @@ private:
     const Vec3d u = (x - origin_) * inverse_[asked];
     return {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z)};
   }
-  HD float quality(const improve::Spoke<float>& s, const Vec3f& y) const {
+  template <class By = const improve::Division>
+  HD float quality(const improve::Spoke<float>& s, const Vec3f& y, By&& by = {}) const {
     float q;
-    improve::spoke_quality(s, y.x, y.y, y.z, q, static_cast<float>(r_.shape));
+    improve::spoke_quality(s, y.x, y.y, y.z, q, static_cast<float>(r_.shape), by);
     return q;
   }
   /// With the vertex at x.

@@ -65,15 +65,17 @@ void Leaves::add(std::span<const density::BandBlocks> runs, float inside_value) 
   for (const density::BandBlocks& run : runs)
     first.push_back(first.back() + run.size());
   Run& leaf = runs_.emplace_back(first.back());
-  constexpr size_t at_once = 8; // nodes of some 20 blocks
-  for_parts((runs.size() + at_once - 1) / at_once, [&](size_t part, par::Arena<char>& arena) {
-    for (size_t r = part * at_once; r < std::min(runs.size(), (part + 1) * at_once); ++r) {
-      Leaf* to = leaf.data() + first[r];
-      for (const density::BandBlock& b : runs[r]) {
-        density::BlockValues room;
-        *to++ = encode({b.corner, b.active.data(), b.above.data(), density::active_values(b, room)}, inside_value,
-                       arena);
-      }
+  constexpr size_t at_once = 128;
+  for_parts((leaf.size() + at_once - 1) / at_once, [&](size_t part, par::Arena<char>& arena) {
+    const size_t begin = part * at_once, end = std::min(leaf.size(), begin + at_once);
+    auto r = static_cast<size_t>(std::upper_bound(first.begin(), first.end(), begin) - first.begin()) - 1;
+    for (size_t n = begin; n < end; ++n) {
+      while (n >= first[r + 1])
+        ++r;
+      const density::BandBlock& b = runs[r][n - first[r]];
+      density::BlockValues room;
+      leaf[n] =
+          encode({b.corner, b.active.data(), b.above.data(), density::active_values(b, room)}, inside_value, arena);
     }
   });
 }

@@ -39,12 +39,24 @@ HD constexpr int spoke_corner(int moving, int i) {
   return (moving == 0 ? 0x3210 : moving == 1 ? 0x2301 : moving == 2 ? 0x1032 : 0x0123) >> (4 * i) & 3;
 }
 
+/// 1 / x and a / x, as spoke_quality asks for them.
+struct Division {
+  template <class V>
+  HD __attribute__((always_inline)) inline void invert(const V& x, V& out) const {
+    out = 1 / x;
+  }
+  template <class V>
+  HD __attribute__((always_inline)) inline void divide(float a, const V& x, V& out) const {
+    out = a / x;
+  }
+};
+
 /// With the vertex at x, y, z; Q weighted as tet_quality has it. V: the wider of S and X, of which either may be
 /// float: elements in the lanes, or places. A lane's bits are the scalar's. Vectors come and go by reference: what
 /// they look like as arguments depends on the processor.
-template <class S, class X, class V>
+template <class S, class X, class V, class By = const Division>
 HD __attribute__((always_inline)) inline void spoke_quality(const Spoke<S>& s, const X& x, const X& y, const X& z,
-                                                            V& q, float q_weight) {
+                                                            V& q, float q_weight, By&& division = {}) {
   const V ax = s.ax - x, ay = s.ay - y, az = s.az - z;
   const V bx = s.bx - x, by = s.by - y, bz = s.bz - z;
   const V cx = s.cx - x, cy = s.cy - y, cz = s.cz - z;
@@ -53,15 +65,18 @@ HD __attribute__((always_inline)) inline void spoke_quality(const Spoke<S>& s, c
   const V vx = ay * cz - az * cy, vy = az * cx - ax * cz, vz = ax * cy - ay * cx;
   const V tx = by * az - bz * ay, ty = bz * ax - bx * az, tz = bx * ay - by * ax;
   const V det = -(ax * ux + ay * uy + az * uz);
-  const V ru = 1 / (ux * ux + uy * uy + uz * uz), rv = 1 / (vx * vx + vy * vy + vz * vz);
-  const V rt = 1 / (tx * tx + ty * ty + tz * tz);
+  V ru, rv, rt, shape;
+  division.invert(ux * ux + uy * uy + uz * uz, ru);
+  division.invert(vx * vx + vy * vy + vz * vz, rv);
+  division.invert(tx * tx + ty * ty + tz * tz, rt);
   constexpr float obtuse = static_cast<float>(obtuse_weight * obtuse_weight);
   const V one = V{} + 1, w = V{} + obtuse;
   const V s0 = s.bc * s.r * ru * (s.nx * ux + s.ny * uy + s.nz * uz > 0 ? w : one);
   const V s1 = s.ca * s.r * rv * (s.nx * vx + s.ny * vy + s.nz * vz > 0 ? w : one);
   const V s2 = s.ab * s.r * rt * (s.nx * tx + s.ny * ty + s.nz * tz > 0 ? w : one);
   const V aa = ax * ax + ay * ay + az * az, bb = bx * bx + by * by + bz * bz, cc = cx * cx + cy * cy + cz * cz;
-  const V sum = aa + bb + cc + s.ab + s.bc + s.ca, shape = q_weight / (sum * sum * sum);
+  const V sum = aa + bb + cc + s.ab + s.bc + s.ca;
+  division.divide(q_weight, sum * sum * sum, shape);
   const V s3 = cc * ru * rv * (ux * vx + uy * vy + uz * vz > 0 ? w : one);
   const V s4 = bb * ru * rt * (ux * tx + uy * ty + uz * tz > 0 ? w : one);
   const V s5 = aa * rv * rt * (vx * tx + vy * ty + vz * tz > 0 ? w : one);
