@@ -53,7 +53,7 @@ struct Solo {
   static constexpr int size = 1;
   HD int rank() const { return 0; }
   HD void sync() const {}
-  /// Of what all threads have, to all of them: so the sum.
+  /// Of what all threads have, to all of them: the least, and the sum.
   template <class T>
   HD T least(T mine) const {
     return mine;

@@ -157,8 +157,44 @@ TEST_CASE("device density: slabs, threads and the full search change nothing") {
     CHECK(many.grid.info.analyzed_points >= one.grid.info.analyzed_points);
   }
   check_equal(on_backend(h, o, 3).grid, one.grid);
+  for (const double spacing : {0.25, 0.9}) { // clusters are listed for larger cubes of blocks, and for blocks
+    density::Options other = o;
+    other.spacing = spacing;
+    check_same(on_backend(h, other).grid, on_host(h, other));
+  }
   o.full_search = true;
   check_equal(on_backend(h, o).grid, one.grid);
+}
+
+TEST_CASE("device density: slabs are given away as they are found, each block once") {
+  Hierarchy h = test::random_chains(3, 60, 8, {0.4, 1}, 3);
+  for (Atom& a : h.atom)
+    a.center.x *= 4;
+  density::Options o;
+  o.spacing = 0.5;
+  const Run kept = on_backend(h, o);
+  std::vector<Vec3i> corner;
+  int64_t wrong = 0, takes = 0;
+  o.take = [&](const FieldInfo& info, std::span<const density::BandBlocks> runs) {
+    ++takes;
+    wrong += info.inside_value != kept.grid.info.inside_value; // on another thread
+    for (const density::BandBlocks& run : runs)
+      for (const density::BandBlock& b : run) {
+        const size_t n = corner.size();
+        corner.push_back(b.corner);
+        density::BlockValues room;
+        const float* value = density::active_values(b, room);
+        for (int s = 0; s < 512; ++s)
+          if (b.active[size_t(s >> 6)] >> (s & 63) & 1)
+            wrong += n >= kept.grid.corner.size() || *value++ != kept.grid.value[512 * n + size_t(s)];
+      }
+  };
+  const Run given_away = on_backend(h, o, 2, kept.most_used / 2);
+  CHECK(given_away.slabs > 1);
+  CHECK(takes > 1);
+  CHECK(given_away.grid.corner.empty());
+  CHECK(corner == kept.grid.corner);
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("device density: a budget that no slab fits in is an error in one line") {
