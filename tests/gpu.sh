@@ -10,8 +10,8 @@
 # -c: what can be carried, and no more: the driver, the programs and the shared libraries that they need, the
 # hierarchies of the FILEs. -d: nothing is built; without FILEs those of the folder. -l: the last stage: density, mesh
 # or improve. -t: threads of the host that the device is compared with. -T: times only, no parity. -P: those of the
-# whole programs only. -H: no GPU, the device's algorithms on the host's threads. -L: lists what is compiled. Exit status: 0 all held, 1 something did not,
-# 6 no GPU.
+# whole programs only. -H: no GPU, the device's algorithms on the host's threads. -L: lists what is compiled. Exit
+# status: 0 all held, 1 something did not, 6 no GPU.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
@@ -225,8 +225,10 @@ for file in "$@"; do
   at="$(basename "$file"), $grid_name"
   [ -z "$parity" ] || echo "== $at: parity"
   [ -z "$parity" ] || held "$driver" $host parity "$hier" "$grid" "$last"
-  [ -n "$programs" ] || echo "== $at: times, medians of $repeats"
-  [ -n "$programs" ] || held "$driver" $host time "$hier" "$grid" "$last" "$repeats" "$threads"
+  if [ -z "$programs" ]; then
+    echo "== $at: times, medians of $repeats"
+    held "$driver" $host time "$hier" "$grid" "$last" "$repeats" "$threads"
+  fi
   [ -n "$bin" ] || continue
   echo "== $at: whole programs, medians of $repeats"
   rm -f "$work"/[123].*

@@ -3,6 +3,7 @@
 #pragma once
 #include "cuda/density/log_sum.hpp"
 #include "cuda/density/near_clusters.hpp"
+#include "cuda/par/backend.hpp"
 
 namespace molmesh::cuda {
 
@@ -36,11 +37,9 @@ struct BoundBlocks {
     const Vec3d m = 0.5 * (box.lo + box.hi), half = 0.5 * (box.hi - box.lo);
     OpenLevels<LogSum<Real, false>> largest(f);
     OpenLevels<LogSum<Real, true>> middle(f);
-    const NearClusters::Range all = near.around(block);
-    for (int32_t k = 0; k < all.n; ++k) {
-      const int32_t c = all.begin[k];
-      if (!near.is_near(box, c))
-        continue;
+    near.for_each(block, box, Solo{}, [&](int32_t c, bool is_near) {
+      if (!is_near)
+        return;
       LogSum<Real, false>& high = largest.enter(f.group[c]);
       LogSum<Real, true>& here = middle.enter(f.group[c]);
       for (int64_t a = f.begin[c]; a < f.begin[c + 1]; ++a) {
@@ -52,7 +51,7 @@ struct BoundBlocks {
         here.add(f.peak[a] - f.decay * norm2(to),
                  Vec3<Real>{Real(2 * f.decay * to.x), Real(2 * f.decay * to.y), Real(2 * f.decay * to.z)});
       }
-    }
+    });
     constexpr double rounding = 1e-3; // more than single precision can do
     const double slack = rounding * (f.steepest > 1 ? f.steepest : 1);
     if ((1 + slack) * std::exp(largest.finish().ln()) + 2 * total < lower) {

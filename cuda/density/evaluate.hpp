@@ -36,19 +36,16 @@ struct BlockClusters {
     return k < thresholds ? share[k] * float(budget) : -1;
   }
   struct NoneShared {};
-  /// see(c, whether c is near, its effect) for the clusters round block i, a cluster for each thread of the team,
-  /// all of them as often; a thread without one gets -1, which is not near. Effects are asked for where `weigh`.
+  /// see(c, whether c is near, its effect) round block i, as NearClusters::for_each has it. Effects are asked for
+  /// where `weigh`.
   template <class Team, class See>
   HD void for_each(int64_t i, Team team, bool weigh, See&& see) const {
     const Vec3i block = BlockFrame::block(key[i]);
     const Box box = near.frame.box(block, 1);
     const Vec3d middle = 0.5 * (box.lo + box.hi), half = 0.5 * (box.hi - box.lo);
-    const NearClusters::Range all = near.around(block);
-    for (int32_t first = 0; first < all.n; first += Team::size) {
-      const int32_t k = first + team.rank(), c = k < all.n ? all.begin[k] : -1;
-      const bool is_near = c >= 0 && near.is_near(box, c);
+    near.for_each(block, box, team, [&](int32_t c, bool is_near) {
       see(c, is_near, is_near && weigh ? effect(c, middle, half) : 0);
-    }
+    });
   }
 };
 

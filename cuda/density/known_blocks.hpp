@@ -18,6 +18,12 @@ struct SlabRange {
   int32_t begin, end;
 };
 
+template <class Backend>
+void sort_keys(Backend& b, Key* key, int64_t n) {
+  const auto none = b.filled(n, uint32_t{0});
+  b.sort_pairs("sort keys", key, none.data(), n);
+}
+
 /// Values of blocks, 512 each, and their bits below and above the band, 16 words each.
 template <class Backend>
 struct Evaluated {
@@ -70,8 +76,7 @@ public:
     item.out = found.data();
     if (all > 0)
       b_.for_n("list missing neighbours", known.n, item, {double(known.n) * (128 + 24)});
-    const Array<uint32_t> none = b_.filled(all, uint32_t{0});
-    b_.sort_pairs("sort keys", found.data(), none.data(), all);
+    sort_keys(b_, found.data(), all);
     const Array<int64_t> first = b_.template array<int64_t>(all + 1);
     b_.for_n("first of equal", all, FirstOfEqual{found.data(), first.data()}, {double(all) * 16});
     n = b_.scan("scan", first.data(), all);

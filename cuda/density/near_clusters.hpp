@@ -16,18 +16,21 @@ struct NearClusters {
   const int32_t* list;  ///< ascending in each cube
   int64_t cubes;
 
-  struct Range {
-    const int32_t* begin;
-    int32_t n;
-  };
-  /// Of the block's cube: no other is near the block.
-  HD Range around(Vec3i block) const {
+  /// see(c, whether c is near) for the clusters of the block's cube, of which no other is near the block: a cluster
+  /// for each thread of the team, all of them as often; a thread without one gets -1, which is not near.
+  template <class Team, class See>
+  HD void for_each(Vec3i block, const Box& box, Team team, See&& see) const {
     const int32_t below = edge - 1;
     const int64_t i =
         find_key(cube, cubes, BlockFrame::key({block.x & ~below, block.y & ~below, block.z & ~below}));
-    return i < 0 ? Range{nullptr, 0} : Range{list + begin[i], static_cast<int32_t>(begin[i + 1] - begin[i])};
+    if (i < 0)
+      return;
+    for (int64_t first = begin[i]; first < begin[i + 1]; first += Team::size) {
+      const int64_t k = first + team.rank();
+      const int32_t c = k < begin[i + 1] ? list[k] : -1;
+      see(c, c >= 0 && density::distance2(box, f.box[c]) < f.cutoff2[c]);
+    }
   }
-  HD bool is_near(const Box& box, int32_t c) const { return density::distance2(box, f.box[c]) < f.cutoff2[c]; }
 };
 
 /// Without a list: begin[i], how many clusters are near cube i; with one: which, from list[begin[i]] on.

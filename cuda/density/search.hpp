@@ -173,7 +173,7 @@ private:
   void list_near(Candidates& to, const Array<Key>& cubes, int64_t n, int32_t edge) {
     to.cube = b_.template array<Key>(n);
     b_.for_n("copy", n, CopyItems<Key>{cubes.data(), to.cube.data()}, {double(n) * 16});
-    sort_keys(to.cube, n);
+    sort_keys(b_, to.cube.data(), n);
     to.begin = b_.template array<int64_t>(n + 1);
     ListNearCubes item{view_, frame_, edge, to.cube.data(), to.begin.data(), nullptr};
     b_.for_n("count near clusters", n, item, {double(n) * 16});
@@ -182,10 +182,6 @@ private:
     item.list = to.list.data();
     b_.for_n("list near clusters", n, item, {double(n) * 16 + double(all) * 4});
     to.near = {view_, frame_, edge, to.cube.data(), to.begin.data(), to.list.data(), n};
-  }
-  void sort_keys(const Array<Key>& key, int64_t n) {
-    const Array<uint32_t> none = b_.filled(n, uint32_t{0});
-    b_.sort_pairs("sort keys", key.data(), none.data(), n);
   }
   Candidates candidates(SlabRange wide) {
     std::vector<Key> nodes;
@@ -202,7 +198,7 @@ private:
         break;
       found.block = halve(found.block, found.n, edge / 2, wide, found.n);
     }
-    sort_keys(found.block, found.n);
+    sort_keys(b_, found.block.data(), found.n);
     return found;
   }
 

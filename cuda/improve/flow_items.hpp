@@ -70,8 +70,8 @@ struct FlowMesh {
   }
 };
 
-/// What a point must keep to: every element of its star above `worst`; their deficit and the misfit of its surface
-/// triangles no larger than they were.
+/// What a point must keep to: every element of its star above `worst`, which is what it was; their deficit and the
+/// misfit of its surface triangles no larger.
 struct Limits {
   float worst, lack;
   double misfit;
@@ -146,8 +146,7 @@ HD inline float worst_if_kept(const FlowMesh& m, int64_t v, const Where& at, con
 
 /// Point active[n] looks for a place where its worst element is better, all others staying: to[v], moving[v] = 1.
 /// First towards the mean of its neighbours, weighted by the volumes between (the flow), then along the ascent of
-/// its worst element. Only a place where the whole star reaches the goal will do, and has to stay so when others
-/// go too: what is moved and still bad is work that the host's passes begin anew.
+/// its worst element.
 struct ProposeMove {
   FlowMesh m;
   const Vec3d* point;
@@ -199,7 +198,9 @@ struct ProposeMove {
             improve::misfit(m.surface, m.guard, m.most_tilt, point[s.v[0]], point[s.v[1]], point[s.v[2]]);
         l.misfit = f > l.misfit ? f : l.misfit;
       }
-    const float at_goal = (1 - 1e-6f) * m.goal; // more than this
+    limits[n] = l;
+    moving[v] = 0;
+    to[v] = from;
     Vec3d best = from;
     float best_q = l.worst + 1e-9f + 5e-3f * l.worst; // less is not worth a move
     bool found = false;
@@ -222,9 +223,7 @@ struct ProposeMove {
       if (attempt(from + step * length * up))
         break;
     to[v] = best;
-    moving[v] = found && best_q > at_goal;
-    limits[n] = l;
-    limits[n].worst = at_goal;
+    moving[v] = found;
   }
 
 private:

@@ -9,7 +9,7 @@
 //   Pending<T> fetch(pointer, n)       starts a download beside the work that follows; get() waits for it, and
 //                                      until then the array stays
 //   void settle()                      returns when all that was started is over
-//   Pending<T> fetch_settled(…)        of what was there then: by one other thread, beside what follows
+//   Pending<T> fetch(pointer, n, true) of what was there then: by one other thread, beside what follows
 //   for_n(name, n, item, work)         item(i) for i in [0, n), each call independent of the others
 //   for_teams(name, n, item, work)     item(i, team, shared): Team::size threads work on i together
 //   T scan(name, pointer, n)           count[i] → sum of count[0..i), in place; slot n, one more, gets the total

@@ -153,14 +153,10 @@ public:
     wait();
   }
   template <class T>
-  Pending<T> fetch(const T* from, int64_t n) {
-    return Pending<T>(*this, from, n, false);
+  Pending<T> fetch(const T* from, int64_t n, bool is_settled = false) {
+    return Pending<T>(*this, from, n, is_settled);
   }
   void settle() { wait(); }
-  template <class T>
-  Pending<T> fetch_settled(const T* from, int64_t n) {
-    return Pending<T>(*this, from, n, true);
-  }
 
   template <class Item>
   void for_n(const char* name, int64_t n, const Item& item, const Work& work = {}) {

@@ -53,14 +53,10 @@ public:
     timed("copies to the host", 1, {double(n) * sizeof(T)}, [&] { std::copy_n(from.data(), n, to); });
   }
   template <class T>
-  Pending<T> fetch(const T* from, int64_t n) {
+  Pending<T> fetch(const T* from, int64_t n, bool = false) {
     return {from, n};
   }
   void settle() {}
-  template <class T>
-  Pending<T> fetch_settled(const T* from, int64_t n) {
-    return {from, n};
-  }
 
   template <class Item>
   void for_n(const char* name, int64_t n, const Item& item, const Work& work = {}) {

@@ -29,9 +29,8 @@ public:
     for (int64_t begin = 0; begin < n; begin += run) {
       const int64_t end = std::min(n, begin + run);
       make(begin, end);
-      const auto* const bytes = reinterpret_cast<const std::byte*>(from + begin);
-      const int64_t n_bytes = (end - begin) * static_cast<int64_t>(sizeof(T));
-      Pending next = is_settled_ ? b_.fetch_settled(bytes, n_bytes) : b_.fetch(bytes, n_bytes);
+      Pending next = b_.fetch(reinterpret_cast<const std::byte*>(from + begin),
+                              (end - begin) * static_cast<int64_t>(sizeof(T)), is_settled_);
       finish(); // the run before, while this one is on its way
       last_ = std::make_unique<Pending>(std::move(next));
       to_ = reinterpret_cast<std::byte*>(to + begin);

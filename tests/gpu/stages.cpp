@@ -11,6 +11,7 @@
 #include "unit/density/oracle.hpp"
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <random>
@@ -20,13 +21,17 @@ namespace {
 
 class Watch {
 public:
-  explicit Watch(Timed& t) : t_(t) {}
+  explicit Watch(Timed& t) : t_(t) { t_.phases.clear(); }
   ~Watch() { t_.seconds = seconds(); }
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  /// What a stage tells of the phases that begin.
+  std::function<void(const std::string&)> phases() const {
+    return [this](const std::string& name) { t_.phases.push_back({name, seconds()}); };
   }
 
 private:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
   Timed& t_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
@@ -63,8 +68,7 @@ TetMesh run_contour(const BlockGrid& grid, const contour::Options& o, const How&
   contour::Options options = o;
   options.threads = how.threads;
   const Watch watch(time);
-  time.phases.clear();
-  const auto phase = [&](const std::string& name) { time.phases.push_back({name, watch.seconds()}); };
+  const auto phase = watch.phases();
   if (how.by == By::host)
     return contour::contour(grid, options, summary, phase);
   if (how.by == By::device)
@@ -84,8 +88,7 @@ TetMesh run_improve(const TetMesh& mesh, const BlockGrid& grid, const How& how, 
   improve::Options options;
   options.threads = how.threads;
   const Watch watch(time);
-  time.phases.clear();
-  const auto phase = [&](const std::string& name) { time.phases.push_back({name, watch.seconds()}); };
+  const auto phase = watch.phases();
   if (how.by == By::device) {
     cuda::improve_mesh(out, &grid, options, phase, time.device, how.most_bytes);
     return out;

@@ -33,6 +33,14 @@ Run on_backend(const Hierarchy& h, const density::Options& o, int threads = 1,
   return run;
 }
 
+/// Long along x, so that thin slabs are a small part.
+Hierarchy long_chains() {
+  Hierarchy h = test::random_chains(3, 60, 8, {0.4, 1}, 3);
+  for (Atom& a : h.atom)
+    a.center.x *= 4;
+  return h;
+}
+
 BlockGrid on_host(const Hierarchy& h, const density::Options& o) {
   density::Counts counts;
   return density::to_block_grid(density::compute(h, o, counts), 1);
@@ -140,9 +148,7 @@ TEST_CASE("device density: molecules far apart and a hollow ball are all found")
 }
 
 TEST_CASE("device density: slabs, threads and the full search change nothing") {
-  Hierarchy h = test::random_chains(3, 60, 8, {0.4, 1}, 3);
-  for (Atom& a : h.atom) // long, so that thin slabs are a small part
-    a.center.x *= 4;
+  const Hierarchy h = long_chains();
   density::Options o;
   o.spacing = 0.5;
   const Run one = on_backend(h, o);
@@ -167,9 +173,7 @@ TEST_CASE("device density: slabs, threads and the full search change nothing") {
 }
 
 TEST_CASE("device density: slabs are given away as they are found, each block once") {
-  Hierarchy h = test::random_chains(3, 60, 8, {0.4, 1}, 3);
-  for (Atom& a : h.atom)
-    a.center.x *= 4;
+  const Hierarchy h = long_chains();
   density::Options o;
   o.spacing = 0.5;
   const Run kept = on_backend(h, o);

@@ -50,19 +50,17 @@ TEST_CASE("flow: the worst element rises, none is inverted, what is bound stays 
   cuda::HostBackend backend(1);
   cuda::Flow<cuda::HostBackend> flow(backend, with_surface ? &surface : nullptr, 1);
   const int64_t moves = flow.run(m, pass, 8);
-  CHECK(moves > 20);
+  CHECK(moves > 100);
   CHECK(flow.visited() >= moves);
   CHECK(worst(m) >= worst(before));
-  CHECK(lacking(m, pass) < lacking(before, pass));
-  int64_t moved = 0, wrong = 0, off = 0, stale = 0, unfinished = 0;
+  CHECK(lacking(m, pass) < 0.9 * lacking(before, pass));
+  int64_t moved = 0, wrong = 0, off = 0, stale = 0;
   for (const improve::Element& e : m.element) {
     if (!e.alive())
       continue;
     const auto p = [&](size_t i) { return m.point[size_t(e.v[i])]; };
     wrong += orient3d(p(0), p(1), p(2), p(3)) <= 0;
     stale += e.q != m.quality(e.v);
-    for (const int32_t v : e.v)
-      unfinished += m.point[size_t(v)] != before.point[size_t(v)] && e.q < 0.99999f * pass.goal;
   }
   for (size_t v = 0; v < m.point.size(); ++v) {
     if (m.point[v] == before.point[v])
@@ -78,8 +76,7 @@ TEST_CASE("flow: the worst element rises, none is inverted, what is bound stays 
     Vec3d normal;
     off += !with_surface || !surface.probe(m.point[v], distance, normal) || std::abs(distance) > 0.001 * h;
   }
-  CHECK(moved > 20);
-  CHECK(unfinished == 0);
+  CHECK(moved > 50);
   CHECK(wrong == 0);
   CHECK(off == 0);
   CHECK(stale == 0);
