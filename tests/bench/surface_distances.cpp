@@ -1,6 +1,6 @@
 // surface_distances.cpp — elements against distance: how far density2tet's surface is from the isosurface,
 // tolerance by tolerance. surface_distances FILE.vdb ADAPT…: the interior's elements, how far the centroids of its
-// surface triangles are from their foot, in grid spacings, and how many are turned by over 45° from the field's
+// surface triangles are from the isosurface, in grid spacings, and how many are turned by over 45° from the field's
 // normal.
 #include "contour/contour.hpp"
 #include "formats/vdb/vdb.hpp"
@@ -20,9 +20,26 @@ using namespace molmesh;
 namespace {
 
 struct Distances {
-  std::vector<double> off; ///< ascending, of the triangles whose foot is known
+  std::vector<double> off; ///< ascending, of the triangles that lie where the field is known
   int64_t turned = 0;
 };
+
+/// From p, where log G / isovalue is f, to the first place on the other side along any of 2,000 directions, in
+/// spacings; `most` where that is farther. Where two sheets meet this is nearer than the foot along the gradient.
+double nearest(const improve::Isosurface& isosurface, Vec3d p, double f, double most) {
+  constexpr int directions = 2000;
+  constexpr double step = 0.01, golden_angle = 2.39996322972865332;
+  for (int k = 0; k < directions; ++k) {
+    const double z = (2. * k + 1) / directions - 1, across = std::sqrt(1 - z * z), turn = golden_angle * k;
+    const Vec3d along = isosurface.spacing() * Vec3d{across * std::cos(turn), across * std::sin(turn), z};
+    double there;
+    Vec3d gradient;
+    for (double r = step; r < most; r += step)
+      if (isosurface.evaluate(p + r * along, there, gradient) && (there > 0) != (f > 0))
+        most = r;
+  }
+  return most;
+}
 
 Distances measure(const TetMesh& mesh, const improve::Isosurface& isosurface) {
   Distances all;
@@ -33,12 +50,17 @@ Distances measure(const TetMesh& mesh, const improve::Isosurface& isosurface) {
     for (size_t i = 0; i < 3; ++i)
       x[i] = mesh.point[static_cast<size_t>(mesh.tri[t][i])];
     const Vec3d centroid = (x[0] + x[1] + x[2]) / 3., across = tri_normal(x[0], x[1], x[2]);
-    Vec3d foot = centroid, normal;
-    double distance;
-    if (isosurface.project(foot, 5 * isosurface.spacing()))
-      all.off.push_back(norm(foot - centroid) / isosurface.spacing());
-    all.turned +=
-        !isosurface.probe(centroid, distance, normal) || dot(across, normal) < std::sqrt(0.5) * norm(across);
+    constexpr double reach = 5, near = 0.5; // spacings
+    double f;
+    Vec3d foot = centroid, gradient;
+    if (!isosurface.evaluate(centroid, f, gradient)) {
+      ++all.turned;
+      continue;
+    }
+    const bool has_foot = isosurface.project(foot, reach * isosurface.spacing());
+    const double off = has_foot ? norm(foot - centroid) / isosurface.spacing() : reach;
+    all.off.push_back(off > near ? nearest(isosurface, centroid, f, off) : off);
+    all.turned += !(dot(across, gradient) <= -std::sqrt(0.5) * norm(across) * norm(gradient));
   }
   std::sort(all.off.begin(), all.off.end());
   return all;
