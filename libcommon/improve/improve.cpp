@@ -73,13 +73,16 @@ struct Attempt {
   int effort; // Pass::effort
   const Guard& guard = released;
   double cell = 0.5;
+  float at_first = 1; // Pass::at_first
 };
 const Guard widened{70, 0.24, 1, 0};
 const std::vector<Attempt> attempts{{1}, {2}, {3}, {4}, {4, widened}, {5}};
 // Where the mesh ends in the surface, which then must not bend as it likes, a wider guard comes last, in larger
-// parts, either order of the worst for both efforts.
-const std::vector<Attempt> attempts_at_end{
-    {1}, {2}, {3}, {4}, {5}, {3, widened, 1}, {5, widened, 1}, {5, widened, 1}, {3, widened, 1}};
+// parts, either order of the worst for both efforts; before that points come back by way of a lower goal.
+const Attempt via_70{5, widened, 1, 0.7F}, via_50{5, widened, 1, 0.5F}, wider_3{3, widened, 1},
+    wider_5{5, widened, 1};
+const std::vector<Attempt> attempts_at_end{{1},    {2}, {3},     {4},     via_70,  via_70, via_50,
+                                           via_50, {5}, wider_3, wider_5, wider_5, wider_3};
 
 Pass pass_of(const Attempt& attempt, float goal) {
   Pass pass;
@@ -87,6 +90,7 @@ Pass pass_of(const Attempt& attempt, float goal) {
   pass.effort = attempt.effort;
   pass.cell = attempt.cell;
   pass.guard = attempt.guard;
+  pass.at_first = attempt.at_first;
   return pass;
 }
 

@@ -17,6 +17,8 @@ struct Pass {
   /// where it has elements on both sides it may bend while they are mended; 5: and what shaking cannot mend
   /// wanders.
   int effort = 0;
+  /// Of recover(): points come back to this share of the goal, and the elements around are mended after.
+  float at_first = 1;
   float yield = 1; ///< Editor::yield
   Guard guard;
   bool operator==(const Pass&) const = default;

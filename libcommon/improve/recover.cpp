@@ -28,6 +28,13 @@ constexpr Daring careful{0.01f, false, 0, false, false}, bold{1e-5f, true, 2, fa
     in_necks{1e-5f, true, 2, true, false}, bending{1e-5f, true, 8, true, true},
     yielding{1e-5f, true, 8, true, false};
 
+// Where the isosurface grazes a wall the mesh has no room for it: long searches there are nearly always in vain.
+bool at_wall(std::vector<int32_t> points, const DynamicMesh& m, double spacing) {
+  std::erase_if(points, [&](int32_t v) { return m.vertex[size_t(v)].kind != Kind::surface; });
+  return points.empty() || std::any_of(points.begin(), points.end(),
+                                       [&](int32_t v) { return !m.walls.clear(m.point[size_t(v)], spacing); });
+}
+
 class Recovery {
 public:
   Recovery(Editor& editor, DynamicMesh& m, std::vector<int32_t> slots, const Pass& pass, int32_t time,
@@ -121,22 +128,13 @@ private:
       nearly_.pop_back();
   }
 
-  // Where the isosurface grazes a wall the mesh has no room for it: long searches there are nearly always in vain.
-  bool at_wall() {
-    std::vector<int32_t> points = faults_.points_off();
-    std::erase_if(points, [&](int32_t v) { return m_.vertex[size_t(v)].kind != Kind::surface; });
-    return points.empty() || std::any_of(points.begin(), points.end(), [&](int32_t v) {
-             return !m_.walls.clear(m_.point[size_t(v)], editor_.spacing());
-           });
-  }
-
   // The states put by since the part last changed, best first.
   void try_harder() {
     if (nearly_.empty())
       return;
     const Snapshot snapshot = editor_.save(mending_.elements());
     const Faults before = faults_();
-    const bool long_search = pass_.effort > 3 && !at_wall();
+    const bool long_search = pass_.effort > 3 && !at_wall(faults_.points_off(), m_, editor_.spacing());
     int trials = long_search ? most_bent_trials : most_trials,
         steps = long_search && pass_.effort > 4 ? most_steps : 0;
     for (const auto& [lacks, state] : std::exchange(nearly_, {})) {
@@ -271,11 +269,41 @@ private:
   std::vector<std::pair<double, Snapshot>> nearly_; ///< what it lacks, state; ascending
 };
 
+// The points come back to a lower goal, and all that is below the goal is mended after: elements that had nowhere
+// to go while these points were off often have then.
+void detour(Editor& editor, DynamicMesh& m, const std::vector<int32_t>& slots, const Pass& pass, int32_t time,
+            par::Helpers& helpers) {
+  FaultCount faults(editor, m, slots, pass.goal);
+  if (at_wall(faults.points_off(), m, editor.spacing()))
+    return;
+  Mending mending(editor, m, slots, pass, &helpers);
+  mending.floor = bending.floor;
+  mending.loose = bending.loose;
+  const Snapshot snapshot = editor.save(mending.elements());
+  const Faults before = faults();
+  Pass lower = pass;
+  lower.at_first = 1;
+  lower.goal *= pass.at_first;
+  Recovery(editor, m, slots, lower, time, helpers).run(false);
+  if (editor.counts.total() == snapshot.counts.total())
+    return;
+  int trials = most_bent_trials, steps = most_steps;
+  mending.mend();
+  mending.shake(faults, before, bending.for_bent, trials);
+  if (mending.deficit() > 0)
+    mending.wander(faults, before, bending.for_bent, steps);
+  if (!faults.better_than(before, bending.for_bent))
+    editor.restore(snapshot);
+}
+
 } // namespace
 
 void recover_part(Editor& editor, DynamicMesh& m, std::vector<int32_t> slots, const Pass& pass, int32_t time,
                   bool shaken, par::Helpers& helpers) {
-  Recovery(editor, m, std::move(slots), pass, time, helpers).run(shaken);
+  if (pass.at_first < 1)
+    detour(editor, m, slots, pass, time, helpers);
+  else
+    Recovery(editor, m, std::move(slots), pass, time, helpers).run(shaken);
 }
 
 } // namespace molmesh::improve
