@@ -69,9 +69,8 @@ public:
     auto lattice_class = b_.template array<uint8_t>(known);
     b_.for_n("lattice classes", known, contour::detail::LatticeClasses{complex_->view, lattice_class.data()},
              {double(known) * 6});
-    relaxed_ = contour::detail::RelaxPasses<Backend, TeamMover<Backend>>(b_, elements_.view(), lattice_class.data(),
-                                                                         known, true, mover)
-                   .run();
+    using Passes = contour::detail::RelaxPasses<Backend, contour::ElementArrays<Backend>, TeamMover<Backend>>;
+    relaxed_ = Passes(b_, elements_, lattice_class.data(), known, true, mover).run();
   }
   std::vector<contour::Component> find_regions(const contour::RegionOptions& options) override {
     regions_.emplace(b_, complex_->view, elements_.view(), options);
@@ -91,6 +90,7 @@ public:
     summary.relaxed_points = relaxed_;
     summary.face_points = elements_.face_points;
     summary.edge_points = elements_.edge_points;
+    summary.divided_edges = elements_.divided_edges;
   }
 
   int64_t runs() const { return maker_.runs(); }

@@ -1,6 +1,7 @@
 // relax.hpp — contour::relax on a Backend: the host's passes; a team looks for a vertex's place, an element of its
 // star to each thread, in the order and with the rounding of improve::Spokes.
 #pragma once
+#include "contour/detail/far_division.hpp"
 #include "contour/detail/move_nearer.hpp"
 #include "contour/detail/relax_passes.hpp"
 #include "cuda/contour/quick_division.hpp"
@@ -265,7 +266,8 @@ struct MoveNearerTeams {
 template <class Backend>
 class TeamMover {
 public:
-  TeamMover(Backend& b, const improve::Isosurface& surface) : b_(b), surface_(b, surface) {}
+  TeamMover(Backend& b, const improve::Isosurface& surface)
+      : b_(b), on_host_(surface.view()), surface_(b, surface) {}
   void judge(const contour::detail::Qualities& all) {
     const auto tets = double(all.e.tets);
     b_.for_n("element qualities", all.e.tets, all, {tets * 20 + double(all.e.positions) * 25, 180. * tets, true});
@@ -290,9 +292,13 @@ public:
                  MoveNearerTeams{v, surface_.view(), active, fate, spoke_.data(), quality_.data()},
                  {double(n) * entries_ * 112});
   }
+  int64_t divide(contour::detail::FarPatch& patch, const RelaxView& r) {
+    return contour::detail::FarDivision<improve::IsosurfaceView>(patch, on_host_, r.goal, r.shape).run();
+  }
 
 private:
   Backend& b_;
+  improve::IsosurfaceView on_host_;
   DeviceIsosurface<Backend> surface_;
   double entries_ = 0; ///< of a star, in the mean
   typename Backend::template Array<improve::Spoke<float>> spoke_;

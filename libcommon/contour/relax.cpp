@@ -1,5 +1,6 @@
 // relax.cpp — the passes on the host's threads, many elements or places at a time.
 #include "contour/relax.hpp"
+#include "contour/detail/far_division.hpp"
 #include "contour/detail/move_nearer.hpp"
 #include "contour/detail/relax_passes.hpp"
 #include "contour/host_star.hpp"
@@ -68,7 +69,7 @@ struct MoveFirst {
   }
 };
 
-/// A chunk of triangles: those that may be far eight at a time.
+/// A chunk of triangles, those of the surface eight at a time.
 template <class Surface>
 struct MeasureChunk {
   static constexpr int64_t grain = 256;
@@ -85,12 +86,12 @@ struct MeasureChunk {
       near(all.isosurface).probe_eight(c, static_cast<int>(n), probes);
       for (size_t i = 0; i < n; ++i)
         all.off[which[i]] = probes.is_known(i) ? detail::Off::measured(all.isosurface, c[i], probes.distance[i])
-                                               : detail::Off::unknown;
+                                               : detail::Off::beyond;
       n = 0;
     };
     for (int64_t t = begin; t < end; ++t) {
-      all.off[t] = detail::Off::not_measured;
-      if (!all.may_be_far(t))
+      all.off[t] = detail::Off::of_a_wall;
+      if (!all.is_surface(t))
         continue;
       c.set(n, all.centroid(t));
       which[n] = t;
@@ -126,6 +127,9 @@ public:
     };
     m_.for_n("move nearer", n, MoveFirst<decltype(try_one)>{v.r, active, fate, try_one});
   }
+  int64_t divide(detail::FarPatch& patch, const detail::RelaxView& r) {
+    return detail::FarDivision<Surface>(patch, surface_, r.goal, r.shape).run();
+  }
 
 private:
   par::Launcher& m_;
@@ -145,9 +149,9 @@ int64_t relax_on(const Surface& surface, bool surface_moves, Elements& elements,
                  const LargeArray<uint8_t>& lattice_class, int threads) {
   par::Launcher launcher(threads);
   Mover<Surface> mover(launcher, surface);
-  return detail::RelaxPasses<par::Launcher, Mover<Surface>>(launcher, elements.view(), lattice_class.data(),
-                                                            static_cast<int64_t>(lattice_class.size()),
-                                                            surface_moves, mover)
+  return detail::RelaxPasses<par::Launcher, Elements, Mover<Surface>>(launcher, elements, lattice_class.data(),
+                                                                      static_cast<int64_t>(lattice_class.size()),
+                                                                      surface_moves, mover)
       .run();
 }
 

@@ -6,8 +6,7 @@
 
 namespace molmesh::contour::detail {
 
-/// The surface triangles at a vertex that moves. What they cost: the squares of what they are off beyond
-/// Off::least.
+/// The surface triangles at a vertex that moves.
 class TriangleFan {
 public:
   static constexpr int64_t most = 24;
@@ -22,13 +21,14 @@ public:
       for (const int32_t other : v.r.e.tri[t])
         if (other != v.r.vertex[c])
           rest_[k] += v.r.e.position[other];
-      double distance = 0;
-      if (!surface.probe(centroid(k, x_), distance, normal_[k]))
-        off_[k] = Off::unknown;
-      else
-        off_[k] = v.off[t] == Off::not_measured ? Off::measured(surface, centroid(k, x_), distance) : v.off[t];
+      off_[k] = v.off[t];
+      double distance;
+      if (!surface.probe(centroid(k, x_), distance, normal_[k])) {
+        distance = off_[k];
+        normal_[k] = {};
+      }
       distance_[k] = distance < 0 ? -off_[k] : off_[k];
-      cost_ += cost(off_[k]);
+      cost_ += Off::cost(off_[k]);
       if (off_[k] > Off::least)
         way_ += (distance < 0 ? off_[k] - Off::least : Off::least - off_[k]) * normal_[k];
     }
@@ -39,13 +39,12 @@ public:
   /// The cost with the vertex at y, to first order; `enough` where it is that or more, or a triangle gets out.
   HD double expected(Vec3d y, double enough) const {
     double sum = 0;
-    for (int64_t k = 0; k < n_; ++k)
-      if (off_[k] >= 0) {
-        const auto off = static_cast<float>(std::fabs(distance_[k] + dot(normal_[k], y - x_) / (3 * spacing_)));
-        sum += cost(off);
-        if (gets_out(k, off) || sum >= enough)
-          return enough;
-      }
+    for (int64_t k = 0; k < n_; ++k) {
+      const auto off = static_cast<float>(std::fabs(distance_[k] + dot(normal_[k], y - x_) / (3 * spacing_)));
+      sum += Off::cost(off);
+      if (gets_out(k, off) || sum >= enough)
+        return enough;
+    }
     return sum;
   }
   /// How far the triangles are off with the vertex at y. False where they cost `enough` or one gets out.
@@ -53,15 +52,8 @@ public:
   HD bool measure(const Surface& surface, Vec3d y, double enough, float* off) const {
     double sum = 0;
     for (int64_t k = 0; k < n_; ++k) {
-      off[k] = off_[k];
-      if (off_[k] < 0)
-        continue;
-      double distance;
-      Vec3d normal;
-      if (!surface.probe(centroid(k, y), distance, normal))
-        return false;
-      off[k] = Off::measured(surface, centroid(k, y), distance);
-      sum += cost(off[k]);
+      off[k] = Off::of(surface, centroid(k, y));
+      sum += Off::cost(off[k]);
       if (gets_out(k, off[k]) || sum >= enough)
         return false;
     }
@@ -69,15 +61,10 @@ public:
   }
   HD void keep(const NearerView& v, const float* off) const {
     for (int64_t k = 0; k < n_; ++k)
-      if (float& of_triangle = v.off[triangle_[k]]; of_triangle != Off::not_measured) // it is none of the far ones
-        of_triangle = off[k];
+      v.off[triangle_[k]] = off[k];
   }
 
 private:
-  HD static double cost(float off) {
-    const double beyond = off > Off::least ? double(off) - Off::least : 0;
-    return beyond * beyond;
-  }
   /// No triangle that was near becomes far, and none that is far gets farther.
   HD bool gets_out(int64_t k, float off) const { return off > Off::most && off > off_[k]; }
   HD Vec3d centroid(int64_t k, Vec3d x) const { return (rest_[k] + x) / 3.; }

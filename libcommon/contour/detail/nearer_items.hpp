@@ -8,20 +8,33 @@ namespace molmesh::contour::detail {
 
 /// How far a surface triangle's centroid is from its foot on the isosurface, in spacings.
 struct Off {
-  static constexpr float most = 0.49F;      ///< beyond it a triangle is far
-  static constexpr float least = 0.4F;      ///< up to it all are as good, and to first order will do
-  static constexpr float unknown = -1;      ///< such a triangle is left alone
-  static constexpr float not_measured = -2; ///< of small triangles: those of the grid's own cells
+  static constexpr float most = 0.49F;   ///< beyond it a triangle is far
+  static constexpr float least = 0.4F;   ///< up to it all are as good
+  static constexpr float sure = 0.2F;    ///< up to it to first order will do
+  static constexpr float beyond = 5;     ///< where the field is not known, or it is that far
+  static constexpr float of_a_wall = -1; ///< such a triangle is left alone
+
+  /// What moves and divisions lower.
+  HD static double cost(float off) {
+    const double more = off > least ? double(off) - least : 0;
+    return more * more;
+  }
 
   /// Of the place c, whose distance (Å) to first order it is.
   template <class Surface>
   HD static float measured(const Surface& surface, Vec3d c, double distance) {
-    constexpr double reach = 5; // in spacings
     const double spacing = surface.spacing();
     const auto off = static_cast<float>(std::fabs(distance) / spacing);
     Vec3d foot = c;
-    return off <= least || !surface.project(foot, reach * spacing) ? off
-                                                                   : static_cast<float>(norm(foot - c) / spacing);
+    if (off > sure && surface.project(foot, beyond * spacing))
+      return static_cast<float>(norm(foot - c) / spacing);
+    return off < beyond ? off : beyond;
+  }
+  template <class Surface>
+  HD static float of(const Surface& surface, Vec3d c) {
+    double distance;
+    Vec3d normal;
+    return surface.probe(c, distance, normal) ? measured(surface, c, distance) : beyond;
   }
 };
 
@@ -32,19 +45,9 @@ struct MeasureTriangles {
   Surface isosurface;
   float* off; ///< [tris]
   HD void operator()(int64_t t) const {
-    double distance;
-    Vec3d normal;
-    off[t] = !may_be_far(t)                                    ? Off::not_measured
-             : isosurface.probe(centroid(t), distance, normal) ? Off::measured(isosurface, centroid(t), distance)
-                                                               : Off::unknown;
+    off[t] = is_surface(t) ? Off::of(isosurface, centroid(t)) : Off::of_a_wall;
   }
-  HD bool may_be_far(int64_t t) const {
-    constexpr double small = 1.5; // root mean square of the edges, in spacings
-    const double spacing = isosurface.spacing();
-    const Vec3d a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
-    return e.boundary[t] == surface &&
-           norm2(a - b) + norm2(b - c) + norm2(c - a) > 3 * small * small * spacing * spacing;
-  }
+  HD bool is_surface(int64_t t) const { return e.boundary[t] == surface; }
   HD Vec3d centroid(int64_t t) const { return (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.; }
 
 private:

@@ -1,14 +1,15 @@
 // nearer_passes.hpp — after relaxation, surface triangles far from the isosurface come nearer; over a launcher: one
 // text, one result.
 #pragma once
+#include "contour/detail/divide_passes.hpp"
 #include "contour/detail/nearer_items.hpp"
 #include "contour/detail/vertex_stars.hpp"
 
 namespace molmesh::contour::detail {
 
 /// Mover: measure(e, off) measures all triangles; move_nearer(view, active, n, fate) lets those move who have the
-/// turn; begin as RelaxPasses has it.
-template <class Launcher, class Mover>
+/// turn; divide(patch, view) divides edges and returns how many; begin as RelaxPasses has it.
+template <class Launcher, class Elements, class Mover>
 class NearerPasses {
   template <class T>
   using Array = typename Launcher::template Array<T>;
@@ -16,8 +17,9 @@ class NearerPasses {
 
 public:
   /// stars: memory for those of this.
-  NearerPasses(Launcher& m, Mover& mover, const RelaxView& r, VertexStars<Launcher>& stars)
-      : m_(m), mover_(mover), stars_(stars), off_(m.template array<float>(r.e.tris)) {
+  NearerPasses(Launcher& m, Mover& mover, const RelaxView& r, RelaxArrays<Launcher, Elements>& arrays,
+               VertexStars<Launcher>& stars)
+      : m_(m), mover_(mover), arrays_(arrays), stars_(stars), off_(m.template array<float>(r.e.tris)) {
     constexpr double angle = 16;
     v_.r = r;
     v_.room = static_cast<float>(improve::angle_quality(angle));
@@ -26,9 +28,20 @@ public:
 
   /// How often a vertex moved.
   int64_t run() {
-    constexpr int most_passes = 6, most_rounds = 20;
+    constexpr int most_divisions = 2;
     mover_.measure(v_.r.e, v_.off);
-    far_ = gather<int32_t>(m_, "far triangles", v_.r.e.tris, FarTriangles{v_.off, nullptr});
+    far_ = far_triangles();
+    int64_t moved = move_all();
+    for (int n = 0; n < most_divisions && far_.n > 0 && divide(); ++n)
+      moved += move_all();
+    return moved;
+  }
+
+private:
+  Ids far_triangles() { return gather<int32_t>(m_, "far triangles", v_.r.e.tris, FarTriangles{v_.off, nullptr}); }
+
+  int64_t move_all() {
+    constexpr int most_passes = 6, most_rounds = 20;
     int64_t moved = 0;
     for (int pass = 0; pass < most_passes && far_.n > 0; ++pass) {
       find_candidates(pass);
@@ -46,7 +59,21 @@ public:
     return moved;
   }
 
-private:
+  /// Of the triangles that are still far, edges; false where there is none to divide.
+  bool divide() {
+    find_candidates(1);
+    DividePasses<Launcher> passes(m_, v_.r, v_.off, stars_.near(), near_, stars_.number());
+    const int64_t divided = mover_.divide(passes.patch(), v_.r);
+    if (divided == 0)
+      return false;
+    passes.put(arrays_, off_);
+    arrays_.elements.divided_edges += divided;
+    arrays_.show(v_.r);
+    v_.off = off_.data();
+    far_ = far_triangles();
+    return true;
+  }
+
   /// The far triangles' corners; after the first pass, for the few that elements hold back, all vertices of
   /// elements there. No triangle becomes far: a pass looks among what the one before it found.
   void find_candidates(int pass) {
@@ -75,6 +102,7 @@ private:
 
   Launcher& m_;
   Mover& mover_;
+  RelaxArrays<Launcher, Elements>& arrays_;
   VertexStars<Launcher>& stars_;
   NearerView v_{};
   Array<float> off_;

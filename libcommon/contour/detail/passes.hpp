@@ -3,6 +3,7 @@
 #include "geom/hd.hpp"
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -35,6 +36,26 @@ struct List {
   T* data() { return array.data(); }
   const T* data() const { return array.data(); }
 };
+
+template <class T>
+struct CopyEach {
+  const T* from;
+  T* to;
+  HD void operator()(int64_t i) const { to[i] = from[i]; }
+};
+/// More elements, uninitialized, behind those that an array of a launcher has.
+template <class Launcher, class Array>
+void grow(Launcher& m, Array& array, int64_t n) {
+  if constexpr (requires { array.resize(static_cast<size_t>(n)); }) {
+    array.resize(static_cast<size_t>(n));
+  } else {
+    using T = std::remove_cvref_t<decltype(*array.data())>;
+    auto more = m.template array<T>(n);
+    const auto had = static_cast<int64_t>(array.size());
+    m.for_n("copy", had, CopyEach<T>{array.data(), more.data()}, {2. * double(had) * sizeof(T)});
+    array = std::move(more);
+  }
+}
 
 /// The elements of all items, in their order.
 template <class T, class Launcher, class Item>

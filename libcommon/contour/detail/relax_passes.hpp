@@ -10,22 +10,23 @@ namespace molmesh::contour::detail {
 /// Mover: judge(qualities) lets that item judge all elements; move(view, active, n, fate, most_distance) lets those
 /// move who have the turn; begin(view, candidates, entries) before the first round over these stars; and what
 /// NearerPasses asks.
-template <class Launcher, class Mover>
+template <class Launcher, class Elements, class Mover>
 class RelaxPasses {
   template <class T>
   using Array = typename Launcher::template Array<T>;
 
 public:
   /// lattice_class: of the first `known` vertices. surface_moves: vertices on the surface do.
-  RelaxPasses(Launcher& m, const ElementsView& e, const uint8_t* lattice_class, int64_t known, bool surface_moves,
+  RelaxPasses(Launcher& m, Elements& elements, const uint8_t* lattice_class, int64_t known, bool surface_moves,
               Mover& mover)
-      : m_(m), mover_(mover), surface_moves_(surface_moves), quality_(m.template array<float>(numbered(e.tets))),
-        bound_(m.filled(4 * e.positions, uint8_t{0})), stars_(m) {
+      : m_(m), mover_(mover),
+        surface_moves_(surface_moves), arrays_{elements, m.template array<float>(numbered(elements.view().tets)),
+                                               m.filled(4 * elements.view().positions, uint8_t{0})},
+        stars_(m) {
     // 13.2° counts like it. Q is held to the least of the paper's improved meshes: raising it is tetsmooth's work.
     constexpr double largest_angle = 159.8, least_q = 0.1;
-    r_.e = e;
-    r_.quality = quality_.data();
-    r_.bound = {bound_.data()};
+    arrays_.show(r_);
+    const ElementsView& e = r_.e;
     r_.goal = static_cast<float>(improve::angle_quality(largest_angle));
     r_.shape = improve::shape_weight_of(least_q, improve::angle_quality(largest_angle));
     r_.classes = {lattice_class, known};
@@ -59,7 +60,7 @@ public:
           [&](const int32_t* active, int64_t n, Fate* fate) { mover_.move(r_, active, n, fate, distance); });
     }
     if (surface_moves_)
-      moved += NearerPasses<Launcher, Mover>(m_, mover_, r_, stars_).run();
+      moved += NearerPasses<Launcher, Elements, Mover>(m_, mover_, r_, arrays_, stars_).run();
     return moved;
   }
 
@@ -89,8 +90,7 @@ private:
   Mover& mover_;
   bool surface_moves_;
   RelaxView r_{};
-  Array<float> quality_;
-  Array<uint8_t> bound_;
+  RelaxArrays<Launcher, Elements> arrays_;
   VertexStars<Launcher> stars_;
 };
 

@@ -1,0 +1,188 @@
+// divide_passes.hpp — far triangles and the elements round them to the host, divided, and back; over a launcher.
+#pragma once
+#include "contour/detail/far_patch.hpp"
+#include "contour/detail/passes.hpp"
+#include "contour/detail/region_passes.hpp"
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace molmesh::contour::detail {
+
+/// What relaxation has of each element and vertex, for elements that become more.
+template <class Launcher, class Elements>
+struct RelaxArrays {
+  Elements& elements;
+  typename Launcher::template Array<float> quality;
+  typename Launcher::template Array<uint8_t> bound;
+  void show(RelaxView& r) const {
+    r.e = elements.view();
+    r.quality = const_cast<float*>(quality.data());
+    r.bound = {const_cast<uint8_t*>(bound.data())};
+  }
+};
+
+struct TakeElements {
+  RelaxView r;
+  const int32_t* which;
+  FarPatch::Element* to;
+  HD void operator()(int64_t i) const {
+    const int32_t t = which[i];
+    to[i] = {t, r.e.tet[t], r.quality[t], r.classes.is_asked(r.e.tet[t]) ? 1.F : unasked_weight};
+  }
+};
+struct TakeTriangles {
+  ElementsView e;
+  const float* off;
+  const int32_t* which;
+  FarPatch::Triangle* to;
+  HD void operator()(int64_t i) const {
+    const int32_t t = which[i];
+    to[i] = {t, t, e.tri[t], off[t]};
+  }
+};
+struct TakePositions {
+  const Vec3d* position;
+  const int32_t* which;
+  Vec3d* to;
+  HD void operator()(int64_t i) const { to[i] = position[which[i]]; }
+};
+struct TakeFree {
+  Bounds bound;
+  const int32_t *number, *which;
+  uint8_t* to;
+  HD void operator()(int64_t i) const {
+    const int64_t v = which[i];
+    to[i] = number[v] >= 0 && !bound.on_surface(v) && !bound.on_wall(v, 0) && !bound.on_wall(v, 1) &&
+            !bound.on_wall(v, 2);
+  }
+};
+struct PutPositions {
+  const Vec3d* from;
+  const int32_t* which;
+  Vec3d* position;
+  HD void operator()(int64_t i) const { position[which[i]] = from[i]; }
+};
+struct PutElements {
+  const FarPatch::Element* from;
+  Tet* tet;
+  float* quality;
+  HD void operator()(int64_t i) const {
+    tet[from[i].at] = from[i].tet;
+    quality[from[i].at] = from[i].quality;
+  }
+};
+struct PutTriangles {
+  const FarPatch::Triangle* from;
+  Tri* tri;
+  std::array<int32_t, 2>* sides;
+  int32_t* boundary;
+  float* off;
+  HD void operator()(int64_t i) const {
+    const FarPatch::Triangle& f = from[i];
+    tri[f.at] = f.tri;
+    off[f.at] = f.off;
+    if (f.at == f.parent)
+      return;
+    sides[f.at] = sides[f.parent];
+    boundary[f.at] = boundary[f.parent];
+  }
+};
+struct PutVertices {
+  const Vec3d* from;
+  Vec3d* position; ///< of the first of them
+  Bounds bound;
+  int64_t first;
+  HD void operator()(int64_t i) const {
+    position[i] = from[i];
+    for (int k = 0; k < 4; ++k)
+      bound.flag[4 * (first + i) + k] = k == 3; // on the surface
+  }
+};
+
+/// Elements at the corners of far triangles, and triangles there.
+template <class Launcher>
+class DividePasses {
+public:
+  DividePasses(Launcher& m, const RelaxView& r, const float* off, const List<Launcher, int32_t>& elements,
+               const List<Launcher, int32_t>& triangles, const int32_t* number)
+      : m_(m), r_(r) {
+    patch_.element = taken<FarPatch::Element>(elements, [&](auto* to) {
+      return TakeElements{r, elements.data(), to};
+    });
+    patch_.triangle = taken<FarPatch::Triangle>(triangles, [&](auto* to) {
+      return TakeTriangles{r.e, off, triangles.data(), to};
+    });
+    for (const FarPatch::Element& e : patch_.element)
+      vertex_.insert(vertex_.end(), e.tet.begin(), e.tet.end());
+    std::sort(vertex_.begin(), vertex_.end());
+    vertex_.erase(std::unique(vertex_.begin(), vertex_.end()), vertex_.end());
+    const List<Launcher, int32_t> which{m.upload(vertex_.data(), known()), known()};
+    patch_.position = taken<Vec3d>(which, [&](auto* to) { return TakePositions{r.e.position, which.data(), to}; });
+    patch_.is_free = taken<uint8_t>(which, [&](auto* to) { return TakeFree{r.bound, number, which.data(), to}; });
+    const auto own = [&](int32_t v) { // all of a triangle's are an element's
+      return static_cast<int32_t>(std::lower_bound(vertex_.begin(), vertex_.end(), v) - vertex_.begin());
+    };
+    for (FarPatch::Element& e : patch_.element)
+      std::transform(e.tet.begin(), e.tet.end(), e.tet.begin(), own);
+    for (FarPatch::Triangle& t : patch_.triangle)
+      std::transform(t.tri.begin(), t.tri.end(), t.tri.begin(), own);
+    patch_.tets = static_cast<int32_t>(r.e.tets);
+    patch_.tris = static_cast<int32_t>(r.e.tris);
+  }
+  FarPatch& patch() { return patch_; }
+
+  /// What has become of it: elements, triangles and vertices come to be in the mesh; off: [tris].
+  template <class Elements>
+  void put(RelaxArrays<Launcher, Elements>& all, typename Launcher::template Array<float>& off) {
+    const auto more = static_cast<int64_t>(patch_.position.size()) - known();
+    const auto in_mesh = [&](int32_t v) {
+      return v < known() ? vertex_[at(v)] : static_cast<int32_t>(r_.e.positions + v - known());
+    };
+    for (FarPatch::Element& e : patch_.element)
+      std::transform(e.tet.begin(), e.tet.end(), e.tet.begin(), in_mesh);
+    for (FarPatch::Triangle& t : patch_.triangle)
+      std::transform(t.tri.begin(), t.tri.end(), t.tri.begin(), in_mesh);
+    Elements& e = all.elements;
+    grow(m_, e.tet, patch_.tets);
+    grow(m_, all.quality, patch_.tets);
+    grow(m_, e.tri, patch_.tris);
+    grow(m_, e.tri_sides, patch_.tris);
+    grow(m_, e.boundary, patch_.tris);
+    grow(m_, off, patch_.tris);
+    grow(m_, e.position, r_.e.positions + more);
+    grow(m_, all.bound, 4 * (r_.e.positions + more));
+    const auto elements = sent(patch_.element);
+    m_.for_n("put elements", elements.n, PutElements{elements.data(), e.tet.data(), all.quality.data()});
+    const auto triangles = sent(patch_.triangle);
+    m_.for_n("put triangles", triangles.n,
+             PutTriangles{triangles.data(), e.tri.data(), e.tri_sides.data(), e.boundary.data(), off.data()});
+    const auto which = m_.upload(vertex_.data(), known());
+    const auto places = m_.upload(patch_.position.data(), known());
+    m_.for_n("put positions", known(), PutPositions{places.data(), which.data(), e.position.data()});
+    const auto vertices = m_.upload(patch_.position.data() + known(), more);
+    m_.for_n("put vertices", more,
+             PutVertices{vertices.data(), e.position.data() + r_.e.positions, {all.bound.data()}, r_.e.positions});
+  }
+
+private:
+  int64_t known() const { return static_cast<int64_t>(vertex_.size()); }
+  template <class T, class Take>
+  std::vector<T> taken(const List<Launcher, int32_t>& which, Take take) {
+    auto to = m_.template array<T>(which.n);
+    m_.for_n("take far", which.n, take(to.data()));
+    return downloaded<T>(m_, to, which.n);
+  }
+  template <class T>
+  List<Launcher, T> sent(const std::vector<T>& from) {
+    const auto n = static_cast<int64_t>(from.size());
+    return {m_.upload(from.data(), n), n};
+  }
+
+  Launcher& m_;
+  const RelaxView r_;
+  FarPatch patch_;
+  std::vector<int32_t> vertex_; ///< of the patch, in the mesh; ascending
+};
+
+} // namespace molmesh::contour::detail
