@@ -231,7 +231,8 @@ private:
     constexpr double first = 0.8, last = 0.05; // steps, in spacings
     const Vec3d x = p_.position[at(v)];
     Vec3d place = x;
-    float best = worst_at(v, x);
+    std::vector<size_t> star = p_.elements_at(v);
+    float best = worst_of(star, v, x);
     if (best >= enough)
       return false;
     for (double step = first; step >= last; step *= 0.5)
@@ -240,7 +241,7 @@ private:
         if (k == 13)
           continue;
         const Vec3d y = x + step * h_ / norm(way) * way;
-        if (const float q = worst_at(v, y, best); q > best && may(y)) {
+        if (const float q = worst_of(star, v, y, best); q > best && may(y)) {
           best = q;
           place = y;
         }
@@ -298,13 +299,21 @@ private:
       p_.position[at(moved_.back().first)] = moved_.back().second;
   }
 
-  /// With vertex v at y; some value ≤ above as soon as an element is no better than that.
-  float worst_at(int32_t v, Vec3d y, float above = -2) {
+  float worst_at(int32_t v, Vec3d y) {
+    std::vector<size_t> star = p_.elements_at(v);
+    return worst_of(star, v, y);
+  }
+  /// Of elements at vertex v, with it at y; some value ≤ above as soon as one is no better than that, and that one is
+  /// asked first from then on.
+  float worst_of(std::vector<size_t>& star, int32_t v, Vec3d y, float above = -2) {
     std::swap(p_.position[at(v)], y);
     float worst = 1;
-    for (const size_t t : p_.elements_at(v))
-      if ((worst = std::min(worst, quality_of(p_.element[t].tet, p_.element[t].weight))) <= above)
-        break;
+    for (size_t i = 0; i < star.size() && worst > above; ++i) {
+      const FarPatch::Element& e = p_.element[star[i]];
+      worst = std::min(worst, quality_of(e.tet, e.weight));
+      if (worst <= above)
+        std::swap(star[i], star[0]);
+    }
     std::swap(p_.position[at(v)], y);
     return worst;
   }
