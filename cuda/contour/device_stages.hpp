@@ -64,7 +64,7 @@ public:
   }
   void relax() override {
     const std::unique_ptr<const improve::Isosurface> surface = isosurface_.get();
-    TeamMover<Backend> mover(b_, *surface);
+    TeamMover<Backend> mover(b_, *surface, threads_);
     const int64_t known = complex_->view.vertices();
     auto lattice_class = b_.template array<uint8_t>(known);
     b_.for_n("lattice classes", known, contour::detail::LatticeClasses{complex_->view, lattice_class.data()},

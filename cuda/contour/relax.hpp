@@ -266,8 +266,9 @@ struct MoveNearerTeams {
 template <class Backend>
 class TeamMover {
 public:
-  TeamMover(Backend& b, const improve::Isosurface& surface)
-      : b_(b), on_host_(surface.view()), surface_(b, surface) {}
+  /// threads: of the host.
+  TeamMover(Backend& b, const improve::Isosurface& surface, int threads)
+      : b_(b), on_host_(surface.view()), surface_(b, surface), threads_(threads) {}
   void judge(const contour::detail::Qualities& all) {
     const auto tets = double(all.e.tets);
     b_.for_n("element qualities", all.e.tets, all, {tets * 20 + double(all.e.positions) * 25, 180. * tets, true});
@@ -292,14 +293,15 @@ public:
                  MoveNearerTeams{v, surface_.view(), active, fate, spoke_.data(), quality_.data()},
                  {double(n) * entries_ * 112});
   }
-  int64_t divide(contour::detail::FarPatch& patch, const RelaxView& r) {
-    return contour::detail::FarDivision<improve::IsosurfaceView>(patch, on_host_, r.goal, r.shape).run();
+  int64_t divide(std::vector<contour::detail::FarPatch>& patches, const RelaxView& r) {
+    return contour::detail::divide_far(patches, on_host_, r.goal, r.shape, threads_);
   }
 
 private:
   Backend& b_;
   improve::IsosurfaceView on_host_;
   DeviceIsosurface<Backend> surface_;
+  int threads_;
   double entries_ = 0; ///< of a star, in the mean
   typename Backend::template Array<improve::Spoke<float>> spoke_;
   typename Backend::template Array<float> quality_;

@@ -11,6 +11,7 @@
 #include "par/launcher.hpp"
 #include <algorithm>
 #include <array>
+#include <vector>
 
 namespace molmesh::contour {
 
@@ -105,7 +106,7 @@ struct MeasureChunk {
 template <class Surface>
 class Mover {
 public:
-  Mover(par::Launcher& m, const Surface& surface) : m_(m), surface_(surface) {}
+  Mover(par::Launcher& m, const Surface& surface, int threads) : m_(m), surface_(surface), threads_(threads) {}
   void judge(const detail::Qualities& all) {
     m_.for_n("element qualities", (all.e.tets + JudgeChunk::chunk - 1) / JudgeChunk::chunk, JudgeChunk{all});
   }
@@ -127,13 +128,14 @@ public:
     };
     m_.for_n("move nearer", n, MoveFirst<decltype(try_one)>{v.r, active, fate, try_one});
   }
-  int64_t divide(detail::FarPatch& patch, const detail::RelaxView& r) {
-    return detail::FarDivision<Surface>(patch, surface_, r.goal, r.shape).run();
+  int64_t divide(std::vector<detail::FarPatch>& patches, const detail::RelaxView& r) {
+    return detail::divide_far(patches, surface_, r.goal, r.shape, threads_);
   }
 
 private:
   par::Launcher& m_;
   const Surface& surface_;
+  int threads_;
 };
 
 /// Without a surface: vertices on it do not ask.
@@ -148,7 +150,7 @@ template <class Surface>
 int64_t relax_on(const Surface& surface, bool surface_moves, Elements& elements,
                  const LargeArray<uint8_t>& lattice_class, int threads) {
   par::Launcher launcher(threads);
-  Mover<Surface> mover(launcher, surface);
+  Mover<Surface> mover(launcher, surface, threads);
   return detail::RelaxPasses<par::Launcher, Elements, Mover<Surface>>(launcher, elements, lattice_class.data(),
                                                                       static_cast<int64_t>(lattice_class.size()),
                                                                       surface_moves, mover)

@@ -3,6 +3,7 @@
 #include "contour/detail/far_patch.hpp"
 #include "contour/detail/passes.hpp"
 #include "contour/detail/region_passes.hpp"
+#include "mesh/disjoint_sets.hpp"
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -100,73 +101,118 @@ struct PutVertices {
   }
 };
 
-/// Elements at the corners of far triangles, and triangles there.
+/// Elements at the corners of far triangles, and triangles there: a patch for each set that hangs together.
 template <class Launcher>
 class DividePasses {
 public:
   DividePasses(Launcher& m, const RelaxView& r, const float* off, const List<Launcher, int32_t>& elements,
                const List<Launcher, int32_t>& triangles, const int32_t* number)
       : m_(m), r_(r) {
-    patch_.element = taken<FarPatch::Element>(elements, [&](auto* to) {
+    auto element = taken<FarPatch::Element>(elements, [&](auto* to) {
       return TakeElements{r, elements.data(), to};
     });
-    patch_.triangle = taken<FarPatch::Triangle>(triangles, [&](auto* to) {
+    auto triangle = taken<FarPatch::Triangle>(triangles, [&](auto* to) {
       return TakeTriangles{r.e, off, triangles.data(), to};
     });
-    for (const FarPatch::Element& e : patch_.element)
-      vertex_.insert(vertex_.end(), e.tet.begin(), e.tet.end());
-    std::sort(vertex_.begin(), vertex_.end());
-    vertex_.erase(std::unique(vertex_.begin(), vertex_.end()), vertex_.end());
-    const List<Launcher, int32_t> which{m.upload(vertex_.data(), known()), known()};
-    patch_.position = taken<Vec3d>(which, [&](auto* to) { return TakePositions{r.e.position, which.data(), to}; });
-    patch_.is_free = taken<uint8_t>(which, [&](auto* to) { return TakeFree{r.bound, number, which.data(), to}; });
-    const auto own = [&](int32_t v) { // all of a triangle's are an element's
-      return static_cast<int32_t>(std::lower_bound(vertex_.begin(), vertex_.end(), v) - vertex_.begin());
-    };
-    for (FarPatch::Element& e : patch_.element)
-      std::transform(e.tet.begin(), e.tet.end(), e.tet.begin(), own);
-    for (FarPatch::Triangle& t : patch_.triangle)
-      std::transform(t.tri.begin(), t.tri.end(), t.tri.begin(), own);
-    patch_.tets = static_cast<int32_t>(r.e.tets);
-    patch_.tris = static_cast<int32_t>(r.e.tris);
-  }
-  FarPatch& patch() { return patch_; }
+    std::vector<int32_t> vertex;
+    for (const FarPatch::Element& e : element)
+      vertex.insert(vertex.end(), e.tet.begin(), e.tet.end());
+    std::sort(vertex.begin(), vertex.end());
+    vertex.erase(std::unique(vertex.begin(), vertex.end()), vertex.end());
+    const List<Launcher, int32_t> which = sent(vertex);
+    const auto position = taken<Vec3d>(which, [&](auto* to) {
+      return TakePositions{r.e.position, which.data(), to};
+    });
+    const auto is_free = taken<uint8_t>(which, [&](auto* to) {
+      return TakeFree{r.bound, number, which.data(), to};
+    });
 
-  /// What has become of it: elements, triangles and vertices come to be in the mesh; off: [tris].
+    const auto own = [&](int32_t v) { // all of a triangle's are an element's
+      return static_cast<int32_t>(std::lower_bound(vertex.begin(), vertex.end(), v) - vertex.begin());
+    };
+    DisjointSets sets(vertex.size());
+    for (FarPatch::Element& e : element) {
+      std::transform(e.tet.begin(), e.tet.end(), e.tet.begin(), own);
+      for (const int32_t v : e.tet)
+        sets.join(e.tet[0], v);
+    }
+    std::vector<size_t> patch(vertex.size());
+    std::vector<int32_t> in_patch(vertex.size());
+    for (int32_t v = 0; v < static_cast<int32_t>(vertex.size()); ++v) {
+      const int32_t first = sets.first(v);
+      if (first == v)
+        patches_.emplace_back();
+      patch[at(v)] = first == v ? patches_.size() - 1 : patch[at(first)];
+      FarPatch& p = patches_[patch[at(v)]];
+      in_patch[at(v)] = static_cast<int32_t>(p.vertex.size());
+      p.vertex.push_back(vertex[at(v)]);
+      p.position.push_back(position[at(v)]);
+      p.is_free.push_back(is_free[at(v)]);
+    }
+    const auto local = [&](int32_t v) { return in_patch[at(v)]; };
+    for (FarPatch::Element& e : element) {
+      FarPatch& p = patches_[patch[at(e.tet[0])]];
+      std::transform(e.tet.begin(), e.tet.end(), e.tet.begin(), local);
+      p.element.push_back(e);
+    }
+    for (FarPatch::Triangle& t : triangle) {
+      FarPatch& p = patches_[patch[at(own(t.tri[0]))]];
+      std::transform(t.tri.begin(), t.tri.end(), t.tri.begin(), [&](int32_t v) { return local(own(v)); });
+      p.triangle.push_back(t);
+    }
+  }
+  std::vector<FarPatch>& patches() { return patches_; }
+
+  /// What has become of them: elements, triangles and vertices come to be in the mesh; off: [tris].
   template <class Elements>
   void put(RelaxArrays<Launcher, Elements>& all, typename Launcher::template Array<float>& off) {
-    const auto more = static_cast<int64_t>(patch_.position.size()) - known();
-    const auto in_mesh = [&](int32_t v) {
-      return v < known() ? vertex_[at(v)] : static_cast<int32_t>(r_.e.positions + v - known());
-    };
-    for (FarPatch::Element& e : patch_.element)
-      std::transform(e.tet.begin(), e.tet.end(), e.tet.begin(), in_mesh);
-    for (FarPatch::Triangle& t : patch_.triangle)
-      std::transform(t.tri.begin(), t.tri.end(), t.tri.begin(), in_mesh);
+    std::vector<FarPatch::Element> element;
+    std::vector<FarPatch::Triangle> triangle;
+    std::vector<int32_t> vertex;
+    std::vector<Vec3d> position, added;
+    auto tets = static_cast<int32_t>(r_.e.tets), tris = static_cast<int32_t>(r_.e.tris);
+    for (const FarPatch& p : patches_) {
+      const auto known = static_cast<int32_t>(p.vertex.size());
+      const auto first = static_cast<int32_t>(r_.e.positions + static_cast<int64_t>(added.size()));
+      const auto in_mesh = [&](int32_t v) { return v < known ? p.vertex[at(v)] : first + v - known; };
+      for (FarPatch::Element e : p.element) {
+        e.at = e.at < 0 ? tets++ : e.at;
+        std::transform(e.tet.begin(), e.tet.end(), e.tet.begin(), in_mesh);
+        element.push_back(e);
+      }
+      for (FarPatch::Triangle t : p.triangle) {
+        t.at = t.at < 0 ? tris++ : t.at;
+        std::transform(t.tri.begin(), t.tri.end(), t.tri.begin(), in_mesh);
+        triangle.push_back(t);
+      }
+      vertex.insert(vertex.end(), p.vertex.begin(), p.vertex.end());
+      position.insert(position.end(), p.position.begin(), p.position.begin() + known);
+      added.insert(added.end(), p.position.begin() + known, p.position.end());
+    }
+    const auto more = static_cast<int64_t>(added.size());
     Elements& e = all.elements;
-    grow(m_, e.tet, patch_.tets);
-    grow(m_, all.quality, patch_.tets);
-    grow(m_, e.tri, patch_.tris);
-    grow(m_, e.tri_sides, patch_.tris);
-    grow(m_, e.boundary, patch_.tris);
-    grow(m_, off, patch_.tris);
+    grow(m_, e.tet, tets);
+    grow(m_, all.quality, tets);
+    grow(m_, e.tri, tris);
+    grow(m_, e.tri_sides, tris);
+    grow(m_, e.boundary, tris);
+    grow(m_, off, tris);
     grow(m_, e.position, r_.e.positions + more);
     grow(m_, all.bound, 4 * (r_.e.positions + more));
-    const auto elements = sent(patch_.element);
+    const auto elements = sent(element);
     m_.for_n("put elements", elements.n, PutElements{elements.data(), e.tet.data(), all.quality.data()});
-    const auto triangles = sent(patch_.triangle);
+    const auto triangles = sent(triangle);
     m_.for_n("put triangles", triangles.n,
              PutTriangles{triangles.data(), e.tri.data(), e.tri_sides.data(), e.boundary.data(), off.data()});
-    const auto which = m_.upload(vertex_.data(), known());
-    const auto places = m_.upload(patch_.position.data(), known());
-    m_.for_n("put positions", known(), PutPositions{places.data(), which.data(), e.position.data()});
-    const auto vertices = m_.upload(patch_.position.data() + known(), more);
+    const auto which = sent(vertex);
+    const auto places = sent(position);
+    m_.for_n("put positions", which.n, PutPositions{places.data(), which.data(), e.position.data()});
+    const auto vertices = sent(added);
     m_.for_n("put vertices", more,
              PutVertices{vertices.data(), e.position.data() + r_.e.positions, {all.bound.data()}, r_.e.positions});
   }
 
 private:
-  int64_t known() const { return static_cast<int64_t>(vertex_.size()); }
   template <class T, class Take>
   std::vector<T> taken(const List<Launcher, int32_t>& which, Take take) {
     auto to = m_.template array<T>(which.n);
@@ -181,8 +227,7 @@ private:
 
   Launcher& m_;
   const RelaxView r_;
-  FarPatch patch_;
-  std::vector<int32_t> vertex_; ///< of the patch, in the mesh; ascending
+  std::vector<FarPatch> patches_;
 };
 
 } // namespace molmesh::contour::detail

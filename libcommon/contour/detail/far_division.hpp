@@ -4,9 +4,11 @@
 #include "contour/detail/far_patch.hpp"
 #include "contour/detail/nearer_items.hpp"
 #include "geom/predicates.hpp"
+#include "par/par.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -62,6 +64,7 @@ private:
     Cost all;
     double at_edge = 0;
     float farthest = Off::most, floor;
+    int tried = 0; ///< places
   };
 
   Cost cost() const {
@@ -80,7 +83,7 @@ private:
       const FarPatch::Edge edge = p_.edge(t, i);
       if (!p_.is_divisible(edge))
         continue;
-      start_ = {before, 0, Off::most, goal_};
+      start_ = {before, 0, Off::most, goal_, 0};
       for (const size_t k : edge.triangles) {
         start_.at_edge += Off::cost(p_.triangle[k].off);
         start_.farthest = std::max(start_.farthest, p_.triangle[k].off);
@@ -138,6 +141,7 @@ private:
   /// Of the new vertex, near the isosurface. Elements may be inverted at first.
   bool find_place(int32_t m, const FarPatch::Edge& edge) {
     constexpr double short_of = 0.4; // in spacings, of the foot
+    constexpr int most_tried = 6;    // what goes well does within three
     const Vec3d x = p_.position[at(m)];
     Vec3d foot = x;
     if (!find_foot(foot, edge))
@@ -148,6 +152,8 @@ private:
       const Vec3d y = x + (least + further * (1 - least)) * (foot - x);
       if (!is_near(y))
         continue;
+      if (++start_.tried > most_tried)
+        return false;
       move(m, y);
       if (make_room(m)) {
         choose_place(m);
@@ -192,9 +198,10 @@ private:
     float worst = -1;
     for (int round = 0; round < most_rounds; ++round) {
       const float before = worst;
-      bool any = improve(m, floor, [&](Vec3d y) { return is_near(y); });
+      bool any = false;
       for (const int32_t v : around)
         any |= improve(v, more * floor, [](Vec3d) { return true; });
+      any |= improve(m, floor, [&](Vec3d y) { return is_near(y); });
       worst = worst_at(m, p_.position[at(m)]);
       for (const int32_t v : around)
         worst = std::min(worst, worst_at(v, p_.position[at(v)]));
@@ -303,8 +310,8 @@ private:
     std::vector<size_t> star = p_.elements_at(v);
     return worst_of(star, v, y);
   }
-  /// Of elements at vertex v, with it at y; some value ≤ above as soon as one is no better than that, and that one is
-  /// asked first from then on.
+  /// Of elements at vertex v, with it at y; some value ≤ above as soon as one is no better than that, and that one
+  /// is asked first from then on.
   float worst_of(std::vector<size_t>& star, int32_t v, Vec3d y, float above = -2) {
     std::swap(p_.position[at(v)], y);
     float worst = 1;
@@ -322,15 +329,17 @@ private:
     std::array<Vec3d, 4> x;
     for (size_t i = 0; i < 4; ++i)
       x[i] = p_.position[at(tet[i])];
-    const float q = improve::tet_quality(x[0], x[1], x[2], x[3], shape_);
-    if (q >= improve::surely_positive || (q > 0 && orient3d(x[0], x[1], x[2], x[3]) > 0))
-      return weight * q;
+    const double volume6 = dot(x[1] - x[0], cross(x[2] - x[0], x[3] - x[0]));
+    if (volume6 > 0) {
+      const float q = improve::tet_quality(x[0], x[1], x[2], x[3], shape_);
+      if (q >= improve::surely_positive || (q > 0 && orient3d(x[0], x[1], x[2], x[3]) > 0))
+        return weight * q;
+    }
     double sum = 0;
     for (size_t i = 0; i < 4; ++i)
       for (size_t j = 0; j < i; ++j)
         sum += norm2(x[i] - x[j]);
-    const double volume6 = dot(x[1] - x[0], cross(x[2] - x[0], x[3] - x[0]));
-    return static_cast<float>(-std::fabs(volume6) / std::pow(sum / 6, 1.5));
+    return static_cast<float>(-std::fabs(volume6) / (sum * std::sqrt(sum)));
   }
   float off_of(const Tri& tri) const {
     Vec3d centroid;
@@ -347,5 +356,16 @@ private:
   Start start_{};
   std::vector<std::pair<int32_t, Vec3d>> moved_; ///< from where
 };
+
+/// Of each patch; how many edges in all.
+template <class Surface>
+int64_t divide_far(std::vector<FarPatch>& patches, const Surface& surface, float goal, double shape, int threads) {
+  std::vector<int64_t> divided(patches.size());
+  par::for_n(static_cast<int64_t>(patches.size()), threads, 1, [&](int64_t i) {
+    const auto k = static_cast<size_t>(i);
+    divided[k] = FarDivision<Surface>(patches[k], surface, goal, shape).run();
+  });
+  return std::accumulate(divided.begin(), divided.end(), int64_t{0});
+}
 
 } // namespace molmesh::contour::detail

@@ -14,13 +14,13 @@ namespace molmesh::contour::detail {
 class FarPatch {
 public:
   struct Element {
-    int32_t at; ///< in the mesh, or where it will be appended
+    int32_t at; ///< in the mesh; negative: not there yet
     Tet tet;    ///< vertices of the patch
     float quality;
     float weight; ///< 1, or unasked_weight
   };
   struct Triangle {
-    int32_t at;
+    int32_t at;     ///< as above
     int32_t parent; ///< in the mesh: which has its boundary and sides
     Tri tri;
     float off; ///< Off
@@ -34,7 +34,7 @@ public:
   std::vector<Triangle> triangle;
   std::vector<Vec3d> position;
   std::vector<uint8_t> is_free; ///< vertices off the surface and the walls that have all their elements here
-  int32_t tets = 0, tris = 0;   ///< of the mesh: where new ones go
+  std::vector<int32_t> vertex;  ///< in the mesh, of those that are there
 
   /// When all of the above are there.
   void find_stars() {
@@ -85,13 +85,13 @@ public:
     triangles_.emplace_back();
     for (const size_t t : e.elements) {
       Element half = element[t];
-      half.at = tets++;
+      half.at = -1;
       halve(element[t].tet, half.tet, e, middle, elements_, t, element.size());
       element.push_back(half);
     }
     for (const size_t t : e.triangles) {
       Triangle half = triangle[t];
-      half.at = tris++;
+      half.at = -1;
       halve(triangle[t].tri, half.tri, e, middle, triangles_, t, triangle.size());
       triangle.push_back(half);
     }
@@ -103,8 +103,8 @@ public:
       unite(element[t].tet, e, elements_, t);
     for (const size_t t : e.triangles)
       unite(triangle[t].tri, e, triangles_, t);
-    drop_last(e.elements.size(), element, elements_, tets, [](const Element& c) { return c.tet; });
-    drop_last(e.triangles.size(), triangle, triangles_, tris, [](const Triangle& c) { return c.tri; });
+    drop_last(e.elements.size(), element, elements_, [](const Element& c) { return c.tet; });
+    drop_last(e.triangles.size(), triangle, triangles_, [](const Triangle& c) { return c.tri; });
     position.pop_back();
     is_free.pop_back();
     elements_.pop_back();
@@ -133,8 +133,8 @@ private:
     stars[at(e.end[1])].push_back(t);
   }
   template <class Cells, class Corners>
-  static void drop_last(size_t n, Cells& cells, Stars& stars, int32_t& in_mesh, Corners corners) {
-    for (; n > 0; --n, --in_mesh) {
+  static void drop_last(size_t n, Cells& cells, Stars& stars, Corners corners) {
+    for (; n > 0; --n) {
       for (const int32_t v : corners(cells.back()))
         std::erase(stars[at(v)], cells.size() - 1);
       cells.pop_back();

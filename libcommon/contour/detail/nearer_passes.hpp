@@ -8,7 +8,7 @@
 namespace molmesh::contour::detail {
 
 /// Mover: measure(e, off) measures all triangles; move_nearer(view, active, n, fate) lets those move who have the
-/// turn; divide(patch, view) divides edges and returns how many; begin as RelaxPasses has it.
+/// turn; divide(patches, view) divides edges and returns how many; begin as RelaxPasses has it.
 template <class Launcher, class Elements, class Mover>
 class NearerPasses {
   template <class T>
@@ -63,7 +63,7 @@ private:
   bool divide() {
     find_candidates(1);
     DividePasses<Launcher> passes(m_, v_.r, v_.off, stars_.near(), near_, stars_.number());
-    const int64_t divided = mover_.divide(passes.patch(), v_.r);
+    const int64_t divided = mover_.divide(passes.patches(), v_.r);
     if (divided == 0)
       return false;
     passes.put(arrays_, off_);
