@@ -108,58 +108,24 @@ public:
   DividePasses(Launcher& m, const RelaxView& r, const float* off, const List<Launcher, int32_t>& elements,
                const List<Launcher, int32_t>& triangles, const int32_t* number)
       : m_(m), r_(r) {
-    auto element = taken<FarPatch::Element>(elements, [&](auto* to) {
+    FarPatch all;
+    all.element = taken<FarPatch::Element>(elements, [&](auto* to) {
       return TakeElements{r, elements.data(), to};
     });
-    auto triangle = taken<FarPatch::Triangle>(triangles, [&](auto* to) {
+    all.triangle = taken<FarPatch::Triangle>(triangles, [&](auto* to) {
       return TakeTriangles{r.e, off, triangles.data(), to};
     });
-    std::vector<int32_t> vertex;
-    for (const FarPatch::Element& e : element)
-      vertex.insert(vertex.end(), e.tet.begin(), e.tet.end());
-    std::sort(vertex.begin(), vertex.end());
-    vertex.erase(std::unique(vertex.begin(), vertex.end()), vertex.end());
-    const List<Launcher, int32_t> which = sent(vertex);
-    const auto position = taken<Vec3d>(which, [&](auto* to) {
-      return TakePositions{r.e.position, which.data(), to};
+    for (const FarPatch::Element& e : all.element) // all of a triangle's vertices are an element's
+      all.vertex.insert(all.vertex.end(), e.tet.begin(), e.tet.end());
+    std::sort(all.vertex.begin(), all.vertex.end());
+    all.vertex.erase(std::unique(all.vertex.begin(), all.vertex.end()), all.vertex.end());
+    const List<Launcher, int32_t> which = sent(all.vertex);
+    all.position = taken<Vec3d>(which, [&](auto* to) { return TakePositions{r.e.position, which.data(), to}; });
+    all.is_free = taken<uint8_t>(which, [&](auto* to) { return TakeFree{r.bound, number, which.data(), to}; });
+    number_vertices(all, [&](int32_t v) {
+      return std::lower_bound(all.vertex.begin(), all.vertex.end(), v) - all.vertex.begin();
     });
-    const auto is_free = taken<uint8_t>(which, [&](auto* to) {
-      return TakeFree{r.bound, number, which.data(), to};
-    });
-
-    const auto own = [&](int32_t v) { // all of a triangle's are an element's
-      return static_cast<int32_t>(std::lower_bound(vertex.begin(), vertex.end(), v) - vertex.begin());
-    };
-    DisjointSets sets(vertex.size());
-    for (FarPatch::Element& e : element) {
-      std::transform(e.tet.begin(), e.tet.end(), e.tet.begin(), own);
-      for (const int32_t v : e.tet)
-        sets.join(e.tet[0], v);
-    }
-    std::vector<size_t> patch(vertex.size());
-    std::vector<int32_t> in_patch(vertex.size());
-    for (int32_t v = 0; v < static_cast<int32_t>(vertex.size()); ++v) {
-      const int32_t first = sets.first(v);
-      if (first == v)
-        patches_.emplace_back();
-      patch[at(v)] = first == v ? patches_.size() - 1 : patch[at(first)];
-      FarPatch& p = patches_[patch[at(v)]];
-      in_patch[at(v)] = static_cast<int32_t>(p.vertex.size());
-      p.vertex.push_back(vertex[at(v)]);
-      p.position.push_back(position[at(v)]);
-      p.is_free.push_back(is_free[at(v)]);
-    }
-    const auto local = [&](int32_t v) { return in_patch[at(v)]; };
-    for (FarPatch::Element& e : element) {
-      FarPatch& p = patches_[patch[at(e.tet[0])]];
-      std::transform(e.tet.begin(), e.tet.end(), e.tet.begin(), local);
-      p.element.push_back(e);
-    }
-    for (FarPatch::Triangle& t : triangle) {
-      FarPatch& p = patches_[patch[at(own(t.tri[0]))]];
-      std::transform(t.tri.begin(), t.tri.end(), t.tri.begin(), [&](int32_t v) { return local(own(v)); });
-      p.triangle.push_back(t);
-    }
+    split(all);
   }
   std::vector<FarPatch>& patches() { return patches_; }
 
@@ -171,20 +137,16 @@ public:
     std::vector<int32_t> vertex;
     std::vector<Vec3d> position, added;
     auto tets = static_cast<int32_t>(r_.e.tets), tris = static_cast<int32_t>(r_.e.tris);
-    for (const FarPatch& p : patches_) {
+    for (FarPatch& p : patches_) {
       const auto known = static_cast<int32_t>(p.vertex.size());
-      const auto first = static_cast<int32_t>(r_.e.positions + static_cast<int64_t>(added.size()));
-      const auto in_mesh = [&](int32_t v) { return v < known ? p.vertex[at(v)] : first + v - known; };
-      for (FarPatch::Element e : p.element) {
+      const auto first_added = static_cast<int32_t>(r_.e.positions + static_cast<int64_t>(added.size()));
+      number_vertices(p, [&](int32_t v) { return v < known ? p.vertex[at(v)] : first_added + v - known; });
+      for (FarPatch::Element& e : p.element)
         e.at = e.at < 0 ? tets++ : e.at;
-        std::transform(e.tet.begin(), e.tet.end(), e.tet.begin(), in_mesh);
-        element.push_back(e);
-      }
-      for (FarPatch::Triangle t : p.triangle) {
+      for (FarPatch::Triangle& t : p.triangle)
         t.at = t.at < 0 ? tris++ : t.at;
-        std::transform(t.tri.begin(), t.tri.end(), t.tri.begin(), in_mesh);
-        triangle.push_back(t);
-      }
+      element.insert(element.end(), p.element.begin(), p.element.end());
+      triangle.insert(triangle.end(), p.triangle.begin(), p.triangle.end());
       vertex.insert(vertex.end(), p.vertex.begin(), p.vertex.end());
       position.insert(position.end(), p.position.begin(), p.position.begin() + known);
       added.insert(added.end(), p.position.begin() + known, p.position.end());
@@ -213,6 +175,41 @@ public:
   }
 
 private:
+  template <class Number>
+  static void number_vertices(FarPatch& p, Number number) {
+    const auto numbered = [&](int32_t v) { return static_cast<int32_t>(number(v)); };
+    for (FarPatch::Element& e : p.element)
+      std::transform(e.tet.begin(), e.tet.end(), e.tet.begin(), numbered);
+    for (FarPatch::Triangle& t : p.triangle)
+      std::transform(t.tri.begin(), t.tri.end(), t.tri.begin(), numbered);
+  }
+  /// Into sets of elements with common vertices, in the order of their first vertices.
+  void split(FarPatch& all) {
+    const auto vertices = static_cast<int32_t>(all.vertex.size());
+    DisjointSets sets(all.vertex.size());
+    for (const FarPatch::Element& e : all.element)
+      for (const int32_t v : e.tet)
+        sets.join(e.tet[0], v);
+    std::vector<size_t> patch(all.vertex.size());
+    std::vector<int32_t> number(all.vertex.size());
+    for (int32_t v = 0; v < vertices; ++v) {
+      const int32_t first = sets.first(v);
+      if (first == v)
+        patches_.emplace_back();
+      patch[at(v)] = first == v ? patches_.size() - 1 : patch[at(first)];
+      FarPatch& p = patches_[patch[at(v)]];
+      number[at(v)] = static_cast<int32_t>(p.vertex.size());
+      p.vertex.push_back(all.vertex[at(v)]);
+      p.position.push_back(all.position[at(v)]);
+      p.is_free.push_back(all.is_free[at(v)]);
+    }
+    for (const FarPatch::Element& e : all.element)
+      patches_[patch[at(e.tet[0])]].element.push_back(e);
+    for (const FarPatch::Triangle& t : all.triangle)
+      patches_[patch[at(t.tri[0])]].triangle.push_back(t);
+    for (FarPatch& p : patches_)
+      number_vertices(p, [&](int32_t v) { return number[at(v)]; });
+  }
   template <class T, class Take>
   std::vector<T> taken(const List<Launcher, int32_t>& which, Take take) {
     auto to = m_.template array<T>(which.n);
