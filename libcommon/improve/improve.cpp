@@ -76,11 +76,11 @@ struct Attempt {
   float at_first = 1; // Pass::at_first
 };
 const Guard widened{70, 0.24, 1, 0};
-const std::vector<Attempt> attempts{{1}, {2}, {3}, {4}, {4, widened}, {5}};
-// Where the mesh ends in the surface, which then must not bend as it likes, a wider guard comes last, in larger
-// parts, either order of the worst for both efforts; before that points come back by way of a lower goal.
 const Attempt via_70{5, widened, 1, 0.7F}, via_50{5, widened, 1, 0.5F}, wider_3{3, widened, 1},
     wider_5{5, widened, 1};
+const std::vector<Attempt> attempts{{1}, {2}, {3}, {4}, {4, widened}, {5}, via_70, via_50};
+// Where the mesh ends in the surface, which then must not bend as it likes, a wider guard comes last, in larger
+// parts, either order of the worst for both efforts; before that points come back by way of a lower goal.
 const std::vector<Attempt> attempts_at_end{{1},    {2}, {3},     {4},     via_70,  via_70, via_50,
                                            via_50, {5}, wider_3, wider_5, wider_5, wider_3};
 
