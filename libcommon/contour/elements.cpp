@@ -180,7 +180,8 @@ Elements make_elements(const ComplexView& view, int threads) {
   out.edge_points = static_cast<int64_t>(out.position.size()) - out.face_points;
   const LargeArray<Vec3d> more = std::move(out.position);
   const int64_t own = view.vertices(), points = own + static_cast<int64_t>(more.size());
-  par::resize_pages(out.position, at(points), threads);
+  par::reserve_pages(out.position, at(points), par::a_few(at(points)), threads);
+  out.position.resize(at(points));
   par::for_n(points, threads,
              [&](int64_t i) { out.position[at(i)] = i < own ? view.position[i] : more[at(i - own)]; });
   return std::move(out);

@@ -25,7 +25,7 @@ public:
     constexpr int64_t much = int64_t{1} << 18; // bytes
     Array<T> out;
     if (n * static_cast<int64_t>(sizeof(T)) >= much)
-      reserve_pages(out, static_cast<size_t>(n), 0, threads_);
+      reserve_pages(out, static_cast<size_t>(n), a_few(static_cast<size_t>(n)), threads_);
     out.resize(static_cast<size_t>(n));
     return out;
   }

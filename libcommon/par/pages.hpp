@@ -6,6 +6,11 @@
 
 namespace molmesh::par {
 
+/// Of n elements: room to grow a little in place takes no memory before it is written.
+inline size_t a_few(size_t n) {
+  return n / 64;
+}
+
 /// Room for n elements, which will be written soon, and for `more`, which may be.
 template <class Vector>
 void reserve_pages(Vector& v, size_t n, size_t more, int threads) {

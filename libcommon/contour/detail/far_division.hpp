@@ -191,7 +191,7 @@ private:
 
   /// Until all elements round m and the free vertices by it are good enough.
   bool make_room(int32_t m) {
-    constexpr int most_rounds = 8, patience = 1;
+    constexpr int most_rounds = 8;
     constexpr float more = 1.2F, least_gain = 0.05F; // of the floor
     const float floor = start_.floor;
     const std::vector<int32_t> around = free_by(m);
@@ -207,7 +207,7 @@ private:
         worst = std::min(worst, worst_at(v, p_.position[at(v)]));
       if (worst >= floor)
         return true;
-      if (!any || (round > patience && worst < before + least_gain * floor))
+      if (!any || (round > 0 && worst < before + least_gain * floor))
         break;
     }
     return false;

@@ -43,7 +43,7 @@ struct CopyEach {
   T* to;
   HD void operator()(int64_t i) const { to[i] = from[i]; }
 };
-/// More elements, uninitialized, behind those that an array of a launcher has.
+/// More elements, uninitialized, behind those that an array of a launcher has; in place where it has the room.
 template <class Launcher, class Array>
 void grow(Launcher& m, Array& array, int64_t n) {
   if constexpr (requires { array.resize(static_cast<size_t>(n)); }) {
