@@ -3,6 +3,7 @@
 #include "contour/detail/far_patch.hpp"
 #include "contour/detail/passes.hpp"
 #include "contour/detail/region_passes.hpp"
+#include "contour/detail/relax_items.hpp"
 #include "mesh/disjoint_sets.hpp"
 #include <algorithm>
 #include <utility>

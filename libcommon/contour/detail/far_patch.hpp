@@ -47,8 +47,8 @@ public:
       for (const int32_t v : triangle[t].tri)
         triangles_[at(v)].push_back(t);
   }
-  const std::vector<size_t>& elements_at(int32_t vertex) const { return elements_[at(vertex)]; }
-  const std::vector<size_t>& triangles_at(int32_t vertex) const { return triangles_[at(vertex)]; }
+  const std::vector<size_t>& elements_at(int32_t v) const { return elements_[at(v)]; }
+  const std::vector<size_t>& triangles_at(int32_t v) const { return triangles_[at(v)]; }
 
   /// Of surface triangle t, from corner i to the next.
   Edge edge(size_t t, size_t i) const {
