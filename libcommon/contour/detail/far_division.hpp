@@ -54,6 +54,7 @@ public:
 
 private:
   static constexpr double most_distance = 0.45, reach = 5; // in spacings
+  static constexpr float least_floor = 1e-6F;
 
   struct Cost {
     double sum = 0;
@@ -62,9 +63,11 @@ private:
   /// Of the first edge divided: what is to be lowered, and what holds for all that follow from it.
   struct Start {
     Cost all;
+    int32_t middle; ///< the first new vertex
+    float floor;    ///< of elements; > 0
     double at_edge = 0;
-    float farthest = Off::most, floor;
-    int tried = 0; ///< places
+    float farthest = Off::most;
+    int tried = 0; ///< places, of all new vertices
   };
 
   Cost cost() const {
@@ -83,13 +86,13 @@ private:
       const FarPatch::Edge edge = p_.edge(t, i);
       if (!p_.is_divisible(edge))
         continue;
-      start_ = {before, 0, Off::most, goal_, 0};
+      start_ = {before, static_cast<int32_t>(p_.position.size()), goal_};
       for (const size_t k : edge.triangles) {
         start_.at_edge += Off::cost(p_.triangle[k].off);
         start_.farthest = std::max(start_.farthest, p_.triangle[k].off);
       }
       for (const size_t k : edge.elements)
-        start_.floor = std::min(start_.floor, p_.element[k].quality);
+        start_.floor = std::max(std::min(start_.floor, p_.element[k].quality), least_floor);
       if (divide(edge, 1))
         return true;
     }
@@ -112,7 +115,7 @@ private:
     const int32_t m = p_.divide(edge, 0.5 * (a + b));
     bool done = false;
     if (find_place(m, edge)) {
-      done = is_good(m);
+      done = is_good();
       const size_t worst = farthest_at(m);
       if (!done && depth < most_depth && p_.triangle[worst].off > Off::most)
         for (const size_t i : longest_first(worst)) {
@@ -166,6 +169,7 @@ private:
   /// Where the field is not known, the way there is that of the normals at the edge's ends.
   bool find_foot(Vec3d& x, const FarPatch::Edge& edge) const {
     constexpr double step = 0.25;
+    const Vec3d from = x;
     if (surface_.project(x, reach * h_))
       return true;
     Vec3d along, normal;
@@ -174,7 +178,6 @@ private:
       if (surface_.probe(p_.position[at(v)], distance, normal))
         along += normal;
     const double length = norm(along);
-    const Vec3d from = x;
     for (double way = step; length > 0 && way <= reach; way += step)
       for (const double side : {1., -1.}) {
         x = from + side * way * h_ / length * along;
@@ -200,8 +203,8 @@ private:
       const float before = worst;
       bool any = false;
       for (const int32_t v : around)
-        any |= improve(v, more * floor, [](Vec3d) { return true; });
-      any |= improve(m, floor, [&](Vec3d y) { return is_near(y); });
+        any |= make_better(v, more * floor, [](Vec3d) { return true; });
+      any |= make_better(m, floor, [&](Vec3d y) { return is_near(y); });
       worst = worst_at(m, p_.position[at(m)]);
       for (const int32_t v : around)
         worst = std::min(worst, worst_at(v, p_.position[at(v)]));
@@ -234,7 +237,7 @@ private:
   }
   /// Vertex v moves to where its worst element is best, unless that is good enough.
   template <class May>
-  bool improve(int32_t v, float enough, May may) {
+  bool make_better(int32_t v, float enough, May may) {
     constexpr double first = 0.8, last = 0.05; // steps, in spacings
     const Vec3d x = p_.position[at(v)];
     Vec3d place = x;
@@ -290,11 +293,13 @@ private:
     return *std::max_element(all.begin(), all.end(),
                              [&](size_t s, size_t t) { return p_.triangle[s].off < p_.triangle[t].off; });
   }
-  bool is_good(int32_t m) const {
+  bool is_good() const {
     constexpr double least_gain = 0.1;
+    for (auto m = start_.middle; m < static_cast<int32_t>(p_.position.size()); ++m)
+      if (p_.triangle[farthest_at(m)].off > start_.farthest)
+        return false;
     const Cost now = cost();
-    return p_.triangle[farthest_at(m)].off <= start_.farthest &&
-           (now.far < start_.all.far || now.sum < start_.all.sum - least_gain * start_.at_edge);
+    return now.far < start_.all.far || now.sum < start_.all.sum - least_gain * start_.at_edge;
   }
 
   void move(int32_t v, Vec3d y) {

@@ -23,10 +23,9 @@ public:
           rest_[k] += v.r.e.position[other];
       off_[k] = v.off[t];
       double distance;
-      if (!surface.probe(centroid(k, x_), distance, normal_[k])) {
-        distance = off_[k];
-        normal_[k] = {};
-      }
+      known_[k] = surface.probe(centroid(k, x_), distance, normal_[k]);
+      if (!known_[k])
+        continue;
       distance_[k] = distance < 0 ? -off_[k] : off_[k];
       cost_ += Off::cost(off_[k]);
       if (off_[k] > Off::least)
@@ -40,6 +39,8 @@ public:
   HD double expected(Vec3d y, double enough) const {
     double sum = 0;
     for (int64_t k = 0; k < n_; ++k) {
+      if (!known_[k])
+        continue;
       const auto off = static_cast<float>(std::fabs(distance_[k] + dot(normal_[k], y - x_) / (3 * spacing_)));
       sum += Off::cost(off);
       if (gets_out(k, off) || sum >= enough)
@@ -53,7 +54,7 @@ public:
     double sum = 0;
     for (int64_t k = 0; k < n_; ++k) {
       off[k] = Off::of(surface, centroid(k, y));
-      sum += Off::cost(off[k]);
+      sum += known_[k] ? Off::cost(off[k]) : 0;
       if (gets_out(k, off[k]) || sum >= enough)
         return false;
     }
@@ -78,6 +79,7 @@ private:
   Vec3d normal_[most];
   double distance_[most]; ///< in spacings, as far as off
   float off_[most];
+  bool known_[most]; ///< where the field is; the others do not count
 };
 
 /// Places for the vertex of a fan, those that promise most first.

@@ -61,7 +61,7 @@ private:
 
   /// Of the triangles that are still far, edges; false where there is none to divide.
   bool divide() {
-    find_candidates(1);
+    find_candidates(1); // with those that may make room, of all elements
     DividePasses<Launcher> passes(m_, v_.r, v_.off, stars_.near(), near_, stars_.number());
     const int64_t divided = mover_.divide(passes.patches(), v_.r);
     if (divided == 0)
@@ -75,7 +75,7 @@ private:
   }
 
   /// The far triangles' corners; after the first pass, for the few that elements hold back, all vertices of
-  /// elements there. No triangle becomes far: a pass looks among what the one before it found.
+  /// elements there. By moves no triangle becomes far: a pass looks among what the one before it found.
   void find_candidates(int pass) {
     const ElementsView& e = v_.r.e;
     auto wanted = m_.filled(e.positions, uint8_t{0});
