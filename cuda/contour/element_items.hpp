@@ -4,7 +4,7 @@
 #include "contour/detail/complex_passes.hpp"
 #include "contour/detail/face_pass.hpp"
 #include "contour/detail/ring_pass.hpp"
-#include "cuda/par/items.hpp"
+#include "par/items.hpp"
 
 namespace molmesh::cuda {
 

@@ -32,7 +32,8 @@ typename Backend::template Array<T> joined(Backend& b, std::vector<typename Back
   auto all = b.template array<T>(n);
   int64_t at = 0;
   for (size_t i = 0; i < part.size(); ++i) {
-    b.for_n("copy", count[i], CopyItems<T>{part[i].data(), all.data() + at}, {2. * double(count[i]) * sizeof(T)});
+    b.for_n("copy", count[i], par::CopyItems<T>{part[i].data(), all.data() + at},
+            {2. * double(count[i]) * sizeof(T)});
     at += count[i];
     part[i] = {};
   }
@@ -55,8 +56,8 @@ public:
     const auto point = all(&ElementRun<Backend>::point);
     const int64_t own = c.vertices(), more = point.size();
     out.position = b_.template array<Vec3d>(own + more);
-    b_.for_n("copy", own, CopyItems<Vec3d>{c.position, out.position.data()}, {48. * double(own)});
-    b_.for_n("copy", more, CopyItems<Vec3d>{point.data(), out.position.data() + own}, {48. * double(more)});
+    b_.for_n("copy", own, par::CopyItems<Vec3d>{c.position, out.position.data()}, {48. * double(own)});
+    b_.for_n("copy", more, par::CopyItems<Vec3d>{point.data(), out.position.data() + own}, {48. * double(more)});
     return out;
   }
 

@@ -153,7 +153,7 @@ private:
     }
     if (!Make::check) {
       run.point = b_.template array<Vec3d>(total[3]);
-      b_.for_n("copy", total[3], CopyItems<Vec3d>{point.data(), run.point.data()}, {double(total[3]) * 48});
+      b_.for_n("copy", total[3], par::CopyItems<Vec3d>{point.data(), run.point.data()}, {double(total[3]) * 48});
     }
     more->link_count.push_back(total[2]);
     more->point_count.push_back(total[3]);
@@ -171,7 +171,7 @@ private:
     b_.for_n("link keys", n, LinkEdge{link.data(), index.data(), edge.data()}, {double(n) * 32});
     b_.sort_pairs("sort links", edge.data(), index.data(), n);
     Array<Link> sorted = b_.template array<Link>(n);
-    b_.for_n("gather links", n, Gather<Link>{link.data(), index.data(), sorted.data()}, {double(n) * 44});
+    b_.for_n("gather links", n, par::Gather<Link>{link.data(), index.data(), sorted.data()}, {double(n) * 44});
     return sorted;
   }
   /// First link of each edge, then their number.
@@ -180,7 +180,7 @@ private:
     b_.for_n("first links", n, FirstLink{link.data(), first.data(), index.data()}, {double(n) * 36});
     edges = b_.scan("scan", first.data(), n);
     Array<int64_t> out = b_.filled(edges + 1, n);
-    b_.for_n("compact", n, Compact<int64_t>{index.data(), first.data(), out.data()}, {double(n) * 24});
+    b_.for_n("compact", n, par::Compact<int64_t>{index.data(), first.data(), out.data()}, {double(n) * 24});
     return out;
   }
 

@@ -81,7 +81,7 @@ public:
     b_.for_n("first of equal", all, FirstOfEqual{found.data(), first.data()}, {double(all) * 16});
     n = b_.scan("scan", first.data(), all);
     Array<Key> out = b_.template array<Key>(n);
-    b_.for_n("compact", all, Compact<Key>{found.data(), first.data(), out.data()}, {double(all) * 16});
+    b_.for_n("compact", all, par::Compact<Key>{found.data(), first.data(), out.data()}, {double(all) * 16});
     return out;
   }
 

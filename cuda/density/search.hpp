@@ -107,7 +107,8 @@ private:
              {double(children) * 16});
     n = b_.scan("scan", kept.data(), children);
     Array<Key> out = b_.template array<Key>(n);
-    b_.for_n("compact", children, Compact<Key>{child.data(), kept.data(), out.data()}, {double(children) * 16});
+    b_.for_n("compact", children, par::Compact<Key>{child.data(), kept.data(), out.data()},
+             {double(children) * 16});
     return out;
   }
 
@@ -172,7 +173,7 @@ private:
   }
   void list_near(Candidates& to, const Array<Key>& cubes, int64_t n, int32_t edge) {
     to.cube = b_.template array<Key>(n);
-    b_.for_n("copy", n, CopyItems<Key>{cubes.data(), to.cube.data()}, {double(n) * 16});
+    b_.for_n("copy", n, par::CopyItems<Key>{cubes.data(), to.cube.data()}, {double(n) * 16});
     sort_keys(b_, to.cube.data(), n);
     to.begin = b_.template array<int64_t>(n + 1);
     ListNearCubes item{view_, frame_, edge, to.cube.data(), to.begin.data(), nullptr};
@@ -278,12 +279,12 @@ private:
       const int64_t opens = b_.scan("scan", open.data(), n);
       known.n = b_.scan("scan", at.data(), n);
       const Array<Key> open_key = b_.template array<Key>(opens);
-      b_.for_n("compact", n, Compact<Key>{candidate.data(), open.data(), open_key.data()}, {double(n) * 16});
+      b_.for_n("compact", n, par::Compact<Key>{candidate.data(), open.data(), open_key.data()}, {double(n) * 16});
       wave.push_back(evaluate(found.near, open_key, opens, slab, analyzed, counts));
       known.key = b_.template array<Key>(known.n);
       known.mask = b_.template array<const uint64_t*>(known.n);
       known.value = b_.template array<const float*>(known.n);
-      b_.for_n("compact", n, Compact<Key>{candidate.data(), at.data(), known.key.data()}, {double(n) * 16});
+      b_.for_n("compact", n, par::Compact<Key>{candidate.data(), at.data(), known.key.data()}, {double(n) * 16});
       b_.for_n("gather known blocks", n,
                FillKnown{state.data(), open.data(), at.data(), wave.back().mask.data(), blocks_.all_above(),
                          wave.back().value.data(), known.mask.data(), known.value.data()},

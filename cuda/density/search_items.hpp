@@ -2,7 +2,7 @@
 #pragma once
 #include "cuda/density/band_items.hpp"
 #include "cuda/density/bounds.hpp"
-#include "cuda/par/items.hpp"
+#include "par/items.hpp"
 
 namespace molmesh::cuda {
 

@@ -103,7 +103,7 @@ private:
     const int64_t n = b_.scan("scan", wanted.data(), points);
     visited_ += n;
     const Array<uint32_t> active = b_.template array<uint32_t>(n);
-    b_.for_n("compact", points, Compact<uint32_t>{order.data(), wanted.data(), active.data()},
+    b_.for_n("compact", points, par::Compact<uint32_t>{order.data(), wanted.data(), active.data()},
              {double(points) * 12});
     const Array<Vec3d> to = b_.template array<Vec3d>(points);
     const Array<uint8_t> moving = b_.filled(points, uint8_t{0});

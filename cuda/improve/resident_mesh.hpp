@@ -4,7 +4,7 @@
 #include "contour/detail/passes.hpp"
 #include "cuda/improve/known_mesh.hpp"
 #include "cuda/par/backend.hpp"
-#include "cuda/par/items.hpp"
+#include "par/items.hpp"
 #include <utility>
 #include <vector>
 
@@ -43,7 +43,7 @@ public:
     const auto moved = contour::detail::flagged(b_, "moved points", points, has_moved.data());
     const Array<Vec3d> place = b_.template array<Vec3d>(moved.n);
     b_.for_n("moved points", moved.n,
-             Gather<Vec3d>{point.data(), reinterpret_cast<const uint32_t*>(moved.data()), place.data()},
+             par::Gather<Vec3d>{point.data(), reinterpret_cast<const uint32_t*>(moved.data()), place.data()},
              {double(moved.n) * 52});
     const std::vector<int32_t> slot = on_host(moved.array, moved.n);
     const std::vector<Vec3d> to = on_host(place, moved.n);
@@ -80,12 +80,13 @@ private:
     }
     if (to.size() < n) {
       auto more = b_.template array<T>(n + n / 8);
-      b_.for_n("copy", had, CopyItems<T>{to.data(), more.data()}, {2. * double(had) * sizeof(T)});
+      b_.for_n("copy", had, par::CopyItems<T>{to.data(), more.data()}, {2. * double(had) * sizeof(T)});
       to = std::move(more);
     }
     const auto at = b_.upload(slot.data(), count);
     const auto from = b_.upload(value.data(), count);
-    b_.for_n("update", count, Scatter<T>{from.data(), at.data(), to.data()}, {double(count) * (2 * sizeof(T) + 4)});
+    b_.for_n("update", count, par::Scatter<T>{from.data(), at.data(), to.data()},
+             {double(count) * (2 * sizeof(T) + 4)});
   }
   template <class T>
   std::vector<T> on_host(const Array<T>& from, int64_t n) {

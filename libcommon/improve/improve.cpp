@@ -78,6 +78,7 @@ struct Attempt {
 const Guard widened{70, 0.24, 1, 0};
 const Attempt via_70{5, widened, 1, 0.7F}, via_50{5, widened, 1, 0.5F}, wider_3{3, widened, 1},
     wider_5{5, widened, 1};
+// Last by way of a lower goal.
 const std::vector<Attempt> attempts{{1}, {2}, {3}, {4}, {4, widened}, {5}, via_70, via_50};
 // Where the mesh ends in the surface, which then must not bend as it likes, a wider guard comes last, in larger
 // parts, either order of the worst for both efforts; before that points come back by way of a lower goal.

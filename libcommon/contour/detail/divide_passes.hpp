@@ -2,7 +2,6 @@
 #pragma once
 #include "contour/detail/far_patch.hpp"
 #include "contour/detail/passes.hpp"
-#include "contour/detail/region_passes.hpp"
 #include "contour/detail/relax_items.hpp"
 #include "mesh/disjoint_sets.hpp"
 #include <algorithm>
@@ -17,10 +16,10 @@ struct RelaxArrays {
   Elements& elements;
   typename Launcher::template Array<float> quality;
   typename Launcher::template Array<uint8_t> bound;
-  void show(RelaxView& r) const {
+  void show(RelaxView& r) {
     r.e = elements.view();
-    r.quality = const_cast<float*>(quality.data());
-    r.bound = {const_cast<uint8_t*>(bound.data())};
+    r.quality = quality.data();
+    r.bound = {bound.data()};
   }
 };
 
@@ -43,12 +42,6 @@ struct TakeTriangles {
     to[i] = {t, t, e.tri[t], off[t]};
   }
 };
-struct TakePositions {
-  const Vec3d* position;
-  const int32_t* which;
-  Vec3d* to;
-  HD void operator()(int64_t i) const { to[i] = position[which[i]]; }
-};
 struct TakeFree {
   Bounds bound;
   const int32_t *number, *which;
@@ -58,12 +51,6 @@ struct TakeFree {
     to[i] = number[v] >= 0 && !bound.on_surface(v) && !bound.on_wall(v, 0) && !bound.on_wall(v, 1) &&
             !bound.on_wall(v, 2);
   }
-};
-struct PutPositions {
-  const Vec3d* from;
-  const int32_t* which;
-  Vec3d* position;
-  HD void operator()(int64_t i) const { position[which[i]] = from[i]; }
 };
 struct PutElements {
   const FarPatch::Element* from;
@@ -121,7 +108,9 @@ public:
     std::sort(all.vertex.begin(), all.vertex.end());
     all.vertex.erase(std::unique(all.vertex.begin(), all.vertex.end()), all.vertex.end());
     const List<Launcher, int32_t> which = sent(all.vertex);
-    all.position = taken<Vec3d>(which, [&](auto* to) { return TakePositions{r.e.position, which.data(), to}; });
+    all.position = taken<Vec3d>(which, [&](auto* to) {
+      return par::Gather<Vec3d, int32_t>{r.e.position, which.data(), to};
+    });
     all.is_free = taken<uint8_t>(which, [&](auto* to) { return TakeFree{r.bound, number, which.data(), to}; });
     number_vertices(all, [&](int32_t v) {
       return std::lower_bound(all.vertex.begin(), all.vertex.end(), v) - all.vertex.begin();
@@ -169,7 +158,8 @@ public:
              PutTriangles{triangles.data(), e.tri.data(), e.tri_sides.data(), e.boundary.data(), off.data()});
     const auto which = sent(vertex);
     const auto places = sent(position);
-    m_.for_n("put positions", which.n, PutPositions{places.data(), which.data(), e.position.data()});
+    m_.for_n("put positions", which.n,
+             par::Scatter<Vec3d, int32_t>{places.data(), which.data(), e.position.data()});
     const auto vertices = sent(added);
     m_.for_n("put vertices", more,
              PutVertices{vertices.data(), e.position.data() + r_.e.positions, {all.bound.data()}, r_.e.positions});

@@ -4,6 +4,7 @@
 #include "contour/detail/far_patch.hpp"
 #include "contour/detail/nearer_items.hpp"
 #include "geom/predicates.hpp"
+#include "geom/tet_measures.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <array>
@@ -334,7 +335,7 @@ private:
     std::array<Vec3d, 4> x;
     for (size_t i = 0; i < 4; ++i)
       x[i] = p_.position[at(tet[i])];
-    const double volume6 = dot(x[1] - x[0], cross(x[2] - x[0], x[3] - x[0]));
+    const double volume6 = six_volume(x[0], x[1], x[2], x[3]);
     if (volume6 > 0) {
       const float q = improve::tet_quality(x[0], x[1], x[2], x[3], shape_);
       if (q >= improve::surely_positive || (q > 0 && orient3d(x[0], x[1], x[2], x[3]) > 0))

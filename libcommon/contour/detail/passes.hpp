@@ -1,6 +1,7 @@
 // passes.hpp — count, scan, fill, and words by key, over a launcher (par/launcher.hpp or a Backend of cuda/par).
 #pragma once
 #include "geom/hd.hpp"
+#include "par/items.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -37,12 +38,14 @@ struct List {
   const T* data() const { return array.data(); }
 };
 
-template <class T>
-struct CopyEach {
-  const T* from;
-  T* to;
-  HD void operator()(int64_t i) const { to[i] = from[i]; }
-};
+/// The first n, in the host's memory.
+template <class T, class Launcher>
+std::vector<T> downloaded(Launcher& m, const typename Launcher::template Array<T>& from, int64_t n) {
+  std::vector<T> to(static_cast<size_t>(n));
+  m.download(from, n, to.data());
+  return to;
+}
+
 /// More elements, uninitialized, behind those that an array of a launcher has; in place where it has the room.
 template <class Launcher, class Array>
 void grow(Launcher& m, Array& array, int64_t n) {
@@ -52,7 +55,7 @@ void grow(Launcher& m, Array& array, int64_t n) {
     using T = std::remove_cvref_t<decltype(*array.data())>;
     auto more = m.template array<T>(n);
     const auto had = static_cast<int64_t>(array.size());
-    m.for_n("copy", had, CopyEach<T>{array.data(), more.data()}, {2. * double(had) * sizeof(T)});
+    m.for_n("copy", had, par::CopyItems<T>{array.data(), more.data()}, {2. * double(had) * sizeof(T)});
     array = std::move(more);
   }
 }

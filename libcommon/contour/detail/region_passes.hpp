@@ -9,13 +9,6 @@
 
 namespace molmesh::contour::detail {
 
-template <class T, class Launcher>
-std::vector<T> downloaded(Launcher& m, const typename Launcher::template Array<T>& from, int64_t n) {
-  std::vector<T> to(static_cast<size_t>(n));
-  m.download(from, n, to.data());
-  return to;
-}
-
 template <class Launcher>
 class RegionPasses {
   template <class T>

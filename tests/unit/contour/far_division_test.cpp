@@ -1,6 +1,6 @@
 // far_division_test.cpp — an edge divided and joined again; a far one whose new vertex needs room.
 #include "contour/detail/far_division.hpp"
-#include "geom/vec.hpp"
+#include "geom/tet_measures.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -33,7 +33,7 @@ FarPatch ring_patch(bool closed) {
 
 double volume6(const FarPatch& p, const Tet& t) {
   const auto x = [&](size_t i) { return p.position[static_cast<size_t>(t[i])]; };
-  return dot(x(1) - x(0), cross(x(2) - x(0), x(3) - x(0)));
+  return six_volume(x(0), x(1), x(2), x(3));
 }
 
 /// What find_stars would find is there, in whatever order.

@@ -1,9 +1,9 @@
-// items.hpp — elements copied, compacted, gathered and scattered.
+// items.hpp — elements copied, compacted, gathered and scattered. Host and device.
 #pragma once
 #include "geom/hd.hpp"
 #include <cstdint>
 
-namespace molmesh::cuda {
+namespace molmesh::par {
 
 template <class T>
 struct CopyItems {
@@ -22,19 +22,19 @@ struct Compact {
       to[at[i]] = from[i];
   }
 };
-template <class T>
+template <class T, class Index = uint32_t>
 struct Gather {
   const T* from;
-  const uint32_t* index;
+  const Index* index;
   T* to;
   HD void operator()(int64_t i) const { to[i] = from[index[i]]; }
 };
-template <class T>
+template <class T, class Index = uint32_t>
 struct Scatter {
   const T* from;
-  const uint32_t* index; ///< each once
+  const Index* index; ///< each once
   T* to;
   HD void operator()(int64_t i) const { to[index[i]] = from[i]; }
 };
 
-} // namespace molmesh::cuda
+} // namespace molmesh::par
