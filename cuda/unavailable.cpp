@@ -1,9 +1,9 @@
 // unavailable.cpp — what --mode cuda answers in a build without CUDA.
+#include "base/error.hpp"
 #include "cuda/contour/contour.hpp"
 #include "cuda/density/density.hpp"
-#include "cuda/improve/improve.hpp"
+#include "cuda/optimize/optimize.hpp"
 #include "cuda/par/device.hpp"
-#include "error.hpp"
 
 namespace molmesh::cuda {
 
@@ -16,7 +16,7 @@ std::string device_name() {
   return {};
 }
 
-density::Band compute_density(const Hierarchy&, const density::Options&, density::Counts&, DeviceReport&, int64_t) {
+Band compute_density(const Hierarchy&, const density::Options&, density::Counts&, DeviceReport&, int64_t) {
   require_device();
   return {};
 }
@@ -27,8 +27,8 @@ TetMesh contour_mesh(const BlockGrid&, const contour::Options&, contour::Summary
   return {};
 }
 
-improve::Result improve_mesh(TetMesh&, const BlockGrid*, const improve::Options&,
-                             const std::function<void(const std::string&)>&, DeviceReport&, int64_t) {
+optimize::Result improve_mesh(TetMesh&, const BlockGrid*, const optimize::Options&,
+                              const std::function<void(const std::string&)>&, DeviceReport&, int64_t) {
   require_device();
   return {};
 }

@@ -1,6 +1,6 @@
 // read_all.cpp — in one piece where the size is known, else growing.
 #include "formats/read_all.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "par/pages.hpp"
 #include <algorithm>
 #include <istream>

@@ -41,9 +41,9 @@ case $last in density | mesh | improve) ;; *) echo "gpu.sh: -l: expected density
 failed() { status=1; echo "gpu.sh: FAILED: $*"; }
 
 sources() { # of the driver. What needs Highway, nanoflann or METIS is not used by it, or stands in alone/.
-  (cd "$root" && ls cuda/*/*.cu cuda/*/*.cpp libcommon/cli/{memory,control_groups}.cpp libcommon/{par,molecule,density,contour,contour/detail,improve,mesh}/*.cpp \
+  (cd "$root" && ls cuda/*/*.cu cuda/*/*.cpp libcommon/*/*.cpp libcommon/*/*/*.cpp \
     formats/hier/{hier_reader,text}.cpp tests/gpu/*.cpp tests/gpu/alone/*.cpp tests/gpu/*.cu 2>/dev/null |
-    grep -vE '_kernel.cpp|cluster_tree.cpp|partition.cpp|carry.cpp')
+    grep -vE '_simd.cpp|cluster_tree.cpp|partition.cpp|carry.cpp|libcommon/label/')
 }
 
 build() { # build DRIVER FLAGS: cuda/ and libcommon/ with nvcc and the standard library alone
@@ -56,7 +56,7 @@ build() { # build DRIVER FLAGS: cuda/ and libcommon/ with nvcc and the standard 
       continue
     fi
     flags='-Xcompiler=-ffp-contract=off,-fopenmp,-ffunction-sections'
-    case $f in cuda/improve/*.cu | cuda/contour/*.cu) flags="$flags --fmad=false" ;; esac
+    case $f in cuda/optimize/*.cu | cuda/contour/*.cu) flags="$flags --fmad=false" ;; esac
     (cd "$root" && nvcc -std=c++20 -O3 --expt-relaxed-constexpr $flags $2 -I. -Ilibcommon -Itests -c "$f" -o "$name") || echo "$f" >>"$work/failed" &
     jobs=$((jobs + 1))
     [ $((jobs % $(nproc))) -ne 0 ] || wait

@@ -4,9 +4,9 @@
 #include "contour/contour.hpp"
 #include "cuda/contour/contour.hpp"
 #include "cuda/par/device.hpp"
-#include "cuda/report.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
+#include "tools/device_report.hpp"
 #include <algorithm>
 #include <optional>
 

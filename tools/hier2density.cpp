@@ -4,13 +4,13 @@
 #include "cli/run.hpp"
 #include "cuda/density/density.hpp"
 #include "cuda/par/device.hpp"
-#include "cuda/report.hpp"
 #include "density/density.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/vdb/leaves.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "molecule/words.hpp"
 #include "par/par.hpp"
+#include "tools/device_report.hpp"
 #include <optional>
 
 using namespace molmesh;
@@ -82,7 +82,7 @@ density::Options density_options(const Options& o) {
   return d;
 }
 
-void report(cli::Run& r, const density::Band& band, const formats::Leaves& leaves, const density::Counts& counts) {
+void report(cli::Run& r, const Band& band, const formats::Leaves& leaves, const density::Counts& counts) {
   const Vec3i n = band.frame.points;
   r.counts["atoms"] = band.info.atoms;
   r.counts["grid_points"] = {n.x, n.y, n.z};
@@ -107,14 +107,14 @@ Status run(const Options& o, cli::Run& r) {
   Hierarchy h;
   par::start_threads_during(o.resolved_threads(), [&] { h = formats::read_hier(in.stream(), in.name()); });
   formats::Leaves leaves(o.resolved_threads());
-  d.take = [&](const FieldInfo& info, std::span<const density::BandBlocks> runs) {
+  d.take = [&](const FieldInfo& info, std::span<const BandBlocks> runs) {
     r.phase("write");
     leaves.add(runs, static_cast<float>(info.inside_value));
     r.phase("density");
   };
   r.phase("density");
   density::Counts counts;
-  density::Band band;
+  Band band;
   {
     cli::Progress progress("density", "nodes", o.quiet);
     d.progress = [&progress](int64_t done, int64_t total) { progress(done, total); };

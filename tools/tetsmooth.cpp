@@ -2,19 +2,19 @@
 #include "cli/file.hpp"
 #include "cli/limits.hpp"
 #include "cli/run.hpp"
-#include "cuda/improve/improve.hpp"
+#include "cuda/optimize/optimize.hpp"
 #include "cuda/par/device.hpp"
-#include "cuda/report.hpp"
 #include "formats/hier/hier.hpp"
+#include "formats/report/optimization.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
-#include "improve/improve.hpp"
-#include "improve/report.hpp"
 #include "mesh/carry.hpp"
 #include "mesh/partition.hpp"
 #include "mesh/same_source.hpp"
 #include "mesh/worst.hpp"
 #include "molecule/nearest.hpp"
+#include "optimize/optimize.hpp"
+#include "tools/device_report.hpp"
 #include <optional>
 #include <utility>
 
@@ -68,17 +68,17 @@ Status run_tool(const Options& o, cli::Run& run) {
     require_same_source(mesh, !notes.isovalue_missing, grid->info, density->name());
   const CarriedArrays arrays(mesh);
   run.counts.update({{"elements_before", mesh.tet.size()}, {"points_before", mesh.point.size()}});
-  improve::Options options{.iterations = o.iterations, .threads = threads, .measure_later = true};
+  optimize::Options options{.iterations = o.iterations, .threads = threads, .measure_later = true};
   options.min_dihedral = std::max(options.min_dihedral, o.min_dihedral);
   options.max_dihedral = std::min(options.max_dihedral, o.max_dihedral);
   if (mesh.creator.rfind("density2tet", 0) == 0)
     options.sharp = 180; // an isosurface is smooth: folds of its first mesh are no features
-  improve::Result result;
+  optimize::Result result;
   try {
     const auto phase = [&](const std::string& p) { run.phase(p); };
     cuda::DeviceReport device;
     result = o.on_device() ? cuda::improve_mesh(mesh, grid ? &*grid : nullptr, options, phase, device)
-                           : improve::improve(mesh, grid ? &*grid : nullptr, options, phase);
+                           : optimize::improve(mesh, grid ? &*grid : nullptr, options, phase);
     if (o.on_device())
       run.counts["device"] = cuda::json(device);
   } catch (const Error& e) {
@@ -86,7 +86,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   }
   run.phase("partition");
   mesh.part = partition(mesh, o.parts, threads, std::move(result.across), [&] { result.measure(); });
-  const improve::Counts& c = result.counts;
+  const optimize::Counts& c = result.counts;
   run.counts.update({{"elements", mesh.tet.size()},
                      {"points", mesh.point.size()},
                      {"rounds", result.rounds},
@@ -117,7 +117,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   formats::write_vtu(output.stream(), mesh);
   run.complete(output);
   if (run.verbose)
-    run.note("dihedral angles " + improve::text(result.before) + "; now " + improve::text(result.after));
+    run.note("dihedral angles " + optimize::text(result.before) + "; now " + optimize::text(result.after));
   const AngleLimits limits{o.min_dihedral, o.max_dihedral};
   if (limits.hold(result.after.min) && limits.hold(result.after.max))
     return Status::good;

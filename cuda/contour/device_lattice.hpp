@@ -1,6 +1,6 @@
 // device_lattice.hpp — the lattice and the block grid under it in a Backend's memory.
 #pragma once
-#include "contour/lattice.hpp"
+#include "contour/octree/lattice.hpp"
 #include "cuda/par/backend.hpp"
 
 namespace molmesh::cuda {

@@ -1,10 +1,10 @@
 // device_stages.hpp — contour::Stages on a Backend, by the host's own passes and functions: the same mesh.
 // Everything stays in the Backend's memory up to the mesh.
 #pragma once
-#include "contour/detail/assembly_passes.hpp"
-#include "contour/detail/complex_passes.hpp"
-#include "contour/detail/octree_index.hpp"
-#include "contour/detail/region_passes.hpp"
+#include "contour/assembly/assembly_passes.hpp"
+#include "contour/complex/complex_passes.hpp"
+#include "contour/octree/octree_index.hpp"
+#include "contour/regions/region_passes.hpp"
 #include "contour/stages.hpp"
 #include "cuda/contour/device_mesh.hpp"
 #include "cuda/contour/elements.hpp"
@@ -37,7 +37,7 @@ public:
     lattice_ = &lattice;
     // The host's logarithms, beside the kernels up to the elements.
     isosurface_ = std::async(std::launch::async, [&grid = lattice.grid(), threads = threads_] {
-      return std::make_unique<const improve::Isosurface>(grid, threads); // until let_go()
+      return std::make_unique<const Isosurface>(grid, threads); // until let_go()
     });
     b_.plan(40 * static_cast<int64_t>(lattice.grid().value.size())); // with as many surface cells as usual
     selection_.find_surface(lattice);
@@ -63,7 +63,7 @@ public:
     b_.plan(most_beside(elements_.tet.size(), elements_.position.size(), elements_.tri.size()));
   }
   void relax() override {
-    const std::unique_ptr<const improve::Isosurface> surface = isosurface_.get();
+    const std::unique_ptr<const Isosurface> surface = isosurface_.get();
     TeamMover<Backend> mover(b_, *surface, threads_);
     const int64_t known = complex_->view.vertices();
     auto lattice_class = b_.template array<uint8_t>(known);
@@ -137,16 +137,15 @@ private:
     on_phase("elements");
     restored_ = complex_->restore_spoiling(
         [&](const Ids& near, const Ids* ends) { return maker_.spoiled_of(complex_->view, near, ends); });
-    split_cells_ = contour::detail::gather<int32_t>(b_, "split cells", tree.leaves,
-                                                    contour::detail::SplitLeaves{complex_->view})
-                       .n;
+    split_cells_ =
+        par::gather<int32_t>(b_, "split cells", tree.leaves, contour::detail::SplitLeaves{complex_->view}).n;
   }
 
   Backend& b_;
   int threads_;
   int64_t copy_bytes_;
   const contour::Lattice* lattice_ = nullptr;
-  std::future<std::unique_ptr<const improve::Isosurface>> isosurface_;
+  std::future<std::unique_ptr<const Isosurface>> isosurface_;
   Selection<Backend> selection_;
   ElementMaker<Backend> maker_;
   Array<uint32_t> slot_;

@@ -1,9 +1,9 @@
 // element_items.hpp — faces and rings made twice: counted, and written where the counts' sums say. No appends, and
 // the order of the leaves and edges whatever the threads.
 #pragma once
-#include "contour/detail/complex_passes.hpp"
-#include "contour/detail/face_pass.hpp"
-#include "contour/detail/ring_pass.hpp"
+#include "contour/complex/complex_passes.hpp"
+#include "contour/elements/interior_edges.hpp"
+#include "contour/elements/sign_change_edges.hpp"
 #include "par/items.hpp"
 
 namespace molmesh::cuda {
@@ -27,7 +27,7 @@ struct Sink {
 /// Vertices that elements without positive volume hang on, as flags.
 struct SpoiledSink {
   uint8_t* flag;
-  HD void push_back(int32_t vertex) const { contour::detail::raise(flag[vertex]); }
+  HD void push_back(int32_t vertex) const { par::raise(flag[vertex]); }
 };
 
 /// contour::detail::Batch for one item.

@@ -1,6 +1,6 @@
 // element_sinks.hpp — where the elements of each run go: into one array.
 #pragma once
-#include "contour/elements.hpp"
+#include "contour/elements/elements.hpp"
 #include "cuda/contour/element_items.hpp"
 #include "cuda/par/backend.hpp"
 #include <utility>

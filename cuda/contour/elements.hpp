@@ -1,7 +1,7 @@
 // elements.hpp — contour::make_elements on a Backend: the same functions for faces and rings, so the same elements
 // in the same order. Runs of leaves, one after the other, where the device's memory asks for it.
 #pragma once
-#include "contour/elements.hpp"
+#include "contour/elements/elements.hpp"
 #include "cuda/contour/element_items.hpp"
 #include "cuda/contour/element_sinks.hpp"
 #include "cuda/par/backend.hpp"
@@ -16,7 +16,7 @@ class ElementMaker {
   using Array = typename Backend::template Array<T>;
 
 public:
-  using Ids = contour::detail::List<Backend, int32_t>;
+  using Ids = par::List<Backend, int32_t>;
   ElementMaker(Backend& b, int64_t least_run) : b_(b), least_run_(least_run) {}
 
   /// What it tells of the elements that its sink took.
@@ -45,7 +45,7 @@ public:
     const Rings rings = join(more, ends, view.grid_vertices);
     make(MakeRings<true>{vertices(view, rings), rings.link.data(), rings.first.data()}, rings.edges,
          view.vertices(), none, nullptr, flag.data());
-    return contour::detail::flagged(b_, "spoiled", view.vertices(), flag.data());
+    return par::flagged(b_, "spoiled", view.vertices(), flag.data());
   }
   int64_t runs() const { return runs_; }
 
@@ -77,8 +77,8 @@ private:
     Array<Link> link = joined<Link>(b_, more.link, more.link_count);
     int64_t links = std::accumulate(more.link_count.begin(), more.link_count.end(), int64_t{0});
     if (ends) {
-      auto kept = contour::detail::gather<Link>(b_, "whole edges", links,
-                                                WholeEdges{link.data(), ends->data(), ends->n, grid_vertices});
+      auto kept = par::gather<Link>(b_, "whole edges", links,
+                                    WholeEdges{link.data(), ends->data(), ends->n, grid_vertices});
       link = std::move(kept.array);
       links = kept.n;
     }

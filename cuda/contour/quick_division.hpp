@@ -1,11 +1,11 @@
 // quick_division.hpp — quotients rounded as IEEE 754 has them, without a branch at each for those that lie next to
 // underflow and overflow: whether there were such is asked once, after all.
 #pragma once
-#include "geom/hd.hpp"
+#include "base/hd.hpp"
 
 namespace molmesh::cuda {
 
-/// What improve::spoke_quality divides by, which is positive: its bits are right where holds() is true in the end.
+/// What spoke_quality divides by, which is positive: its bits are right where holds() is true in the end.
 class QuickDivision {
 public:
   HD void invert(float x, float& out) {

@@ -1,13 +1,13 @@
 // relax.hpp — contour::relax on a Backend: the host's passes; a team looks for a vertex's place, an element of its
-// star to each thread, in the order and with the rounding of improve::Spokes.
+// star to each thread, in the order and with the rounding of Spokes.
 #pragma once
-#include "contour/detail/far_division.hpp"
-#include "contour/detail/move_nearer.hpp"
-#include "contour/detail/relax_passes.hpp"
+#include "contour/relaxation/relax_passes.hpp"
+#include "contour/surface_distance/far_division.hpp"
+#include "contour/surface_distance/move_nearer.hpp"
 #include "cuda/contour/quick_division.hpp"
-#include "cuda/improve/device_isosurface.hpp"
+#include "cuda/optimize/device_isosurface.hpp"
 #include "geom/predicates.hpp"
-#include "improve/spoke_quality.hpp"
+#include "geom/star_quality_items.hpp"
 #include <bit>
 
 namespace molmesh::cuda {
@@ -33,8 +33,7 @@ public:
   static constexpr int most_places = StarShared::most_places;
 
   /// spoke, quality: scratch for all stars, as MoveTeams has it.
-  HD TeamStar(const RelaxView& r, int32_t c, Team team, improve::Spoke<float>* spoke, float* quality,
-              StarShared& shared)
+  HD TeamStar(const RelaxView& r, int32_t c, Team team, Spoke<float>* spoke, float* quality, StarShared& shared)
       : r_(r), team_(team), vertex_(r.vertex[c]), n_(static_cast<int32_t>(r.first[c + 1] - r.first[c])),
         element_(r.element + r.first[c]), spoke_(spoke + r.first[c]), quality_(quality + r.first[c]),
         shared_(shared), origin_(r.e.position[vertex_]) {
@@ -49,8 +48,8 @@ public:
       }
     for (int32_t k = team_.rank(); k < n_; k += Team::size) {
       const bool asked = is_asked(k);
-      const improve::Spoke<float> made =
-          improve::make_spoke(local(corner(k, 1), asked), local(corner(k, 2), asked), local(corner(k, 3), asked));
+      const Spoke<float> made =
+          make_spoke(local(corner(k, 1), asked), local(corner(k, 2), asked), local(corner(k, 3), asked));
       if (k == team_.rank())
         mine_ = made, mine_asked_ = asked;
       spoke_[k] = made;
@@ -71,7 +70,7 @@ public:
 
   HD float worst(Vec3d x, float) const {
     float least = 3e38f;
-    for_each_spoke([&](int32_t, bool asked, const improve::Spoke<float>& s) {
+    for_each_spoke([&](int32_t, bool asked, const Spoke<float>& s) {
       const float q = evaluate(s, asked, x);
       least = q < least ? q : least;
     });
@@ -86,7 +85,7 @@ public:
       for (float& l : least)
         l = 3e38f;
       const auto at = [&](int i) { return place[first + i < end ? first + i : end - 1]; };
-      for_each_spoke([&](int32_t, bool asked, const improve::Spoke<float>& s) {
+      for_each_spoke([&](int32_t, bool asked, const Spoke<float>& s) {
         QuickDivision by; // no branches: the places are in flight together
         float here[at_once];
         for (int i = 0; i < at_once; ++i)
@@ -131,7 +130,7 @@ public:
   HD Vec3d ascent(Vec3d x, double step) {
     // Of equals the first, and one that is asked for before others.
     uint64_t least = ~uint64_t{0};
-    for_each_spoke([&](int32_t k, bool asked, const improve::Spoke<float>& s) {
+    for_each_spoke([&](int32_t k, bool asked, const Spoke<float>& s) {
       uint32_t bits = std::bit_cast<uint32_t>(evaluate(s, asked, x) + 0.0f); // in the numbers' order
       bits ^= bits >> 31 ? ~uint32_t{0} : uint32_t{1} << 31;
       const uint64_t key = uint64_t{bits} << 32 | uint32_t{!asked} << 31 | static_cast<uint32_t>(k);
@@ -161,7 +160,7 @@ public:
       Vec3d p[4];
       for (size_t i = 0; i < 4; ++i)
         p[i] = t[i] == vertex_ ? x : r_.e.position[t[i]];
-      const float q = weight(k) * improve::tet_quality(p[0], p[1], p[2], p[3], r_.shape);
+      const float q = weight(k) * tet_quality(p[0], p[1], p[2], p[3], r_.shape);
       quality_[k] = q <= worst || orient3d(p[0], p[1], p[2], p[3]) <= 0 ? refused : q;
     }
     team_.sync();
@@ -186,20 +185,20 @@ private:
   HD Vec3d corner(int32_t k, int i) const {
     const Tet& t = r_.e.tet[element_[k]];
     const int moving = t[0] == vertex_ ? 0 : t[1] == vertex_ ? 1 : t[2] == vertex_ ? 2 : 3;
-    return r_.e.position[t[static_cast<size_t>(improve::spoke_corner(moving, i))]];
+    return r_.e.position[t[static_cast<size_t>(spoke_corner(moving, i))]];
   }
   HD Vec3f local(Vec3d x, bool asked) const {
     const Vec3d u = (x - origin_) * inverse_[asked];
     return {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z)};
   }
-  template <class By = const improve::Division>
-  HD float quality(const improve::Spoke<float>& s, const Vec3f& y, By&& by = {}) const {
+  template <class By = const Division>
+  HD float quality(const Spoke<float>& s, const Vec3f& y, By&& by = {}) const {
     float q;
-    improve::spoke_quality(s, y.x, y.y, y.z, q, static_cast<float>(r_.shape), by);
+    spoke_quality(s, y.x, y.y, y.z, q, static_cast<float>(r_.shape), by);
     return q;
   }
   /// With the vertex at x.
-  HD float evaluate(const improve::Spoke<float>& s, bool asked, Vec3d x) const {
+  HD float evaluate(const Spoke<float>& s, bool asked, Vec3d x) const {
     return (asked ? 1 : contour::detail::unasked_weight) * quality(s, local(x, asked));
   }
   /// see(k, asked, spoke) of this thread's elements.
@@ -208,18 +207,18 @@ private:
     if (team_.rank() < n_)
       see(team_.rank(), mine_asked_, mine_);
     for (int32_t k = team_.rank() + Team::size; k < n_; k += Team::size)
-      see(k, is_asked(k), improve::Spoke<float>(spoke_[k]));
+      see(k, is_asked(k), Spoke<float>(spoke_[k]));
   }
 
   const RelaxView& r_;
   Team team_;
   int32_t vertex_, n_;
   const int32_t* element_;
-  improve::Spoke<float>* spoke_; ///< [n]
-  float* quality_;               ///< [n]
+  Spoke<float>* spoke_; ///< [n]
+  float* quality_;      ///< [n]
   StarShared& shared_;
   Vec3d origin_;
-  improve::Spoke<float> mine_{}; ///< of the thread's first element
+  Spoke<float> mine_{}; ///< of the thread's first element
   bool mine_asked_ = false;
   double inverse_[2] = {0, 0}; ///< of the unit of length, of either
 };
@@ -227,12 +226,12 @@ private:
 /// Those who have the turn.
 struct MoveTeams {
   RelaxView r;
-  improve::IsosurfaceView surface;
+  IsosurfaceView surface;
   double most_distance;
   const int32_t* active;
   Fate* fate;
-  improve::Spoke<float>* spoke; ///< [star entries]
-  float* quality;               ///< [star entries]
+  Spoke<float>* spoke; ///< [star entries]
+  float* quality;      ///< [star entries]
   using Shared = StarShared;
   template <class Team>
   HD void operator()(int64_t i, Team team, Shared& shared) const {
@@ -247,11 +246,11 @@ struct MoveTeams {
 /// Those who have the turn; what a vertex's triangles are off all threads of its team write alike.
 struct MoveNearerTeams {
   contour::detail::NearerView v;
-  improve::IsosurfaceView surface;
+  IsosurfaceView surface;
   const int32_t* active;
   Fate* fate;
-  improve::Spoke<float>* spoke; ///< [star entries]
-  float* quality;               ///< [star entries]
+  Spoke<float>* spoke; ///< [star entries]
+  float* quality;      ///< [star entries]
   using Shared = StarShared;
   template <class Team>
   HD void operator()(int64_t i, Team team, Shared& shared) const {
@@ -267,7 +266,7 @@ template <class Backend>
 class TeamMover {
 public:
   /// threads: of the host.
-  TeamMover(Backend& b, const improve::Isosurface& surface, int threads)
+  TeamMover(Backend& b, const Isosurface& surface, int threads)
       : b_(b), on_host_(surface.view()), surface_(b, surface), threads_(threads) {}
   void judge(const contour::detail::Qualities& all) {
     const auto tets = double(all.e.tets);
@@ -275,7 +274,7 @@ public:
   }
   void begin(const RelaxView&, int64_t candidates, int64_t entries) {
     entries_ = double(entries) / double(candidates);
-    spoke_ = b_.template array<improve::Spoke<float>>(entries);
+    spoke_ = b_.template array<Spoke<float>>(entries);
     quality_ = b_.template array<float>(entries);
   }
   void move(const RelaxView& r, const int32_t* active, int64_t n, Fate* fate, double most_distance) {
@@ -285,8 +284,7 @@ public:
   }
   void measure(const contour::ElementsView& e, float* off) {
     b_.for_n("measure triangles", e.tris,
-             contour::detail::MeasureTriangles<improve::IsosurfaceView>{e, surface_.view(), off},
-             {double(e.tris) * 140});
+             contour::detail::MeasureTriangles<IsosurfaceView>{e, surface_.view(), off}, {double(e.tris) * 140});
   }
   void move_nearer(const contour::detail::NearerView& v, const int32_t* active, int64_t n, Fate* fate) {
     b_.for_teams("move nearer", n,
@@ -299,11 +297,11 @@ public:
 
 private:
   Backend& b_;
-  improve::IsosurfaceView on_host_;
+  IsosurfaceView on_host_;
   DeviceIsosurface<Backend> surface_;
   int threads_;
   double entries_ = 0; ///< of a star, in the mean
-  typename Backend::template Array<improve::Spoke<float>> spoke_;
+  typename Backend::template Array<Spoke<float>> spoke_;
   typename Backend::template Array<float> quality_;
 };
 

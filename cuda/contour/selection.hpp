@@ -1,8 +1,8 @@
 // selection.hpp — surface cells, samples and leaves on a Backend: the host's own passes
-// (libcommon/contour/detail/leaf_selection.hpp), so the same leaves.
+// (libcommon/contour/octree/leaf_selection.hpp), so the same leaves.
 #pragma once
-#include "contour/detail/leaf_selection.hpp"
-#include "contour/leaves.hpp"
+#include "contour/octree/leaf_selection.hpp"
+#include "contour/octree/leaves.hpp"
 #include "cuda/contour/device_lattice.hpp"
 #include <optional>
 
@@ -46,7 +46,7 @@ public:
 
 private:
   template <class T>
-  LargeArray<T> host(const contour::detail::List<Backend, T>& list) {
+  LargeArray<T> host(const par::List<Backend, T>& list) {
     LargeArray<T> copy(static_cast<size_t>(list.n));
     b_.download(list.array, list.n, copy.data());
     return copy;

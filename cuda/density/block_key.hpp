@@ -1,8 +1,8 @@
 // block_key.hpp — blocks of 8³ grid points as numbers that sort as (x, y, z) do; neighbours by bisection.
 #pragma once
-#include "density/block_grid.hpp"
-#include "density/field.hpp"
-#include "geom/hd.hpp"
+#include "base/hd.hpp"
+#include "density/field/field.hpp"
+#include "grid/block_grid.hpp"
 
 namespace molmesh::cuda {
 

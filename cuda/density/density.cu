@@ -5,12 +5,12 @@
 
 namespace molmesh::cuda {
 
-density::Band compute_density(const Hierarchy& h, const density::Options& options, density::Counts& counts,
-                              DeviceReport& report, int64_t most_bytes) {
+Band compute_density(const Hierarchy& h, const density::Options& options, density::Counts& counts,
+                     DeviceReport& report, int64_t most_bytes) {
   DeviceBackend backend(most_bytes);
   const auto find = [&](const density::Field& f, const GridFrame& frame, const density::SearchOptions& o,
                         density::SearchCounts& c) { return Search<DeviceBackend>(backend, f, frame, o).run(c); };
-  density::Band band = density::compute(h, options, counts, find);
+  Band band = density::compute(h, options, counts, find);
   report = report_of(backend, device_name());
   return band;
 }

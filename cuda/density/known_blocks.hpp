@@ -3,7 +3,7 @@
 #pragma once
 #include "cuda/density/search_items.hpp"
 #include "cuda/par/run_copy.hpp"
-#include "density/band.hpp"
+#include "grid/band.hpp"
 #include "par/pages.hpp"
 #include "par/par.hpp"
 #include <algorithm>
@@ -133,7 +133,7 @@ public:
   }
 
   /// By another thread than the device's, with threads of the host, while the device goes on.
-  void append(const SlabResult& r, density::Band& band, int threads) const {
+  void append(const SlabResult& r, Band& band, int threads) const {
     RunCopy<Backend> copy(b_, threads, RunCopy<Backend>::usual_bytes, true);
     const auto all = [&](const auto& array, auto& to, size_t more = 0) {
       par::resize_pages(to, static_cast<size_t>(array.size()) + more, threads);
@@ -159,7 +159,7 @@ public:
     band.block.resize(first + key.size());
     par::for_n(blocks, threads, [&](int64_t i) {
       const auto n = static_cast<size_t>(i);
-      density::BandBlock& block = band.block[first + n];
+      BandBlock& block = band.block[first + n];
       block.corner = frame_.corner(BlockFrame::block(key[n]));
       std::copy_n(bits.data() + 16 * i, 8, block.active.data());
       std::copy_n(bits.data() + 16 * i + 8, 8, block.above.data());

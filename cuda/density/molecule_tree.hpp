@@ -2,7 +2,7 @@
 // domains, chains, residues and their clusters of atoms, in the order of the file. What is found comes out group by
 // group, so the sums of every level are formed while passing by, without a list per level.
 #pragma once
-#include "density/field.hpp"
+#include "density/field/field.hpp"
 #include <vector>
 
 namespace molmesh::cuda {

@@ -7,7 +7,7 @@
 #include "cuda/density/device_field.hpp"
 #include "cuda/density/evaluate.hpp"
 #include "cuda/density/known_blocks.hpp"
-#include "density/search.hpp"
+#include "density/band/neighboring_search.hpp"
 #include <algorithm>
 #include <cmath>
 #include <future>
@@ -34,8 +34,8 @@ public:
     }
   }
 
-  density::Band run(density::SearchCounts& counts) {
-    density::Band band = density::empty_band(field_, frame_.grid, o_);
+  Band run(density::SearchCounts& counts) {
+    Band band = density::empty_band(field_, frame_.grid, o_);
     find_nodes();
     std::unique_ptr<SlabResult> before;
     std::future<void> taken; // of `before`, by the host's threads
@@ -87,11 +87,11 @@ private:
   using Known = cuda::Known<Backend>;
   using SlabResult = cuda::SlabResult<Backend>;
 
-  void give_away(const SlabResult& slab, density::Band& band) const {
+  void give_away(const SlabResult& slab, Band& band) const {
     blocks_.append(slab, band, o_.threads);
     if (!o_.take || band.block.empty())
       return;
-    const density::BandBlocks all = band.block;
+    const molmesh::BandBlocks all = band.block;
     o_.take(band.info, {&all, 1});
     band.block.clear();
     band.storage.clear();

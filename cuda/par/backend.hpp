@@ -20,8 +20,8 @@
 // of the host that the device pages: slower, and else the same. An item is a struct of plain views with a const
 // operator() marked HD, in a header that compiles without CUDA.
 #pragma once
+#include "base/hd.hpp"
 #include "cuda/par/ledger.hpp"
-#include "geom/hd.hpp"
 #include "par/work.hpp"
 #include <cstdint>
 #include <string>

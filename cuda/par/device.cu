@@ -1,7 +1,7 @@
 // device.cu — the driver, the device and the host's memory, asked once.
-#include "cli/memory.hpp"
+#include "base/error.hpp"
+#include "base/memory.hpp"
 #include "cuda/par/device.hpp"
-#include "error.hpp"
 #include <algorithm>
 #include <cuda_runtime.h>
 
@@ -36,7 +36,7 @@ std::string device_name() {
 }
 
 int64_t free_host_memory() {
-  return std::max<int64_t>(0, cli::memory_at_hand({}, cli::Swap::is_no_use));
+  return std::max<int64_t>(0, memory_at_hand({}, Swap::is_no_use));
 }
 
 } // namespace molmesh::cuda

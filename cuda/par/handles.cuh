@@ -1,6 +1,6 @@
 // handles.cuh — checked calls; streams, events and page-locked memory that give themselves back.
 #pragma once
-#include "error.hpp"
+#include "base/error.hpp"
 #include <algorithm>
 #include <cuda_runtime.h>
 #include <memory>

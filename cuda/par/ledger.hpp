@@ -1,6 +1,6 @@
 // ledger.hpp — the bytes that arrays take of a device's memory and, where that does not suffice, of the host's.
 #pragma once
-#include "error.hpp"
+#include "base/error.hpp"
 #include <algorithm>
 #include <cstdint>
 #include <limits>

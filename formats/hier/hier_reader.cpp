@@ -1,5 +1,5 @@
 // hier_reader.cpp — .hier in blocks of whole lines; every rule of HIERv1.md that a reader must check.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/hier/text.hpp"
 #include <algorithm>

@@ -1,5 +1,5 @@
 // hier_writer.cpp — .hier, record by record, through a buffer.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/hier/text.hpp"
 #include <algorithm>

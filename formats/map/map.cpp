@@ -1,6 +1,6 @@
 // map.cpp — CCP4/MRC and OpenDX, a line of points at a time: memory stays that of the sparse grid.
 #include "formats/map/map.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include <algorithm>
 #include <charconv>
 #include <cmath>

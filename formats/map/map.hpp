@@ -1,6 +1,6 @@
 // map.hpp — dense views of a sparse density grid for programs that read no OpenVDB (MAP.md). Written only.
 #pragma once
-#include "density/block_grid.hpp"
+#include "grid/block_grid.hpp"
 #include <iosfwd>
 
 namespace molmesh::formats {

@@ -1,6 +1,6 @@
 // mcsf.cpp — simplices with their material and the types of their faces.
 #include "formats/mcsf/mcsf.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/text_out.hpp"
 #include "formats/vtu/names.hpp"
 #include "mesh/adjacency.hpp"

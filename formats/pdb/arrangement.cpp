@@ -1,6 +1,6 @@
 // arrangement.cpp — domains, exponents and order.
 #include "formats/pdb/arrangement.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include <algorithm>
 #include <map>
 #include <numeric>

@@ -1,6 +1,6 @@
 // atom_site.cpp — what would make gemmi throw without saying where, or overflow, is refused here, by line.
 #include "formats/pdb/atom_site.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/parse.hpp"
 #include "molecule/words.hpp"

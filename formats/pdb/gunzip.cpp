@@ -1,6 +1,6 @@
 // gunzip.cpp — zlib around growing memory.
 #include "formats/pdb/gunzip.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include <algorithm>
 #include <limits>
 #include <memory>

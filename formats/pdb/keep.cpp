@@ -1,6 +1,6 @@
 // keep.cpp — models, alternative locations, waters, hydrogens, hetero atoms, the user's selection; in this order.
 #include "formats/pdb/keep.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/pdb/model_names.hpp"
 #include "formats/pdb/selection.hpp"
 #include <algorithm>

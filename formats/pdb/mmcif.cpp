@@ -1,5 +1,5 @@
 // mmcif.cpp — mmCIF and mmJSON through gemmi: only the categories that matter, missing columns filled in.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/pdb/atom_site.hpp"
 #include "formats/pdb/chains.hpp"
 #include "formats/pdb/mmcif_assembly.hpp"

@@ -1,6 +1,6 @@
 // mmcif_assembly.cpp — operator expressions and their products.
 #include "formats/pdb/mmcif_assembly.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/pdb/parse.hpp"
 #include <algorithm>
 #include <charconv>

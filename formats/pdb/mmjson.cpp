@@ -1,6 +1,6 @@
 // mmjson.cpp — {"data_ID": {"atom_site": {"Cartn_x": [1.5, …], …}, …}} into loops.
 #include "formats/pdb/mmjson.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/pdb/parse.hpp"
 #include <gemmi/json.hpp>
 #include <new>

@@ -1,6 +1,6 @@
 // parse.cpp — which format it is, and what no format may hold.
 #include "formats/pdb/parse.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/pdb/atom_line.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>

@@ -1,6 +1,6 @@
 // pdb.cpp — from the bytes of a structure file to the groups of a .hier: domains, exponents, order.
 #include "formats/pdb/pdb.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/hier/text.hpp"
 #include "formats/pdb/arrangement.hpp"

@@ -1,5 +1,5 @@
 // pdb_text.cpp — the PDB format: our own strict look at each line, then gemmi's reader on the records that matter.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/pdb/atom_line.hpp"
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/model_names.hpp"

@@ -1,6 +1,6 @@
 // placement.cpp — flat arrays; assemblies from REMARK 350 and pdbx_struct_assembly.
 #include "formats/pdb/placement.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>

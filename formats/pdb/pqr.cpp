@@ -1,6 +1,6 @@
 // pqr.cpp — PQR: atoms with charge and radius. Fields between blanks, as APBS reads them; where coordinates run
 // together, the columns of the PDB format. GROMACS and Open Babel add the element.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/model_names.hpp"
 #include "formats/pdb/parse.hpp"

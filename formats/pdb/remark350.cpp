@@ -1,6 +1,6 @@
 // remark350.cpp — BIOMOLECULE, APPLY THE FOLLOWING TO CHAINS, BIOMT.
 #include "formats/pdb/remark350.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "molecule/words.hpp"
 
 namespace molmesh::formats {

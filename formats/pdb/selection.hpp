@@ -1,7 +1,7 @@
 // selection.hpp — gemmi's selections (MMDB syntax), split by what they say about models, chains, residues and
 // atoms.
 #pragma once
-#include "error.hpp"
+#include "base/error.hpp"
 #define USE_STD_SNPRINTF // gemmi's own wants stb_sprintf.h, which Debian's gemmi-dev lacks; only messages are
                          // printed
 #include <gemmi/select.hpp>

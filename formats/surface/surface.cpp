@@ -1,6 +1,6 @@
 // surface.cpp — the triangles of the molecular surface and the points that they use.
 #include "formats/surface/surface.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/text_out.hpp"
 #include "formats/vtu/names.hpp"
 #include "geom/tet_measures.hpp"

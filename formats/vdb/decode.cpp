@@ -1,6 +1,6 @@
 // decode.cpp — OpenVDB file versions 222 to 224, as written by OpenVDB 2 to 10 to a file or a stream.
 #include "formats/vdb/decode.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include <array>
 #include <bit>
 #include <blosc.h>

@@ -60,9 +60,9 @@ void Leaves::for_parts(size_t parts, Work&& work) {
   });
 }
 
-void Leaves::add(std::span<const density::BandBlocks> runs, float inside_value) {
+void Leaves::add(std::span<const BandBlocks> runs, float inside_value) {
   std::vector<size_t> first(1);
-  for (const density::BandBlocks& run : runs)
+  for (const BandBlocks& run : runs)
     first.push_back(first.back() + run.size());
   Run& leaf = runs_.emplace_back(first.back());
   constexpr size_t at_once = 128;
@@ -72,10 +72,9 @@ void Leaves::add(std::span<const density::BandBlocks> runs, float inside_value) 
     for (size_t n = begin; n < end; ++n) {
       while (n >= first[r + 1])
         ++r;
-      const density::BandBlock& b = runs[r][n - first[r]];
-      density::BlockValues room;
-      leaf[n] =
-          encode({b.corner, b.active.data(), b.above.data(), density::active_values(b, room)}, inside_value, arena);
+      const BandBlock& b = runs[r][n - first[r]];
+      BlockValues room;
+      leaf[n] = encode({b.corner, b.active.data(), b.above.data(), active_values(b, room)}, inside_value, arena);
     }
   });
 }

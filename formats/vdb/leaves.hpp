@@ -1,6 +1,6 @@
 // leaves.hpp — blocks of the density as the bytes of an OpenVDB file's leaves, compressed as they come.
 #pragma once
-#include "density/band.hpp"
+#include "grid/band.hpp"
 #include "par/arena.hpp"
 #include "par/pool.hpp"
 #include <span>
@@ -14,7 +14,7 @@ class Leaves {
 public:
   explicit Leaves(int threads) : threads_(threads) {}
   /// Nothing of the blocks is kept but the bytes.
-  void add(std::span<const density::BandBlocks> runs, float inside_value);
+  void add(std::span<const BandBlocks> runs, float inside_value);
   void add(const BlockGrid& grid);
 
   struct Leaf {

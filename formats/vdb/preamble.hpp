@@ -1,7 +1,7 @@
 // preamble.hpp — what an OpenVDB file says before its tree: version, grid, metadata, transform.
 #pragma once
-#include "density/block_grid.hpp"
 #include "formats/vdb/bytes.hpp"
+#include "grid/block_grid.hpp"
 
 namespace molmesh::formats {
 

@@ -1,6 +1,6 @@
 // vdb.cpp — the rules that make a decoded OpenVDB file a BlockGrid (VDBv1.md).
 #include "formats/vdb/vdb.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/read_all.hpp"
 #include "formats/vdb/decode.hpp"
 #include "par/pages.hpp"

@@ -1,6 +1,6 @@
 // vdb.hpp — reader and writer of the sparse density grid in OpenVDB's format (VDBv1.md).
 #pragma once
-#include "density/block_grid.hpp"
+#include "grid/block_grid.hpp"
 #include <iosfwd>
 #include <string>
 

@@ -1,6 +1,6 @@
 // vtk_xml.cpp — a scanner for the subset of XML that VTK files are written in.
 #include "formats/vtu/vtk_xml.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // vtu_reader.cpp — tetrahedra, triangles and labels out of a VTK unstructured grid (VTUv1.md).
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/read_all.hpp"
 #include "formats/vtu/foreign.hpp"
 #include "formats/vtu/vtk_array.hpp"

@@ -1,6 +1,6 @@
 // hdf5.cpp — HDF5's C library with its core driver: nothing on disk until the whole file is known.
 #include "formats/xdmf/hdf5.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include <hdf5.h>
 #include <ostream>
 #include <vector>

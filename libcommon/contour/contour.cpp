@@ -1,7 +1,7 @@
 // contour.cpp — the stages in order.
 #include "contour/contour.hpp"
-#include "contour/finer_grid.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
+#include "contour/small_bodies/finer_grid.hpp"
 
 namespace molmesh::contour {
 

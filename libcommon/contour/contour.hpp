@@ -2,7 +2,7 @@
 // Adaptive dual contouring, section 4 of Liao et al. 2013.
 #pragma once
 #include "contour/stages.hpp"
-#include "density/block_grid.hpp"
+#include "grid/block_grid.hpp"
 #include "mesh/tet_mesh.hpp"
 #include <functional>
 #include <string>

@@ -1,7 +1,7 @@
 // options.hpp — what contour() is asked for, and what it tells besides the mesh.
 #pragma once
-#include "contour/lattice.hpp"
-#include "contour/split_cell.hpp"
+#include "contour/octree/lattice.hpp"
+#include "contour/surface/split_cell.hpp"
 #include <algorithm>
 #include <cstdint>
 #include <optional>

@@ -1,9 +1,9 @@
 // stages.cpp — the stages on the host's threads.
 #include "contour/stages.hpp"
-#include "contour/assembly.hpp"
-#include "contour/detail/at.hpp"
-#include "contour/relax.hpp"
-#include "improve/isosurface.hpp"
+#include "base/at.hpp"
+#include "contour/assembly/assembly.hpp"
+#include "contour/relaxation/relax.hpp"
+#include "isosurface/isosurface.hpp"
 #include "par/par.hpp"
 
 namespace molmesh::contour {
@@ -30,7 +30,7 @@ void HostStages::make_dual(Side unasked, const std::function<void(const std::str
 }
 
 void HostStages::relax() {
-  const improve::Isosurface surface(lattice_->grid(), threads_);
+  const Isosurface surface(lattice_->grid(), threads_);
   relaxed_ = contour::relax(dual_.elements, lattice_classes(dual_.complex, threads_), &surface, threads_);
 }
 
@@ -46,7 +46,7 @@ TetMesh HostStages::assemble(Options::Meshed meshed) {
 void HostStages::count(Summary& summary) const {
   summary.leaves = tree_->size();
   summary.surface_cells = static_cast<int64_t>(surface_.cells.size());
-  const auto is_split = [&](int64_t leaf) { return dual_.complex.split[detail::at(leaf)] >= 0; };
+  const auto is_split = [&](int64_t leaf) { return dual_.complex.split[at(leaf)] >= 0; };
   summary.split_cells = static_cast<int64_t>(par::select(tree_->size(), threads_, is_split).size());
   summary.restored_points = dual_.restored_points;
   summary.relaxed_points = relaxed_;

@@ -1,10 +1,10 @@
 // stages.hpp — the stages of contour(), by the host's threads or by a device.
 #pragma once
-#include "contour/components.hpp"
-#include "contour/dual.hpp"
-#include "contour/lattice.hpp"
-#include "contour/leaves.hpp"
+#include "contour/complex/dual.hpp"
+#include "contour/octree/lattice.hpp"
+#include "contour/octree/leaves.hpp"
 #include "contour/options.hpp"
+#include "contour/regions/components.hpp"
 #include "mesh/tet_mesh.hpp"
 #include <functional>
 #include <optional>

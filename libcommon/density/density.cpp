@@ -1,8 +1,8 @@
 // density.cpp — field, frame, search, in that order.
 #include "density/density.hpp"
-#include "density/frame.hpp"
-#include "density/selection.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
+#include "density/culling/selection.hpp"
+#include "density/field/frame.hpp"
 #include <algorithm>
 #include <bit>
 #include <cmath>

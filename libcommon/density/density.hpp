@@ -1,6 +1,6 @@
 // density.hpp — the room's front door: a hierarchy and options to the sparse density grid.
 #pragma once
-#include "density/search.hpp"
+#include "density/band/neighboring_search.hpp"
 #include "molecule/hierarchy.hpp"
 
 namespace molmesh::density {

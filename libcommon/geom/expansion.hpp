@@ -1,7 +1,7 @@
 // expansion.hpp — exact sums and products of doubles as sums of non-overlapping doubles. Host and device.
 // Dekker 1971, Knuth TAOCP 2 §4.2.2; growing an expansion by one term as in Shewchuk 1997 (theorem 10).
 #pragma once
-#include "geom/hd.hpp"
+#include "base/hd.hpp"
 #include <cmath>
 
 namespace molmesh {

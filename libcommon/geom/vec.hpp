@@ -1,6 +1,6 @@
 // vec.hpp — three numbers: positions (Å) and grid indices. Host and device.
 #pragma once
-#include "geom/hd.hpp"
+#include "base/hd.hpp"
 #include <cmath>
 #include <cstdint>
 

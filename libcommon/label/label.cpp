@@ -1,7 +1,7 @@
 // label.cpp — the tree of sums at each place, from the clusters near its tile of places.
 #include "label/label.hpp"
-#include "density/cluster_tree.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
+#include "density/culling/cluster_tree.hpp"
 #include "geom/morton.hpp"
 #include "label/reach.hpp"
 #include "par/par.hpp"

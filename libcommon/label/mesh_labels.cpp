@@ -1,6 +1,6 @@
 // mesh_labels.cpp — centroids out of the mesh, labels into it.
 #include "label/mesh_labels.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "mesh/centroid.hpp"
 #include "par/par.hpp"
 #include <algorithm>

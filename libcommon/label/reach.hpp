@@ -1,7 +1,7 @@
 // reach.hpp — the clusters that matter in a box however small the field is there: far from the surface, where the
 // cutoffs of the field leave everything out.
 #pragma once
-#include "density/field.hpp"
+#include "density/field/field.hpp"
 
 namespace molmesh::label {
 

@@ -1,6 +1,6 @@
 // partition.cpp — METIS on the dual graph: of tetrahedra, or of compact clusters of them where there are many.
 #include "mesh/partition.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "geom/hilbert.hpp" // clusters follow the curve
 #include "mesh/adjacency.hpp"
 #include "par/pages.hpp"

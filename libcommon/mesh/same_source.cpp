@@ -1,6 +1,6 @@
 // same_source.cpp — the sums of the structures, the values and decay rates of the surfaces.
 #include "mesh/same_source.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include <cmath>
 #include <sstream>
 

@@ -1,6 +1,6 @@
 // same_source.hpp — is this density, or structure, the one that the mesh was made from?
 #pragma once
-#include "density/block_grid.hpp"
+#include "grid/block_grid.hpp"
 #include "mesh/tet_mesh.hpp"
 
 namespace molmesh {

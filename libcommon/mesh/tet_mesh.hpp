@@ -1,6 +1,6 @@
 // tet_mesh.hpp — tetrahedra with their regions and boundary triangles: what the .vtu file holds (design §3).
 #pragma once
-#include "density/large_array.hpp"
+#include "base/large_array.hpp"
 #include "geom/vec.hpp"
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // hierarchy.cpp — what every hierarchy must hold, whoever made it.
 #include "molecule/hierarchy.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include <cmath>
 
 namespace molmesh {

@@ -1,6 +1,6 @@
 // radii.cpp — the table, and the reader of a user's own.
 #include "molecule/radii.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
 #include <istream>

@@ -2,7 +2,7 @@
 // Equations 2 to 6 of Liao et al. 2013: large exponents keep detail, small ones blur. What a selection means is the
 // business of the reader that has the structure (formats/pdb).
 #pragma once
-#include "error.hpp"
+#include "base/error.hpp"
 #include <iosfwd>
 #include <optional>
 #include <string>

@@ -1,6 +1,6 @@
 // words.cpp — splitting and strict numbers.
 #include "molecule/words.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include <charconv>
 #include <cmath>
 #include <istream>

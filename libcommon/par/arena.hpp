@@ -1,6 +1,6 @@
 // arena.hpp — memory handed out piece by piece, which stays where it is.
 #pragma once
-#include "density/large_array.hpp"
+#include "base/large_array.hpp"
 #include <cstddef>
 #include <utility>
 #include <vector>

@@ -1,6 +1,6 @@
 // items.hpp — elements copied, compacted, gathered and scattered. Host and device.
 #pragma once
-#include "geom/hd.hpp"
+#include "base/hd.hpp"
 #include <cstdint>
 
 namespace molmesh::par {

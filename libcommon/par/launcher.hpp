@@ -1,6 +1,6 @@
 // launcher.hpp — passes over arrays on the host's threads, for algorithms that host and device share.
 #pragma once
-#include "density/large_array.hpp"
+#include "base/large_array.hpp"
 #include "par/pages.hpp"
 #include "par/par.hpp"
 #include "par/work.hpp"

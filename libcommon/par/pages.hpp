@@ -1,6 +1,6 @@
 // pages.hpp — memory of large arrays asked for on all threads.
 #pragma once
-#include "density/large_array.hpp"
+#include "base/large_array.hpp"
 #include "par/par.hpp"
 #include <cstddef>
 

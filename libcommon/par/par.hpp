@@ -1,7 +1,7 @@
 // par.hpp — loops, reductions, scans and sorts, serial and OpenMP. The only file with `#pragma omp`.
 // Every function gives the same result for any number of threads.
 #pragma once
-#include "density/large_array.hpp"
+#include "base/large_array.hpp"
 #include <algorithm>
 #include <atomic>
 #include <cstddef>

@@ -18,11 +18,11 @@ struct Sample {
 };
 
 /// The n-th active point of the band, in order.
-Sample active_point(const density::Band& band, const std::vector<int64_t>& before, int64_t n) {
+Sample active_point(const Band& band, const std::vector<int64_t>& before, int64_t n) {
   const auto b = static_cast<size_t>(std::upper_bound(before.begin(), before.end(), n) - before.begin()) - 1;
-  const density::BandBlock& block = band.block[b];
-  density::BlockValues room;
-  const float* const value = density::active_values(block, room);
+  const BandBlock& block = band.block[b];
+  BlockValues room;
+  const float* const value = active_values(block, room);
   int64_t left = n - before[b];
   for (int slot_of_point = 0; slot_of_point < 512; ++slot_of_point)
     if (block.active[static_cast<size_t>(slot_of_point >> 6)] >> (slot_of_point & 63) & 1 && left-- == 0)
@@ -33,9 +33,9 @@ Sample active_point(const density::Band& band, const std::vector<int64_t>& befor
 
 double worst_error(const Hierarchy& h, const density::Options& o, int points) {
   density::Counts counts;
-  const density::Band band = density::compute(h, o, counts);
+  const Band band = density::compute(h, o, counts);
   std::vector<int64_t> before{0};
-  for (const density::BandBlock& b : band.block) {
+  for (const BandBlock& b : band.block) {
     int64_t active = 0;
     for (const uint64_t word : b.active)
       active += std::popcount(word);

@@ -5,7 +5,7 @@
 #include "contour/contour.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "geom/tet_measures.hpp"
-#include "improve/isosurface.hpp"
+#include "isosurface/isosurface.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <array>
@@ -26,7 +26,7 @@ struct Distances {
 
 /// From p, where log G / isovalue is f, to the first place on the other side along any of 2,000 directions, in
 /// spacings; `most` where that is farther. Where two sheets meet this is nearer than the foot along the gradient.
-double nearest(const improve::Isosurface& isosurface, Vec3d p, double f, double most) {
+double nearest(const Isosurface& isosurface, Vec3d p, double f, double most) {
   constexpr int directions = 2000;
   constexpr double step = 0.01, golden_angle = 2.39996322972865332;
   for (int k = 0; k < directions; ++k) {
@@ -41,7 +41,7 @@ double nearest(const improve::Isosurface& isosurface, Vec3d p, double f, double 
   return most;
 }
 
-Distances measure(const TetMesh& mesh, const improve::Isosurface& isosurface) {
+Distances measure(const TetMesh& mesh, const Isosurface& isosurface) {
   Distances all;
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
     if (mesh.boundary[t] != surface)
@@ -76,7 +76,7 @@ int main(int count, char** arg) {
   std::ifstream in(arg[1], std::ios::binary);
   const int threads = par::default_threads();
   const BlockGrid grid = formats::read_vdb(in, arg[1], threads);
-  const improve::Isosurface isosurface(grid, threads);
+  const Isosurface isosurface(grid, threads);
   std::printf("%8s %10s %10s %7s %7s %7s %7s %15s %14s\n", "adapt", "tetrahedra", "triangles", "median", "99 %",
               "99.9 %", "most", "beyond 0.5", "turned, 1/1000");
   for (int i = 2; i < count; ++i) {

@@ -1,5 +1,5 @@
 // hier_fuzz.cpp — a .hier is refused with one line, or holds what check() asks and writes back to itself.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/hier/hier.hpp"
 #include <cstdlib>
 #include <sstream>

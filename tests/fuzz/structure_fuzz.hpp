@@ -1,7 +1,7 @@
 // structure_fuzz.hpp — a structure file, whatever its bytes, is refused with one line or makes a .hier that reads
 // back.
 #pragma once
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/pdb/pdb.hpp"
 #include <cstdlib>

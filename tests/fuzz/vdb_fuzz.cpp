@@ -1,5 +1,5 @@
 // vdb_fuzz.cpp — a .vdb is refused with one line, or is a grid that writes back to itself.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/vdb/vdb.hpp"
 #include <algorithm>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // vtu_fuzz.cpp — a .vtu is refused with one line, or is a mesh in range that writes back to itself.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/vtu/vtu.hpp"
 #include <cstdlib>
 #include <sstream>

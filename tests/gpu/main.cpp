@@ -6,8 +6,8 @@
 // GRID: the spacing in Å, or nN for N points along the longest axis. STAGE: the last one, density, mesh or improve.
 // THREADS: of the host beside the device. host: the device's algorithms on the host's threads, where there is no
 // GPU; its times are no device's.
+#include "base/error.hpp"
 #include "cuda/par/device.hpp"
-#include "error.hpp"
 #include "formats/hier/hier.hpp"
 #include "par/par.hpp"
 #include "parity.hpp"

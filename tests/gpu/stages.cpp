@@ -4,8 +4,8 @@
 #include "cuda/contour/device_stages.hpp"
 #include "cuda/density/density.hpp"
 #include "cuda/density/search.hpp"
-#include "cuda/improve/flow.hpp"
-#include "cuda/improve/improve.hpp"
+#include "cuda/optimize/geometric_flow.hpp"
+#include "cuda/optimize/optimize.hpp"
 #include "cuda/par/host.hpp"
 #include "mesh/validity.hpp"
 #include "unit/density/oracle.hpp"
@@ -46,7 +46,7 @@ cuda::HostBackend host_backend(const How& how, int64_t paged) {
 
 BlockGrid run_density(const Hierarchy& h, const density::Options& o, const How& how, Timed& time) {
   density::Counts counts;
-  density::Band band;
+  Band band;
   {
     const Watch watch(time);
     if (how.by == By::device) {
@@ -60,7 +60,7 @@ BlockGrid run_density(const Hierarchy& h, const density::Options& o, const How& 
       time.device = cuda::report_of(backend, "the host");
     }
   }
-  return density::to_block_grid(band, how.threads);
+  return to_block_grid(band, how.threads);
 }
 
 TetMesh run_contour(const BlockGrid& grid, const contour::Options& o, const How& how, Timed& time) {
@@ -85,7 +85,7 @@ TetMesh run_contour(const BlockGrid& grid, const contour::Options& o, const How&
 
 TetMesh run_improve(const TetMesh& mesh, const BlockGrid& grid, const How& how, Timed& time) {
   TetMesh out = mesh;
-  improve::Options options;
+  optimize::Options options;
   options.threads = how.threads;
   const Watch watch(time);
   const auto phase = watch.phases();
@@ -94,17 +94,17 @@ TetMesh run_improve(const TetMesh& mesh, const BlockGrid& grid, const How& how, 
     return out;
   }
   if (!how.flow) {
-    improve::improve(out, &grid, options, phase);
+    optimize::improve(out, &grid, options, phase);
     return out;
   }
   cuda::HostBackend backend = host_backend(how, all);
   std::unique_ptr<cuda::Flow<cuda::HostBackend>> flow;
-  improve::improve(out, &grid, options, phase,
-                   [&](improve::DynamicMesh& m, const improve::Isosurface* surface, const improve::Pass& pass) {
-                     if (!flow)
-                       flow = std::make_unique<cuda::Flow<cuda::HostBackend>>(backend, surface, how.threads);
-                     return flow->run(m, pass, cuda::flow_sweeps);
-                   });
+  optimize::improve(out, &grid, options, phase,
+                    [&](optimize::DynamicMesh& m, const Isosurface* surface, const optimize::Pass& pass) {
+                      if (!flow)
+                        flow = std::make_unique<cuda::Flow<cuda::HostBackend>>(backend, surface, how.threads);
+                      return flow->run(m, pass, cuda::flow_sweeps);
+                    });
   time.device = cuda::report_of(backend, "the host");
   return out;
 }

@@ -1,8 +1,8 @@
 // foreign_test.cpp — a mesh that we did not make is improved too, its surface kept.
 #include "contour/contour.hpp"
-#include "improve/improve.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/validity.hpp"
+#include "optimize/optimize.hpp"
 #include "oracles.hpp"
 #include "structure.hpp"
 #include <catch2/catch.hpp>
@@ -24,9 +24,9 @@ TEST_CASE("TetGen's mesh of 1TII reaches 15 degrees, with its surface kept") {
       mesh.boundary.push_back(surface);
     }
   const Validity before = check_validity(mesh, 1);
-  improve::Options how;
+  optimize::Options how;
   how.threads = 2;
-  const improve::Result result = improve::improve(mesh, nullptr, how);
+  const optimize::Result result = optimize::improve(mesh, nullptr, how);
   INFO("before " << result.before.min << " to " << result.before.max << ", after " << result.after.max);
   CHECK(result.before.min < 10);
   CHECK(result.after.min >= 15);

@@ -3,7 +3,7 @@
 #include <gemmi/gz.hpp>
 #include <gemmi/mmread.hpp>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/pdb/pdb.hpp"
 #include <catch2/catch.hpp>
 #include <filesystem>

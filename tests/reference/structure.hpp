@@ -1,9 +1,9 @@
 // structure.hpp — a structure file to its density in one step.
 #pragma once
-#include "density/band.hpp"
 #include "density/density.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/pdb/pdb.hpp"
+#include "grid/band.hpp"
 #include <fstream>
 #include <sstream>
 
@@ -18,7 +18,7 @@ inline BlockGrid density_of(const std::string& path, double spacing) {
   density::Options options;
   options.spacing = spacing;
   options.threads = 2;
-  return density::to_block_grid(density::compute(formats::read_hier(text, path), options, counts), options.threads);
+  return to_block_grid(density::compute(formats::read_hier(text, path), options, counts), options.threads);
 }
 
 } // namespace molmesh::reference

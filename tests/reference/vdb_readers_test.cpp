@@ -69,7 +69,7 @@ void read_by(const char* program, const char* needs) {
     density::Options o;
     o.spacing = spacing;
     density::Counts counts;
-    BlockGrid grid = density::to_block_grid(density::compute(h, o, counts), 1);
+    BlockGrid grid = to_block_grid(density::compute(h, o, counts), 1);
     grid.info.creator = "hier2density 0.1.0";
     const std::string stem = (folder / std::to_string(int(4 * spacing))).string();
     std::ofstream out(stem + ".vdb", std::ios::binary);

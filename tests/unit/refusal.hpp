@@ -1,6 +1,6 @@
 // refusal.hpp — what a bad input is answered with.
 #pragma once
-#include "error.hpp"
+#include "base/error.hpp"
 #include <catch2/catch.hpp>
 #include <string>
 

@@ -1,15 +1,15 @@
 // kernels.cpp — what libcommon vectorizes with Highway, one element after the other: for a build by nvcc alone.
-#include "contour/samples_kernel.hpp"
-#include "contour/shape_kernel.hpp"
-#include "contour/surface_sample.hpp"
-#include "density/values_kernel.hpp"
-#include "geom/log.hpp"
-#include "improve/guard.hpp"
-#include "improve/logs_kernel.hpp"
-#include "improve/probe_kernel.hpp"
-#include "improve/quality.hpp"
-#include "improve/quality_kernel.hpp"
-#include "improve/spokes_kernel.hpp"
+#include "base/log.hpp"
+#include "contour/elements/shape_simd.hpp"
+#include "contour/surface/samples_simd.hpp"
+#include "contour/surface/surface_sample.hpp"
+#include "density/values/values_simd.hpp"
+#include "geom/star_quality_simd.hpp"
+#include "geom/tet_quality.hpp"
+#include "geom/tet_quality_simd.hpp"
+#include "isosurface/guard.hpp"
+#include "isosurface/logs_simd.hpp"
+#include "isosurface/probe_simd.hpp"
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -29,7 +29,7 @@ int32_t pack_part(const float* packed, const uint64_t* stored, const uint64_t* a
 
 } // namespace molmesh::density
 
-namespace molmesh::improve {
+namespace molmesh {
 namespace {
 
 float judge(const SpokesView& s, int32_t k, Vec3f x) {
@@ -116,7 +116,7 @@ void qualities(const EightElements& e, float (&quality)[8], double shape) {
                              {e.x[2][l], e.y[2][l], e.z[2][l]}, {e.x[3][l], e.y[3][l], e.z[3][l]}, shape);
 }
 
-} // namespace molmesh::improve
+} // namespace molmesh
 
 namespace molmesh::contour {
 
@@ -133,9 +133,9 @@ void make_samples(const SurfaceCell (&cell)[8], double isovalue, EightSamples& s
   }
 }
 
-void eight_least_sines(const improve::EightElements& e, double (&least)[8]) {
+void eight_least_sines(const EightElements& e, double (&least)[8]) {
   for (size_t l = 0; l < 8; ++l) {
-    improve::Corners<double> p;
+    Corners<double> p;
     for (size_t i = 0; i < 4; ++i)
       p.x[i] = e.x[i][l], p.y[i] = e.y[i][l], p.z[i] = e.z[i][l];
     Sines<double> sines;

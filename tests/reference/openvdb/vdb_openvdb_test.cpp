@@ -1,5 +1,5 @@
 // vdb_openvdb_test.cpp — OpenVDB itself reads what we write, and we read what it writes.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "unit/refusal.hpp"
 #include <catch2/catch.hpp>

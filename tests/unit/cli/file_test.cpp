@@ -1,7 +1,7 @@
 // file_test.cpp — an output is whole or absent, whatever happens to the process (I10).
+#include "base/error.hpp"
 #include "child.hpp"
 #include "cli/file.hpp"
-#include "error.hpp"
 #include "unit/refusal.hpp"
 #include <catch2/catch.hpp>
 #include <csignal>

@@ -1,8 +1,8 @@
 // machine_test.cpp — how much memory and how many processors there are, as the system's files say it, and a process
 // that asks for more memory.
+#include "base/memory.hpp"
 #include "child.hpp"
 #include "cli/cpus.hpp"
-#include "cli/memory.hpp"
 #include <catch2/catch.hpp>
 #include <new>
 #include <sys/resource.h>
@@ -19,8 +19,8 @@ struct System {
     std::filesystem::create_directories(path.parent_path());
     std::ofstream(path) << text;
   }
-  int64_t at_hand(cli::Swap swap = cli::Swap::counts) const {
-    return cli::memory_at_hand({folder / "proc", folder / "groups"}, swap);
+  int64_t at_hand(Swap swap = Swap::counts) const {
+    return memory_at_hand({folder / "proc", folder / "groups"}, swap);
   }
   int cpus() const { return cli::cpus_granted({folder / "proc", folder / "groups"}); }
 };
@@ -32,7 +32,7 @@ TEST_CASE("the least of what the system has and what control groups grant") {
   CHECK(s.at_hand() == -1);
   s.says("proc/meminfo", "MemTotal:  9000 kB\nMemAvailable:  8000 kB\nSwapTotal: 7 kB\nSwapFree:  3 kB\n");
   CHECK(s.at_hand() == 8003 * 1024);
-  CHECK(s.at_hand(cli::Swap::is_no_use) == 8000 * 1024);
+  CHECK(s.at_hand(Swap::is_no_use) == 8000 * 1024);
   SECTION("version 2: a group, or one above it") {
     s.says("proc/self/cgroup", "0::/slurm/job_7/step_0\n");
     s.says("groups/slurm/job_7/step_0/memory.max", "max\n");
@@ -77,11 +77,11 @@ TEST_CASE("the processors that control groups grant") {
 }
 
 TEST_CASE("more memory than there is is refused before it is used") {
-  const int64_t bytes = cli::memory_at_hand();
+  const int64_t bytes = memory_at_hand();
   REQUIRE(bytes > 0);
   constexpr int refused = 0, granted = 1, no_limit = 2;
   const Outcome o = in_child([&] {
-    cli::limit_memory(2);
+    limit_memory(2);
     rlimit limit{};
     getrlimit(RLIMIT_DATA, &limit);
     if (limit.rlim_cur == RLIM_INFINITY)

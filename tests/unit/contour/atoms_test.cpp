@@ -16,7 +16,7 @@ TetMesh mesh_of(const Hierarchy& h, double spacing) {
   density::Options options;
   options.spacing = spacing;
   density::Counts counts;
-  const BlockGrid grid = density::to_block_grid(density::compute(h, options, counts), 1);
+  const BlockGrid grid = to_block_grid(density::compute(h, options, counts), 1);
   contour::Options contour_options;
   contour_options.adapt = 0;
   contour::Summary summary;

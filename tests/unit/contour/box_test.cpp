@@ -1,8 +1,8 @@
 // box_test.cpp — outer boxes: exact walls, cuts through the molecule, what is refused.
+#include "base/error.hpp"
 #include "contour/contour.hpp"
-#include "contour/lattice.hpp"
-#include "error.hpp"
-#include "improve/improve.hpp"
+#include "contour/octree/lattice.hpp"
+#include "optimize/optimize.hpp"
 #include "unit/contour/checked.hpp"
 #include "unit/contour/sample_grid.hpp"
 #include "unit/refusal.hpp"
@@ -60,7 +60,7 @@ TEST_CASE("boxes: exact walls, a cut through the molecule, few elements far away
     options.box.scale = 3;
     TetMesh far = mesh_of(grid, options);
     for (TetMesh* mesh : {&near, &far}) { // before that chords may cut off what it gives back
-      const improve::Fidelity surface = improve::improve(*mesh, &grid, {}).fidelity;
+      const optimize::Fidelity surface = optimize::improve(*mesh, &grid, {}).fidelity;
       CHECK(std::fabs(surface.missing) < 0.005 * surface.volume);
     }
     CHECK(region_volume(checked(near), molecule) == Approx(region_volume(checked(far), molecule)).epsilon(0.002));

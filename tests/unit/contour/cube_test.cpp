@@ -1,5 +1,5 @@
 // cube_test.cpp — the trilinear sweep through a cell against a fine resampling of it.
-#include "contour/cube.hpp"
+#include "contour/surface/cube.hpp"
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
 // far_division_test.cpp — an edge divided and joined again; a far one whose new vertex needs room.
-#include "contour/detail/far_division.hpp"
+#include "contour/surface_distance/far_division.hpp"
 #include "geom/tet_measures.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -75,7 +75,7 @@ constexpr int n = 5; // points on each axis
 
 float quality(const FarPatch& p, const Tet& t) {
   const auto x = [&](size_t i) { return p.position[static_cast<size_t>(t[i])]; };
-  return improve::tet_quality(x(0), x(1), x(2), x(3), shape);
+  return tet_quality(x(0), x(1), x(2), x(3), shape);
 }
 float off(const FarPatch& p, const Tri& t) {
   Vec3d centroid;

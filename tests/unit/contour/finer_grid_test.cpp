@@ -1,11 +1,11 @@
 // finer_grid_test.cpp — half the spacing: the same values, sides and topology, and the volume of small bodies.
-#include "contour/detail/chord_items.hpp"
-#include "contour/finer_grid.hpp"
-#include "contour/halved_grid.hpp"
-#include "contour/halved_topology.hpp"
-#include "contour/leaves.hpp"
+#include "contour/octree/chord_items.hpp"
+#include "contour/octree/leaves.hpp"
+#include "contour/small_bodies/finer_grid.hpp"
+#include "contour/small_bodies/halved_grid.hpp"
+#include "contour/small_bodies/halved_topology.hpp"
 #include "contour/stages.hpp"
-#include "improve/improve.hpp"
+#include "optimize/optimize.hpp"
 #include "unit/contour/checked.hpp"
 #include "unit/contour/sample_grid.hpp"
 #include "unit/contour/trilinear_euler.hpp"
@@ -149,7 +149,7 @@ TEST_CASE("a body of few spacings keeps its volume to half a per cent, in unifor
       TetMesh mesh = mesh_of(grid, options, summary);
       CHECK(summary.halvings == (radius < 0.9 ? 2 : radius < 3.5 ? 1 : 0));
       CHECK(checked(mesh).surface.euler == 2);
-      const improve::Result result = improve::improve(mesh, &grid, {});
+      const optimize::Result result = optimize::improve(mesh, &grid, {});
       CHECK(checked(mesh).surface.euler == 2);
       CHECK(std::fabs(result.fidelity.missing) < 0.005 * result.fidelity.volume);
       CHECK(result.fidelity.points_off == 0);
@@ -253,7 +253,7 @@ TEST_CASE("bodies far apart keep their volume") {
   contour::Summary summary;
   TetMesh mesh = mesh_of(grid, {}, summary);
   CHECK(summary.halvings == 1);
-  const improve::Result result = improve::improve(mesh, &grid, {});
+  const optimize::Result result = optimize::improve(mesh, &grid, {});
   CHECK(std::fabs(result.fidelity.missing) < 0.005 * result.fidelity.volume);
 }
 

@@ -1,6 +1,6 @@
 // level_steps.hpp — how much leaves of an octree that touch differ in level.
 #pragma once
-#include "contour/octree.hpp"
+#include "contour/octree/octree.hpp"
 #include <algorithm>
 #include <cstdlib>
 

@@ -1,8 +1,8 @@
 // nearer_test.cpp — surface triangles across creases are no farther from the isosurface than half a spacing.
 #include "contour/contour.hpp"
-#include "contour/detail/star_items.hpp"
+#include "contour/relaxation/star_items.hpp"
 #include "geom/tet_measures.hpp"
-#include "improve/isosurface.hpp"
+#include "isosurface/isosurface.hpp"
 #include "unit/contour/sample_grid.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -14,7 +14,7 @@ using namespace molmesh;
 namespace {
 
 /// Spacings from the centroid to its foot on the isosurface, of the farthest surface triangle.
-double farthest(const TetMesh& mesh, const improve::Isosurface& isosurface) {
+double farthest(const TetMesh& mesh, const Isosurface& isosurface) {
   double most = 0;
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
     if (mesh.boundary[t] != surface)
@@ -49,7 +49,7 @@ TEST_CASE("surface triangles across creases come within half a spacing of the is
     options.adapt = 0.41;
     contour::Summary summary;
     const TetMesh mesh = contour::contour(grid, options, summary, [](const std::string&) {});
-    CHECK(farthest(mesh, improve::Isosurface(grid, 1)) < 0.5);
+    CHECK(farthest(mesh, Isosurface(grid, 1)) < 0.5);
     CHECK(least_angle(mesh) > 13);
   }
 }

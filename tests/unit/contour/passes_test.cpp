@@ -1,6 +1,6 @@
 // passes_test.cpp — lists of raised flags.
-#include "contour/detail/passes.hpp"
 #include "par/launcher.hpp"
+#include "par/passes.hpp"
 #include <catch2/catch.hpp>
 #include <random>
 #include <vector>
@@ -20,7 +20,7 @@ TEST_CASE("flagged lists the places of raised flags, ascending") {
           expected.push_back(i);
       }
       par::Launcher launcher(2);
-      const auto list = contour::detail::flagged(launcher, "flags", n, flag.data());
+      const auto list = par::flagged(launcher, "flags", n, flag.data());
       CHECK(std::vector<int32_t>(list.array.begin(), list.array.end()) == expected);
     }
 }

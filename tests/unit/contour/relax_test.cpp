@@ -1,5 +1,5 @@
 // relax_test.cpp — bad elements get better, vertices stay on the surface and on walls.
-#include "contour/relax.hpp"
+#include "contour/relaxation/relax.hpp"
 #include "contour/stages.hpp"
 #include "geom/predicates.hpp"
 #include "geom/tet_measures.hpp"
@@ -79,7 +79,7 @@ TEST_CASE("a vertex on a wall stays in its plane") {
 }
 
 TEST_CASE("a vertex on the surface moves along it") {
-  struct Plane final : improve::Target { // z = x
+  struct Plane final : Target { // z = x
     bool project(Vec3d&, double) const override { return false; }
     bool probe(Vec3d p, double& distance, Vec3d& normal) const override {
       normal = std::sqrt(0.5) * Vec3d{-1, 0, 1};

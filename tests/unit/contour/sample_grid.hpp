@@ -1,6 +1,6 @@
 // sample_grid.hpp — density grids of any function, made the slow and obvious way.
 #pragma once
-#include "density/block_grid.hpp"
+#include "grid/block_grid.hpp"
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -1,7 +1,7 @@
 // trilinear_euler.hpp — the topology of a grid's isosurface, counted cell by cell.
 #pragma once
-#include "contour/cube.hpp"
-#include "density/block_grid.hpp"
+#include "contour/surface/cube.hpp"
+#include "grid/block_grid.hpp"
 #include <array>
 #include <numeric>
 

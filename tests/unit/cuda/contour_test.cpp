@@ -1,8 +1,8 @@
 // contour_test.cpp — the device's stages, run by the host: the same, bit by bit, as contour::HostStages makes.
+#include "base/log.hpp"
 #include "contour/contour.hpp"
 #include "cuda/contour/device_stages.hpp"
 #include "cuda/par/host.hpp"
-#include "geom/log.hpp"
 #include "unit/contour/sample_grid.hpp"
 #include "unit/refusal.hpp"
 #include <algorithm>

@@ -24,11 +24,11 @@ Run on_backend(const Hierarchy& h, const density::Options& o, int threads = 1,
   const auto find = [&](const density::Field& f, const GridFrame& frame, const density::SearchOptions& s,
                         density::SearchCounts& c) {
     cuda::Search<cuda::HostBackend> search(backend, f, frame, s);
-    density::Band band = search.run(c);
+    Band band = search.run(c);
     run.slabs = search.slabs();
     return band;
   };
-  run.grid = density::to_block_grid(density::compute(h, o, run.counts, find), 1);
+  run.grid = to_block_grid(density::compute(h, o, run.counts, find), 1);
   run.most_used = backend.most_used().own;
   return run;
 }
@@ -43,7 +43,7 @@ Hierarchy long_chains() {
 
 BlockGrid on_host(const Hierarchy& h, const density::Options& o) {
   density::Counts counts;
-  return density::to_block_grid(density::compute(h, o, counts), 1);
+  return to_block_grid(density::compute(h, o, counts), 1);
 }
 
 /// The same active points but where G is within ε of a limit, values within ε (I5).
@@ -179,15 +179,15 @@ TEST_CASE("device density: slabs are given away as they are found, each block on
   const Run kept = on_backend(h, o);
   std::vector<Vec3i> corner;
   int64_t wrong = 0, takes = 0;
-  o.take = [&](const FieldInfo& info, std::span<const density::BandBlocks> runs) {
+  o.take = [&](const FieldInfo& info, std::span<const BandBlocks> runs) {
     ++takes;
     wrong += info.inside_value != kept.grid.info.inside_value; // on another thread
-    for (const density::BandBlocks& run : runs)
-      for (const density::BandBlock& b : run) {
+    for (const BandBlocks& run : runs)
+      for (const BandBlock& b : run) {
         const size_t n = corner.size();
         corner.push_back(b.corner);
-        density::BlockValues room;
-        const float* value = density::active_values(b, room);
+        BlockValues room;
+        const float* value = active_values(b, room);
         for (int s = 0; s < 512; ++s)
           if (b.active[size_t(s >> 6)] >> (s & 63) & 1)
             wrong += n >= kept.grid.corner.size() || *value++ != kept.grid.value[512 * n + size_t(s)];

@@ -1,8 +1,8 @@
 // flow_test.cpp — the device's geometric flow, run by the host: never worse (I9), on the surface, deterministic.
-#include "cuda/improve/flow.hpp"
+#include "cuda/optimize/geometric_flow.hpp"
 #include "cuda/par/host.hpp"
 #include "geom/predicates.hpp"
-#include "unit/improve/lattice_mesh.hpp"
+#include "unit/optimize/lattice_mesh.hpp"
 #include <catch2/catch.hpp>
 
 using namespace molmesh;
@@ -13,25 +13,25 @@ namespace {
 constexpr double h = 0.5;
 constexpr int n = 20;
 
-float worst(const improve::DynamicMesh& m) {
+float worst(const optimize::DynamicMesh& m) {
   float w = 2;
-  for (const improve::Element& e : m.element)
+  for (const optimize::Element& e : m.element)
     if (e.alive())
       w = std::min(w, m.quality(e.v));
   return w;
 }
 
-double lacking(const improve::DynamicMesh& m, const improve::Pass& pass) {
+double lacking(const optimize::DynamicMesh& m, const optimize::Pass& pass) {
   double sum = 0;
-  for (const improve::Element& e : m.element)
+  for (const optimize::Element& e : m.element)
     if (e.alive())
-      sum += improve::lack(m.quality(e.v), pass.goal, pass.worst_first, pass.guard);
+      sum += lack(m.quality(e.v), pass.goal, pass.worst_first, pass.guard);
   return sum;
 }
 
-improve::Pass pass_with(double degrees, bool worst_first) {
-  improve::Pass p;
-  p.goal = static_cast<float>(improve::angle_quality(degrees));
+optimize::Pass pass_with(double degrees, bool worst_first) {
+  optimize::Pass p;
+  p.goal = static_cast<float>(angle_quality(degrees));
   p.worst_first = worst_first;
   return p;
 }
@@ -40,13 +40,13 @@ improve::Pass pass_with(double degrees, bool worst_first) {
 
 TEST_CASE("flow: the worst element rises, none is inverted, what is bound stays bound") {
   const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
-  const improve::Isosurface surface(grid, 1);
+  const Isosurface surface(grid, 1);
   const int keep = GENERATE(0, 1, 2);
   const bool with_surface = GENERATE(true, false), worst_first = GENERATE(true, false);
   CAPTURE(keep, with_surface, worst_first);
-  improve::DynamicMesh m = improve::build(lattice_mesh(three_atoms, {0, 0, 0}, h, n, keep), 180, 1);
-  const improve::Pass pass = pass_with(26, worst_first);
-  const improve::DynamicMesh before = m;
+  optimize::DynamicMesh m = optimize::build(lattice_mesh(three_atoms, {0, 0, 0}, h, n, keep), 180, 1);
+  const optimize::Pass pass = pass_with(26, worst_first);
+  const optimize::DynamicMesh before = m;
   cuda::HostBackend backend(1);
   cuda::Flow<cuda::HostBackend> flow(backend, with_surface ? &surface : nullptr, 1);
   const int64_t moves = flow.run(m, pass, 8);
@@ -55,7 +55,7 @@ TEST_CASE("flow: the worst element rises, none is inverted, what is bound stays 
   CHECK(worst(m) >= worst(before));
   CHECK(lacking(m, pass) < 0.9 * lacking(before, pass));
   int64_t moved = 0, wrong = 0, off = 0, stale = 0;
-  for (const improve::Element& e : m.element) {
+  for (const optimize::Element& e : m.element) {
     if (!e.alive())
       continue;
     const auto p = [&](size_t i) { return m.point[size_t(e.v[i])]; };
@@ -66,11 +66,11 @@ TEST_CASE("flow: the worst element rises, none is inverted, what is bound stays 
     if (m.point[v] == before.point[v])
       continue;
     ++moved;
-    const improve::Vertex& k = m.vertex[v];
-    wrong += k.kind == improve::Kind::fixed || k.kind == improve::Kind::trace;
+    const optimize::Vertex& k = m.vertex[v];
+    wrong += k.kind == optimize::Kind::fixed || k.kind == optimize::Kind::trace;
     for (int a = 0; a < 3; ++a)
       wrong += (k.frozen >> a & 1) && m.point[v][a] != before.point[v][a];
-    if (k.kind != improve::Kind::surface)
+    if (k.kind != optimize::Kind::surface)
       continue;
     double distance = 1;
     Vec3d normal;
@@ -84,9 +84,9 @@ TEST_CASE("flow: the worst element rises, none is inverted, what is bound stays 
 
 TEST_CASE("flow: the same points at any number of threads, and a goal that is met moves nothing") {
   const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
-  const improve::Isosurface surface(grid, 1);
-  improve::DynamicMesh one = improve::build(lattice_mesh(three_atoms, {0, 0, 0}, h, n), 180, 1), more = one;
-  const improve::Pass pass = pass_with(26, true);
+  const Isosurface surface(grid, 1);
+  optimize::DynamicMesh one = optimize::build(lattice_mesh(three_atoms, {0, 0, 0}, h, n), 180, 1), more = one;
+  const optimize::Pass pass = pass_with(26, true);
   for (auto [m, threads] : {std::pair{&one, 1}, {&more, 3}}) {
     cuda::HostBackend backend(threads);
     cuda::Flow<cuda::HostBackend>(backend, &surface, threads).run(*m, pass, 5);
@@ -94,16 +94,16 @@ TEST_CASE("flow: the same points at any number of threads, and a goal that is me
   CHECK(one.point == more.point);
   const std::vector<Vec3d> before = one.point;
   cuda::HostBackend backend;
-  improve::Pass met;
+  optimize::Pass met;
   met.goal = std::min(1e-7f, 0.5f * worst(one));
   CHECK(cuda::Flow<cuda::HostBackend>(backend, &surface, 1).run(one, met, 5) == 0);
   CHECK(one.point == before);
 }
 
 TEST_CASE("flow: points are grouped by valence and stars are complete") {
-  const improve::DynamicMesh m = improve::build(lattice_mesh(three_atoms, {0, 0, 0}, h, n), 180, 1);
+  const optimize::DynamicMesh m = optimize::build(lattice_mesh(three_atoms, {0, 0, 0}, h, n), 180, 1);
   std::vector<cuda::Corners> corners;
-  for (const improve::Element& e : m.element)
+  for (const optimize::Element& e : m.element)
     corners.push_back({{e.v[0], e.v[1], e.v[2], e.v[3]}});
   cuda::HostBackend backend;
   const cuda::Stars<cuda::HostBackend> stars(backend, corners.data(), int64_t(corners.size()),
@@ -135,20 +135,20 @@ TEST_CASE("improvement with the device's flow keeps what improvement keeps, at a
     TetMesh mesh = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
     cuda::HostBackend backend(threads);
     std::unique_ptr<cuda::Flow<cuda::HostBackend>> flow;
-    improve::Options options;
+    optimize::Options options;
     options.threads = threads;
-    const improve::Result r = improve::improve(
-        mesh, with_density ? &grid : nullptr, options, {},
-        [&](improve::DynamicMesh& m, const improve::Isosurface* surface, const improve::Pass& pass) {
-          if (!flow)
-            flow = std::make_unique<cuda::Flow<cuda::HostBackend>>(backend, surface, threads);
-          return flow->run(m, pass, 4);
-        });
+    const optimize::Result r =
+        optimize::improve(mesh, with_density ? &grid : nullptr, options, {},
+                          [&](optimize::DynamicMesh& m, const Isosurface* surface, const optimize::Pass& pass) {
+                            if (!flow)
+                              flow = std::make_unique<cuda::Flow<cuda::HostBackend>>(backend, surface, threads);
+                            return flow->run(m, pass, 4);
+                          });
     CHECK(r.after.min >= 25);
     CHECK(r.after.max <= 140);
     CHECK(r.after.min >= r.before.min);
     CHECK(r.fidelity.points_off == 0);
-    CHECK_NOTHROW(improve::build(mesh, 180, 1));
+    CHECK_NOTHROW(optimize::build(mesh, 180, 1));
     result.push_back(std::move(mesh));
   }
   CHECK(result[0].point == result[1].point);
@@ -170,18 +170,18 @@ TEST_CASE("flow: what stays on the device between rounds is what a mesh sent ane
     cuda::HostBackend backend;
     std::unique_ptr<cuda::Flow<cuda::HostBackend>> flow;
     double surfaces = 0, moves = 0;
-    improve::improve(mesh, &grid, {}, {},
-                     [&](improve::DynamicMesh& m, const improve::Isosurface* surface, const improve::Pass& pass) {
-                       if (!flow || !stays) {
-                         flow.reset();
-                         const double before = copied(backend);
-                         flow = std::make_unique<cuda::Flow<cuda::HostBackend>>(backend, surface, 1);
-                         surfaces += copied(backend) - before;
-                       }
-                       const int64_t moved = flow->run(m, pass, 4);
-                       moves += double(moved);
-                       return moved;
-                     });
+    optimize::improve(mesh, &grid, {}, {},
+                      [&](optimize::DynamicMesh& m, const Isosurface* surface, const optimize::Pass& pass) {
+                        if (!flow || !stays) {
+                          flow.reset();
+                          const double before = copied(backend);
+                          flow = std::make_unique<cuda::Flow<cuda::HostBackend>>(backend, surface, 1);
+                          surfaces += copied(backend) - before;
+                        }
+                        const int64_t moved = flow->run(m, pass, 4);
+                        moves += double(moved);
+                        return moved;
+                      });
     CHECK(moves > 100);
     result.push_back(std::move(mesh));
     bytes.push_back(copied(backend) - surfaces);

@@ -1,6 +1,6 @@
 // selection_test.cpp — the device's surface cells and leaves, run by the host: the same, bit by bit, as the host's;
 // and both against leaves found the slow and obvious way.
-#include "contour/leaves.hpp"
+#include "contour/octree/leaves.hpp"
 #include "cuda/contour/selection.hpp"
 #include "cuda/par/host.hpp"
 #include "unit/contour/level_steps.hpp"

@@ -1,5 +1,5 @@
 // band_test.cpp — corners of band cells of a node among its neighbors, against the same cell by cell.
-#include "density/band_kernel.hpp"
+#include "density/band/band_simd.hpp"
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>

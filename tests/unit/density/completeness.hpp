@@ -9,7 +9,7 @@ namespace molmesh::test {
 
 inline BlockGrid compute(const Hierarchy& h, const density::Options& o) {
   density::Counts counts;
-  return density::to_block_grid(density::compute(h, o, counts), 1);
+  return to_block_grid(density::compute(h, o, counts), 1);
 }
 
 /// Where all atoms of a crowd count.

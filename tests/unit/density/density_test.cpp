@@ -1,7 +1,7 @@
 // density_test.cpp — the sparse grid against the field summed by brute force: I1 to I4 of the design.
-#include "density/block_kernel.hpp"
+#include "base/error.hpp"
 #include "density/density.hpp"
-#include "error.hpp"
+#include "density/values/block_simd.hpp"
 #include "unit/density/completeness.hpp"
 #include "unit/refusal.hpp"
 #include <algorithm>
@@ -83,9 +83,9 @@ TEST_CASE("an atom far from the others of its residue costs no search between th
   density::Options o;
   o.spacing = 1;
   density::Counts counts;
-  const density::Band band = density::compute(h, o, counts);
+  const Band band = density::compute(h, o, counts);
   CHECK(counts.search.blocks_visited < 1000);
-  CHECK(test::worst_error(h, density::to_block_grid(band, 1), 100) <= 1);
+  CHECK(test::worst_error(h, to_block_grid(band, 1), 100) <= 1);
 }
 
 TEST_CASE("full and neighbor search, and any number of threads, give the same grid") {

@@ -1,6 +1,6 @@
 // node_words_test.cpp — sets of a node's points and the blocks they touch, against the same point by point.
-#include "density/node_words_kernel.hpp"
-#include "density/seek.hpp"
+#include "density/band/node_words_simd.hpp"
+#include "density/culling/seek.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <hwy/targets.h>

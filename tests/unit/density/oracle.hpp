@@ -1,6 +1,6 @@
 // oracle.hpp — the field by its definition: every atom, double precision, in logarithms so that nothing underflows.
 #pragma once
-#include "density/block_grid.hpp"
+#include "grid/block_grid.hpp"
 #include "molecule/hierarchy.hpp"
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // range_test.cpp — fields whose terms, sums or powers are beyond what floats, or doubles, hold.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "unit/density/completeness.hpp"
 #include "unit/refusal.hpp"
 #include <algorithm>

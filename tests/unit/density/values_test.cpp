@@ -1,6 +1,6 @@
 // values_test.cpp — packing the values of a block and a part of what is packed, against the same value by value.
-#include "density/band.hpp"
-#include "density/values_kernel.hpp"
+#include "density/values/values_simd.hpp"
+#include "grid/band.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <hwy/targets.h>
@@ -40,15 +40,15 @@ TEST_CASE("of packed values those of a subset are taken, in order") {
       packed.resize(all.size());
       REQUIRE(packed == all);
       packed.insert(packed.end(), 16, -1.0f); // the next block's
-      density::BlockValues part;
+      BlockValues part;
       REQUIRE(density::pack_part(packed.data(), stored, active, part.data()) == static_cast<int32_t>(kept.size()));
       CHECK(std::equal(kept.begin(), kept.end(), part.begin()));
 
-      density::BandBlock block{{}, {}, {}, {}, packed.data()};
+      BandBlock block{{}, {}, {}, {}, packed.data()};
       std::copy_n(active, 8, block.active.begin());
       std::copy_n(stored, 8, block.stored.begin());
-      density::BlockValues room;
-      const float* const values = density::active_values(block, room);
+      BlockValues room;
+      const float* const values = active_values(block, room);
       CHECK(std::equal(kept.begin(), kept.end(), values));
       CHECK((values == block.value) == (block.active == block.stored)); // copied only where it must be
     }

@@ -1,5 +1,5 @@
 // hier_selection_test.cpp — what gemmi's selections select in a .hier.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/pdb/hier_selection.hpp"
 #include "formats/pdb/pdb.hpp"

@@ -1,5 +1,5 @@
 // hier_test.cpp — the rules of HIERv1.md, the exact round trip.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/hier/hier.hpp"
 #include "unit/refusal.hpp"
 #include <catch2/catch.hpp>

@@ -17,7 +17,7 @@ BlockGrid two_atoms() {
   density::Options o;
   o.spacing = 0.7;
   density::Counts counts;
-  return density::to_block_grid(density::compute(h, o, counts), 1);
+  return to_block_grid(density::compute(h, o, counts), 1);
 }
 
 } // namespace

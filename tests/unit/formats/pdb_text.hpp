@@ -1,6 +1,6 @@
 // pdb_text.hpp — structures as short texts, and their hierarchies.
 #pragma once
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/pdb/pdb.hpp"
 #include "unit/refusal.hpp"

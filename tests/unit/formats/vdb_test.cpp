@@ -1,6 +1,6 @@
 // vdb_test.cpp — what is written is read back, what is broken is refused.
+#include "base/error.hpp"
 #include "density/density.hpp"
-#include "error.hpp"
 #include "formats/vdb/leaves.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "unit/density/oracle.hpp"
@@ -97,18 +97,18 @@ TEST_CASE("blocks that are given away as they are found make the file of the who
   density::Options o;
   o.spacing = 0.2; // many slabs
   density::Counts counts;
-  const BlockGrid kept = density::to_block_grid(density::compute(h, o, counts), 1);
+  const BlockGrid kept = to_block_grid(density::compute(h, o, counts), 1);
   const auto after_uuid = [](const std::string& file) { return file.substr(60); };
   const std::string whole = after_uuid(bytes(kept));
   for (const int threads : {1, 3}) {
     o.threads = threads;
     formats::Leaves leaves(threads);
     int calls = 0;
-    o.take = [&](const FieldInfo& info, std::span<const density::BandBlocks> runs) {
+    o.take = [&](const FieldInfo& info, std::span<const BandBlocks> runs) {
       leaves.add(runs, static_cast<float>(info.inside_value));
       ++calls;
     };
-    const density::Band band = density::compute(h, o, counts);
+    const Band band = density::compute(h, o, counts);
     CHECK(band.block.empty());
     CHECK(leaves.size() == kept.corner.size());
     CHECK(calls > 4); // memory is used again

@@ -1,5 +1,5 @@
 // vtu_test.cpp — the rules of VTUv1.md, the exact round trip, foreign encodings.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "mesh/adjacency.hpp"
 #include "unit/refusal.hpp"

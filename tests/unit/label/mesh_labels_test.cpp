@@ -1,5 +1,5 @@
 // mesh_labels_test.cpp — labels in a mesh: which cells have them, named boundaries, and what tetsmooth carries on.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "label/mesh_labels.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/carry.hpp"

@@ -1,5 +1,5 @@
 // hierarchy_test.cpp — check() finds each broken rule.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "molecule/hierarchy.hpp"
 #include "unit/refusal.hpp"
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
 // rules_test.cpp — the text of rules, domains and radii.
-#include "error.hpp"
+#include "base/error.hpp"
 #include "molecule/radii.hpp"
 #include "molecule/resolution.hpp"
 #include <catch2/catch.hpp>

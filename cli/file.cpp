@@ -1,0 +1,196 @@
+// file.cpp — opening, checking, renaming.
+#include "cli/file.hpp"
+#include "base/error.hpp"
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <iostream>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
+
+namespace molmesh::cli {
+namespace fs = std::filesystem;
+
+bool same_file(const std::string& a, const std::string& b) {
+  if (a.empty() || b.empty() || a == "-" || b == "-")
+    return false;
+  std::error_code none;
+  const auto device = [&](const std::string& path) {
+    const fs::file_status status = fs::status(path, none);
+    return fs::exists(status) && !fs::is_regular_file(status);
+  };
+  if (device(a) || device(b))
+    return false;
+  if (fs::equivalent(a, b, none))
+    return true;
+  const fs::path x = fs::weakly_canonical(fs::absolute(a, none), none),
+                 y = fs::weakly_canonical(fs::absolute(b, none), none);
+  return !x.empty() && x == y;
+}
+
+int standard_stream(const std::string& path) {
+  if (path == "-")
+    return STDOUT_FILENO;
+  struct stat file {
+  }, stream{};
+  if (stat(path.c_str(), &file) == 0 && S_ISREG(file.st_mode))
+    for (const int fd : {STDOUT_FILENO, STDERR_FILENO})
+      if (fstat(fd, &stream) == 0 && stream.st_dev == file.st_dev && stream.st_ino == file.st_ino)
+        return fd;
+  return -1;
+}
+
+InputFile::InputFile(const std::string& path) : name_(path) {
+  if (path == "-") {
+    static bool asked_for = false;
+    if (std::exchange(asked_for, true))
+      fail(Status::usage, "standard input is asked for twice, expected at most once");
+    standard_ = true;
+    name_ = "<stdin>";
+    struct stat file {};
+    if (fstat(STDIN_FILENO, &file) == 0 && S_ISDIR(file.st_mode))
+      fail_input(name_ + ": is a directory, expected a file");
+    return;
+  }
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored))
+    fail_input(path + ": is a directory, expected a file");
+  errno = 0;
+  file_.open(path, std::ios::binary);
+  if (!file_)
+    fail_input(path + ": cannot open: " + std::strerror(errno ? errno : ENOENT));
+}
+
+std::istream& InputFile::stream() {
+  return standard_ ? std::cin : file_;
+}
+
+void NotingBuffer::note(bool failed) {
+  if (failed && error == 0)
+    error = errno;
+}
+
+NotingBuffer::int_type NotingBuffer::overflow(int_type c) {
+  if (traits_type::eq_int_type(c, traits_type::eof()))
+    return traits_type::not_eof(c);
+  const int_type done = to_->sputc(traits_type::to_char_type(c));
+  note(traits_type::eq_int_type(done, traits_type::eof()));
+  return done;
+}
+
+std::streamsize NotingBuffer::xsputn(const char* from, std::streamsize n) {
+  const std::streamsize done = to_->sputn(from, n);
+  note(done < n);
+  return done;
+}
+
+int NotingBuffer::sync() {
+  const int done = to_->pubsync();
+  note(done < 0);
+  return done;
+}
+
+namespace {
+
+bool is_terminal(const std::string& path) {
+  const int file = open(path.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK);
+  const bool found = file >= 0 && isatty(file);
+  if (file >= 0)
+    close(file);
+  return found;
+}
+
+/// Through symbolic links, also to what is not there yet.
+std::string followed(fs::path path) {
+  std::error_code none;
+  constexpr int most = 40; // as the system has it
+  for (int n = 0; n < most && fs::is_symlink(fs::symlink_status(path, none)); ++n)
+    path = path.parent_path() / fs::read_symlink(path, none);
+  return path.string();
+}
+
+[[noreturn]] void refuse_terminal() {
+  fail(Status::usage, "--output: found a terminal, expected a file or a pipe for what is not text");
+}
+
+} // namespace
+
+OutputFile::OutputFile(const std::string& path, Content content)
+    : path_(path), target_(path), written_(path), standard_(standard_stream(path)),
+      noting_(standard_ == STDOUT_FILENO   ? std::cout.rdbuf()
+              : standard_ == STDERR_FILENO ? std::cerr.rdbuf()
+                                           : &file_) {
+  if (standard_ >= 0) {
+    const int flags = fcntl(standard_, F_GETFL);
+    if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY) { // closed by the caller
+      errno = EBADF;
+      refuse("cannot write");
+    }
+    if (content == Content::binary && isatty(standard_))
+      refuse_terminal();
+    return;
+  }
+  std::error_code none;
+  const fs::file_status status = fs::status(path, none);
+  if (content == Content::binary && fs::is_character_file(status) && is_terminal(path))
+    refuse_terminal();
+  if (!fs::exists(status) || fs::is_regular_file(status)) {
+    target_ = followed(path);
+    written_ = target_ + ".tmp." + std::to_string(getpid());
+    temporary_ = std::make_unique<Temporary>(written_);
+  }
+  errno = 0;
+  if (!file_.open(written_, std::ios::binary | std::ios::out | std::ios::trunc))
+    refuse("cannot open");
+}
+
+std::ostream& OutputFile::stream() {
+  return stream_;
+}
+
+namespace {
+
+[[noreturn]] void refuse_output(const std::string& path, const char* what, int error) {
+  fail(Status::not_written,
+       (path == "-" ? "<stdout>" : path) + ": " + what + ": " + std::strerror(error ? error : EIO));
+}
+
+} // namespace
+
+void OutputFile::refuse(const char* what) const {
+  refuse_output(path_, what, noting_.error ? noting_.error : errno);
+}
+
+CompleteFile OutputFile::complete() {
+  errno = 0;
+  stream().flush();
+  if (!stream())
+    refuse("cannot write");
+  if (standard_ >= 0)
+    return {path_, {}, {}, nullptr};
+  if (!file_.close())
+    refuse("cannot write");
+  if (temporary_) {
+    const int fd = open(written_.c_str(), O_RDONLY);
+    const bool synced = fd >= 0 && fsync(fd) == 0;
+    if (fd >= 0)
+      close(fd);
+    if (!synced)
+      refuse("cannot write");
+  }
+  return {path_, written_, target_, std::move(temporary_)};
+}
+
+void CompleteFile::publish() {
+  if (!temporary)
+    return;
+  errno = 0;
+  if (std::rename(written.c_str(), target.c_str()) != 0)
+    refuse_output(path, "cannot rename", errno);
+  temporary->keep();
+}
+
+} // namespace molmesh::cli

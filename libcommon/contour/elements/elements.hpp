@@ -1,0 +1,53 @@
+// elements.hpp — tetrahedra round the edges of the complex. Section 4.1 and 4.2 of Liao et al. 2013.
+//
+// Between two cells stands a face, a convex polygon. Each of its edges and the two cells' dual vertices make one
+// tetrahedron; all of these have positive volume exactly when the segment between the dual vertices pierces the
+// face. Where it does not, a point of the face is put between them: then they always have. The tetrahedra round a
+// sign-change edge are replaced by pyramids from either end over the ring of dual vertices, both split by the same
+// diagonals; where no diagonal leaves positive volumes, or better ones than that, the edge's crossing point is
+// joined with the ring. So every mesh is valid by construction: what is chosen is only how good it is.
+#pragma once
+#include "contour/complex/complex.hpp"
+#include "contour/elements/elements_view.hpp"
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace molmesh::contour {
+
+/// Elements before regions are told apart, in the arrays of a Memory.
+template <class Memory>
+struct ElementArrays {
+  template <class T>
+  using Array = typename Memory::template Array<T>;
+
+  Array<Tet> tet;                          ///< positive; tet[0] is a vertex of the complex on the element's side
+  Array<Tri> tri;                          ///< out of the molecule, or out of the box
+  Array<std::array<int32_t, 2>> tri_sides; ///< [tris] vertices of the complex behind and in front; equal on a wall
+  Array<int32_t> boundary;                 ///< [tris] Boundary
+  Array<Vec3d> position;                   ///< all vertices: those of the complex, then face, wall and edge points
+  int64_t face_points = 0, edge_points = 0, divided_edges = 0;
+
+  ElementsView view() const {
+    return {tet.data(),
+            static_cast<int64_t>(tet.size()),
+            tri.data(),
+            tri_sides.data(),
+            boundary.data(),
+            static_cast<int64_t>(tri.size()),
+            const_cast<Vec3d*>(position.data()),
+            static_cast<int64_t>(position.size())};
+  }
+};
+using Elements = ElementArrays<HostMemory>;
+
+/// Vertices of the complex that elements without positive volume, on either side, would hang on, ascending: where
+/// grid points have moved the cells are no boxes. Of the leaves' faces, and of the rings of edges with both ends
+/// among `ends`, ascending, or at split cells' centres (null: of all edges).
+LargeArray<int32_t> spoiled_of(const ComplexView& complex, const LargeArray<int32_t>& leaves,
+                               const LargeArray<int32_t>* ends, int threads);
+
+/// Of both sides. The order follows the octree's curve, whatever the threads. Positive where nothing is spoiled.
+Elements make_elements(const ComplexView& complex, int threads);
+
+} // namespace molmesh::contour

@@ -1,0 +1,46 @@
+// neighboring_search.hpp — the sparse density grid: neighboring search over blocks of 8³ points (§3.1 of Liao et
+// al. 2013) from seeds that bounds on G prove complete, active points, sides. Nothing is dense over the grid.
+#pragma once
+#include "density/band/search_counts.hpp"
+#include "density/culling/selection.hpp"
+#include "density/field/field.hpp"
+#include "grid/band.hpp"
+#include <functional>
+#include <span>
+
+namespace molmesh::density {
+
+/// How the atoms that matter are found.
+enum class AtomSearch {
+  bvh,    ///< boxes of the hierarchy's clusters, tested while the grid is halved
+  kdtree, ///< a kd-tree over the clusters, asked by every node of the grid
+  all     ///< no search: every atom counts everywhere
+};
+
+/// Takes blocks of the band as they are found, every block once, in runs of any order. They and what they point to
+/// are gone afterwards. info: the numbers that empty_band() knows.
+using BandSink = std::function<void(const FieldInfo& info, std::span<const BandBlocks> runs)>;
+
+struct SearchOptions {
+  double isovalue = 1, band_lower = 0.9, band_upper = 1.1; ///< in units of G
+  double tolerance = 1e-4;                                 ///< ε of I1
+  bool full = false;                                       ///< compute every point of the grid
+  AtomSearch atoms = AtomSearch::bvh;
+  int threads = 1;
+  std::function<void(int64_t done, int64_t total)> progress; ///< called from any thread; may be empty
+  BandSink take; ///< empty: the band keeps its blocks, and their memory grows with the surface
+};
+
+/// The field must be made with budget_for(options).far. The result has frame, values, sides and the numbers of
+/// `info` that it knows; the texts are the caller's. Same result for any number of threads.
+Budget budget_for(const SearchOptions& options);
+/// Comparing floats with these is comparing them with the options' doubles.
+struct FloatBand {
+  float lower, upper;
+};
+FloatBand float_band(const SearchOptions& options);
+/// What a search starts from: the frame and the numbers of `info`, nothing found.
+Band empty_band(const Field& f, const GridFrame& frame, const SearchOptions& options);
+Band find_band(const Field& f, const GridFrame& frame, const SearchOptions& options, SearchCounts& counts);
+
+} // namespace molmesh::density

@@ -1,0 +1,258 @@
+// field.cpp — clusters and cutoff distances from a hierarchy.
+#include "density/field/field.hpp"
+#include "base/error.hpp"
+#include "par/par.hpp"
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+
+namespace molmesh::density {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+constexpr double widest = 64; // Å; a wider cluster would be near everything in between
+
+/// Splits atoms [begin, end) of `order` at the median of their longest axis until every piece is a cluster.
+void split(const Hierarchy& h, LargeArray<int64_t>& order, int64_t begin, int64_t end, std::vector<int64_t>& cuts) {
+  Vec3d lo{infinity, infinity, infinity}, hi = -lo;
+  for (int64_t i = begin; i < end; ++i)
+    for (int a = 0; a < 3; ++a) {
+      const double c = h.atom[static_cast<size_t>(order[static_cast<size_t>(i)])].center[a];
+      lo[a] = std::min(lo[a], c);
+      hi[a] = std::max(hi[a], c);
+    }
+  int axis = 0;
+  for (int a = 1; a < 3; ++a)
+    if (hi[a] - lo[a] > hi[axis] - lo[axis])
+      axis = a;
+  if (end - begin <= Field::cluster_size && hi[axis] - lo[axis] <= widest) {
+    cuts.push_back(begin);
+    return;
+  }
+  const int64_t middle = begin + (end - begin) / 2;
+  std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end, [&](int64_t a, int64_t b) {
+    const double ca = h.atom[static_cast<size_t>(a)].center[axis], cb = h.atom[static_cast<size_t>(b)].center[axis];
+    return ca != cb ? ca < cb : a < b;
+  });
+  split(h, order, begin, middle, cuts);
+  split(h, order, middle, end, cuts);
+}
+
+void add_levels(Field& f, const Hierarchy& h) {
+  if (h.level.empty()) {
+    f.level.push_back({{1.0}, {}});
+    return;
+  }
+  for (size_t l = h.level.size(); l-- > 0;) {
+    FieldLevel level;
+    for (const Group& g : h.level[l].group)
+      level.exponent.push_back(g.exponent);
+    if (l > 0) {
+      level.parent.resize(level.exponent.size());
+      for (size_t p = 0; p < h.level[l - 1].group.size(); ++p)
+        for (int64_t c = h.level[l - 1].group[p].begin; c < h.level[l - 1].group[p].end; ++c)
+          level.parent[static_cast<size_t>(c)] = static_cast<int64_t>(p);
+    }
+    f.level.push_back(std::move(level));
+  }
+}
+
+/// exp(), which is asked for the same few numbers again and again: atoms have few radii.
+class FewExponentials {
+public:
+  double operator()(double x) {
+    const auto bits = std::bit_cast<uint64_t>(x);
+    auto& [key, value] = kept_[bits * 0x9e3779b97f4a7c15 >> 58];
+    if (key != bits) {
+      key = bits;
+      value = std::exp(x);
+    }
+    return value;
+  }
+
+private:
+  struct Pair {
+    uint64_t key = 0; ///< of 0
+    double value = 1;
+  };
+  std::array<Pair, 64> kept_ = {};
+};
+
+/// Box and ln_peak of cluster c.
+void measure_cluster(Field& f, size_t c, FewExponentials& exp) {
+  const auto begin = static_cast<size_t>(f.begin[c]), end = static_cast<size_t>(f.begin[c + 1]);
+  Box b{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+  double largest = -infinity, sum = 0;
+  for (size_t a = begin; a < end; ++a) {
+    b.lo = {std::min(b.lo.x, f.x[a]), std::min(b.lo.y, f.y[a]), std::min(b.lo.z, f.z[a])};
+    b.hi = {std::max(b.hi.x, f.x[a]), std::max(b.hi.y, f.y[a]), std::max(b.hi.z, f.z[a])};
+    largest = std::max(largest, f.peak[a]);
+  }
+  for (size_t a = begin; a < end; ++a)
+    sum += exp(f.peak[a] - largest);
+  f.box[c] = b;
+  f.ln_peak[c] = largest < infinity ? largest + std::log(sum) : largest;
+}
+
+void add_clusters(Field& f, const Hierarchy& h, int threads) {
+  const auto n = static_cast<int64_t>(h.atom.size());
+  LargeArray<int64_t> order(h.atom.size());
+  for (LargeArray<double>* v : {&f.x, &f.y, &f.z, &f.peak})
+    v->resize(order.size());
+  const std::vector<Group> all{{"", 1, 0, n}}, &innermost = h.level.empty() ? all : h.level.back().group;
+  const auto groups = static_cast<int64_t>(innermost.size());
+  struct Piece {
+    std::vector<int64_t> cuts, group;
+  };
+  constexpr int64_t grain = 256; // groups
+  std::vector<Piece> piece(static_cast<size_t>((groups + grain - 1) / grain));
+  par::for_n(static_cast<int64_t>(piece.size()), threads, 1, [&](int64_t p) {
+    auto& [cuts, group] = piece[static_cast<size_t>(p)];
+    for (int64_t g = p * grain; g < std::min(groups, (p + 1) * grain); ++g) {
+      const auto begin = innermost[static_cast<size_t>(g)].begin, end = innermost[static_cast<size_t>(g)].end;
+      std::iota(order.begin() + begin, order.begin() + end, begin);
+      split(h, order, begin, end, cuts);
+      group.resize(cuts.size(), g);
+      for (auto a = static_cast<size_t>(begin); a < static_cast<size_t>(end); ++a) {
+        const Atom& atom = h.atom[static_cast<size_t>(order[a])];
+        f.x[a] = atom.center.x;
+        f.y[a] = atom.center.y;
+        f.z[a] = atom.center.z;
+        f.peak[a] = f.decay * atom.radius * atom.radius;
+      }
+    }
+  });
+  for (const Piece& p : piece) {
+    f.begin.insert(f.begin.end(), p.cuts.begin(), p.cuts.end());
+    f.group.insert(f.group.end(), p.group.begin(), p.group.end());
+  }
+  f.begin.push_back(n);
+  f.source = std::move(order);
+  f.box.resize(f.group.size());
+  f.ln_peak.resize(f.group.size());
+  const int64_t n_clusters = f.clusters(), at_once = 1024;
+  par::for_n((n_clusters + at_once - 1) / at_once, threads, 1, [&](int64_t part) {
+    FewExponentials exp;
+    for (int64_t c = part * at_once; c < std::min(n_clusters, (part + 1) * at_once); ++c)
+      measure_cluster(f, static_cast<size_t>(c), exp);
+  });
+}
+
+/// Per level and group the logarithm of the largest its sum can be, anywhere; last that of G.
+std::vector<std::vector<double>> largest_sums(const Field& f) {
+  std::vector<std::vector<double>> largest(f.level.size() + 1);
+  for (size_t l = 0; l <= f.level.size(); ++l) {
+    largest[l].assign(l < f.level.size() ? f.level[l].exponent.size() : 1, -infinity);
+    if (l == 0)
+      for (size_t c = 0; c < f.group.size(); ++c) {
+        double& sum = largest[0][static_cast<size_t>(f.group[c])];
+        sum = log_add(sum, f.ln_peak[c]);
+      }
+    else
+      for (size_t g = 0; g < f.level[l - 1].exponent.size(); ++g) {
+        double& sum = largest[l][l < f.level.size() ? static_cast<size_t>(f.level[l - 1].parent[g]) : 0];
+        sum = log_add(sum, f.level[l - 1].exponent[g] * largest[l - 1][g]);
+      }
+  }
+  return largest;
+}
+
+/// Field::ln_highest: from the largest term, the largest exponents and the number of groups where that suffices.
+double highest_logarithm(const Field& f) {
+  double top = *std::max_element(f.ln_peak.begin(), f.ln_peak.end()) + std::log(double(f.clusters())),
+         highest = std::max(top, 0.0);
+  for (const FieldLevel& l : f.level) {
+    top = std::max(top, 0.0) * *std::max_element(l.exponent.begin(), l.exponent.end()) +
+          std::log(double(l.exponent.size()));
+    highest = std::max(highest, top);
+  }
+  if (highest <= Field::single_ln)
+    return highest;
+  const std::vector<std::vector<double>> largest = largest_sums(f);
+  highest = largest.back()[0];
+  for (size_t l = 0; l < f.level.size(); ++l)
+    for (size_t g = 0; g < largest[l].size(); ++g)
+      highest = std::max(highest, std::max(1.0, f.level[l].exponent[g]) * largest[l][g]);
+  return highest;
+}
+
+/// For every innermost group the logarithm of the largest change of its sum that changes G by at most `allowed`.
+std::vector<double> allowed_change(const Field& f, double allowed) {
+  const bool steep = std::any_of(f.level.begin(), f.level.end(), [](const FieldLevel& l) {
+    return std::any_of(l.exponent.begin(), l.exponent.end(), [](double p) { return p > 1; });
+  });
+  const std::vector<std::vector<double>> largest = steep ? largest_sums(f) : std::vector<std::vector<double>>();
+  std::vector<double> outer, change;
+  for (size_t l = f.level.size(); l-- > 0;) {
+    change.resize(f.level[l].exponent.size());
+    for (size_t g = 0; g < change.size(); ++g) {
+      const double p = f.level[l].exponent[g];
+      const double t =
+          l + 1 < f.level.size() ? outer[static_cast<size_t>(f.level[l].parent[g])] : std::log(allowed);
+      change[g] = p <= 1 ? t / p : t - std::log(p) - (p - 1) * largest[l][g];
+    }
+    outer = change;
+  }
+  return change;
+}
+
+double steepest_path(const Field& f) {
+  std::vector<double> outer{1.0}, path;
+  for (size_t l = f.level.size(); l-- > 0;) {
+    path = f.level[l].exponent;
+    if (l + 1 < f.level.size())
+      for (size_t g = 0; g < path.size(); ++g)
+        path[g] *= outer[static_cast<size_t>(f.level[l].parent[g])];
+    outer = path;
+  }
+  return *std::max_element(path.begin(), path.end());
+}
+
+} // namespace
+
+double log_add(double a, double b) {
+  const double m = std::max(a, b);
+  return m == -infinity ? m : m + std::log1p(std::exp(std::min(a, b) - m));
+}
+
+Box Field::bounds() const {
+  Box b = box.front();
+  for (const Box& c : box)
+    for (int a = 0; a < 3; ++a) {
+      b.lo[a] = std::min(b.lo[a], c.lo[a]);
+      b.hi[a] = std::max(b.hi[a], c.hi[a]);
+    }
+  return b;
+}
+
+Field make_field(const Hierarchy& h, double decay, double far_error, int threads) {
+  Field f;
+  f.decay = decay;
+  f.far_error = far_error;
+  add_levels(f, h);
+  add_clusters(f, h, threads);
+  f.steepest = steepest_path(f);
+  f.ln_highest = highest_logarithm(f);
+  if (!(f.ln_highest < 1e8)) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "the field's logarithm reaches %g, expected less than 1e8: a smaller --decay, radius or exponent",
+                  f.ln_highest);
+    fail(Status::usage, text);
+  }
+  for (size_t l = 1; l < f.level.size(); ++l)
+    for (const double p : f.level[l].exponent)
+      f.plain_above = f.plain_above && p == 1;
+  const std::vector<double> change = allowed_change(f, far_error / static_cast<double>(f.clusters()));
+  f.cutoff2.reserve(f.group.size());
+  for (size_t c = 0; c < f.group.size(); ++c)
+    f.cutoff2.push_back(std::max(0.0, (f.ln_peak[c] - change[static_cast<size_t>(f.group[c])]) / decay));
+  return f;
+}
+
+} // namespace molmesh::density

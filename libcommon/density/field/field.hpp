@@ -1,0 +1,106 @@
+// field.hpp — the multi-level field G, flattened for evaluation: atoms in clusters, clusters in groups, groups in
+// groups. Equations 1, 4 and 6 of Liao et al. 2013 for any depth; κ > 0 here. Why atoms may be dropped: field.md.
+#pragma once
+#include "base/large_array.hpp"
+#include "geom/vec.hpp"
+#include "molecule/hierarchy.hpp"
+#include <cstdint>
+#include <vector>
+
+namespace molmesh::density {
+
+struct Box {
+  Vec3d lo, hi; ///< Å
+};
+
+/// Squared distance between two boxes, Å²; 0 when they touch.
+HD inline double distance2(const Box& a, const Box& b) {
+  double sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double below = a.lo[axis] - b.hi[axis], above = b.lo[axis] - a.hi[axis];
+    const double d = below > above ? below : above;
+    if (d > 0)
+      sum += d * d;
+  }
+  return sum;
+}
+
+/// Exponents of the groups of one level and the groups of the next outer level that hold them.
+struct FieldLevel {
+  std::vector<double> exponent;
+  std::vector<int64_t> parent; ///< empty at the outermost level
+};
+
+struct Field {
+  double decay = 1;     ///< κ, Å⁻²
+  double far_error = 0; ///< what all clusters beyond their cutoff2 together add to G anywhere, at most
+  /// Atom a: position, and the logarithm of its term at its centre, κ·r². In clusters.
+  LargeArray<double> x, y, z, peak;
+  LargeArray<int64_t> source; ///< [atoms] index in Hierarchy::atom
+  /// Clusters: at most `cluster_size` atoms of one innermost group, near each other (64 Å at most along an axis).
+  static constexpr int64_t cluster_size = 16;
+  std::vector<int64_t> begin;  ///< [clusters + 1] first atom
+  std::vector<int64_t> group;  ///< innermost group, ascending
+  std::vector<Box> box;        ///< of the atoms' centres
+  std::vector<double> ln_peak; ///< ln Σ exp(peak): ln of the cluster's sum at distance d is at most this - κ·d²
+  std::vector<double> cutoff2; ///< Å²: a cluster at this squared distance or farther may be dropped (field.md §3)
+  std::vector<FieldLevel> level; ///< innermost first, at least one: no level is one group with P = 1
+  double steepest = 1;           ///< Q: the largest product of exponents from an innermost group to the root
+  bool plain_above = true;       ///< every exponent above the innermost level is 1
+  double ln_highest = 0;         ///< no sum or power on the way to the root, and not G, has a larger logarithm
+
+  int64_t clusters() const { return static_cast<int64_t>(group.size()); }
+  int64_t atoms() const { return static_cast<int64_t>(x.size()); }
+  /// Something on the way to the root may be larger than single precision holds (ln: 88).
+  bool beyond_single() const { return ln_highest > single_ln; }
+  static constexpr double single_ln = 80;
+  Box bounds() const; ///< of all centres
+};
+
+/// far_error: bound on what all clusters beyond their cutoff2 together add to G anywhere (no unit). Throws
+/// Error(usage) when ln_highest is 1e8 or more.
+Field make_field(const Hierarchy& h, double decay, double far_error, int threads = 1);
+
+/// The groups above the innermost level that are open while innermost groups pass by in ascending order.
+class OpenGroups {
+public:
+  explicit OpenGroups(const Field& f) : f_(f), open_(f.plain_above ? 1 : f.level.size(), -1) {}
+  /// close(level, group), inner levels first, for every open group that does not hold `innermost`.
+  template <class Close>
+  void enter(int64_t innermost, Close&& close) {
+    size_t leave = 0;
+    int64_t g = innermost;
+    for (size_t l = 1; l < open_.size(); ++l) {
+      g = f_.level[l - 1].parent[static_cast<size_t>(g)];
+      if (open_[l] != g)
+        leave = l;
+    }
+    leave_to(leave, close);
+    g = innermost;
+    for (size_t l = 1; l < open_.size(); ++l)
+      open_[l] = g = f_.level[l - 1].parent[static_cast<size_t>(g)];
+  }
+  template <class Close>
+  void finish(Close&& close) {
+    leave_to(open_.size() - 1, close);
+  }
+  /// Levels that need a sum of their own: 1 when everything above the innermost level is a plain sum.
+  size_t levels() const { return open_.size(); }
+
+private:
+  template <class Close>
+  void leave_to(size_t last, Close&& close) {
+    for (size_t l = 1; l <= last; ++l) {
+      if (open_[l] >= 0)
+        close(l, open_[l]);
+      open_[l] = -1;
+    }
+  }
+  const Field& f_;
+  std::vector<int64_t> open_;
+};
+
+/// ln(e^a + e^b), also for -∞.
+double log_add(double a, double b);
+
+} // namespace molmesh::density

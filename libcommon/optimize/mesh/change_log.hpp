@@ -1,0 +1,49 @@
+// change_log.hpp — which elements of a part were written, in order: what is known of all of them needs to be found
+// anew for these alone.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace molmesh::optimize {
+
+class ChangeLog {
+public:
+  static constexpr int32_t beyond = -1; ///< in place of an element of another part, one side of which was written
+
+  struct Moment {
+    uint64_t era = 0; ///< of none
+    size_t at = 0;
+  };
+  /// Nothing is kept before.
+  void keep() { kept_ = true; }
+  bool kept() const { return kept_; }
+  void add(int32_t element) {
+    if (kept_)
+      written_.push_back(element);
+  }
+  Moment now() const { return {era_, written_.size()}; }
+  /// Those written since, each once, ascending. False when that is not known: it may be all of them.
+  bool since(Moment then, std::vector<int32_t>& out) const {
+    if (!kept_ || then.era != era_)
+      return false;
+    out.assign(written_.begin() + static_cast<std::ptrdiff_t>(then.at), written_.end());
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return true;
+  }
+  /// All may have been written.
+  void forget() {
+    written_.clear();
+    ++era_;
+  }
+  size_t size() const { return written_.size(); }
+
+private:
+  bool kept_ = false;
+  uint64_t era_ = 1;
+  std::vector<int32_t> written_;
+};
+
+} // namespace molmesh::optimize

@@ -1,0 +1,151 @@
+// dynamic_mesh.hpp — tetrahedra that know their neighbours, labelled faces and constrained vertices.
+#pragma once
+#include "geom/tet_measures.hpp"
+#include "geom/tet_quality.hpp"
+#include "mesh/tet_mesh.hpp"
+#include "optimize/mesh/walls.hpp"
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+namespace molmesh::optimize {
+
+/// What a vertex may do.
+enum class Kind : uint8_t {
+  interior, ///< on no labelled face: anything
+  surface,  ///< on one curved label: stays on the target
+  sliding,  ///< on axis planes alone (box walls): keeps the frozen coordinates
+  trace,    ///< where one curved label meets one wall: stays on the target and in the wall
+  fixed,    ///< where other labels or sharp edges meet: never moves, is never removed
+};
+/// On a curved label, and free to move on it.
+inline constexpr bool follows_target(Kind k) {
+  return k == Kind::surface || k == Kind::trace;
+}
+
+struct Vertex {
+  Kind kind = Kind::interior;
+  uint8_t frozen = 0;   ///< sliding, trace: bit a set when coordinate a is kept
+  uint8_t label = 0;    ///< of a labelled face at the vertex (0 inside)
+  bool crowded = false; ///< another sheet of the surface is near, with no elements between
+
+  int axis() const { return std::countr_zero(frozen); } ///< trace: of the coordinate that is kept
+};
+
+/// Face i is opposite v[i]; (v1 v2 v3), (v0 v3 v2), (v0 v1 v3), (v0 v2 v1) point out.
+struct Element {
+  std::array<int32_t, 4> v{-1, -1, -1, -1}; ///< positive volume; v[0] < 0: a free slot
+  std::array<int32_t, 4> n{-1, -1, -1, -1}; ///< element across face i; -1: none
+  std::array<uint8_t, 4> label{};           ///< of face i, an index into DynamicMesh::labels; 0: none
+  int32_t region = 0;
+  float q = 0;       ///< tet_quality
+  int32_t tried = 0; ///< when the schedule last found nothing to do for it
+
+  bool alive() const { return v[0] >= 0; }
+  int find(int32_t vertex) const {
+    const int later = (v[1] == vertex) | 2 * (v[2] == vertex) | 3 * (v[3] == vertex);
+    return later - ((later == 0) & (v[0] != vertex));
+  }
+  /// The face that neighbour t is across; 0 when it is none.
+  size_t face_towards(int32_t t) const {
+    return static_cast<size_t>((n[1] == t) | 2 * (n[2] == t) | 3 * (n[3] == t));
+  }
+  bool any_labelled() const { return (label[0] | label[1] | label[2] | label[3]) != 0; }
+};
+
+/// Face of the element v, seen from outside it.
+inline std::array<int32_t, 3> outward_triangle(const std::array<int32_t, 4>& v, size_t face) {
+  const auto corner = [&](int i) { return v[size_t(tet_face(int(face), i))]; };
+  return {corner(0), corner(1), corner(2)};
+}
+
+} // namespace molmesh::optimize
+
+/// build() fills them on all threads.
+template <>
+inline constexpr bool molmesh::leave_untouched<molmesh::optimize::Element> = true;
+
+namespace molmesh::optimize {
+
+struct Label {
+  int32_t name = 0;      ///< TetMesh::boundary
+  int axis = -1;         ///< all its triangles lie in one plane normal to this axis; -1: curved
+  bool wall = false;     ///< and the mesh ends there
+  bool reversed = false; ///< its triangles point into the lower of the two regions, or into the mesh
+  bool curved() const { return axis < 0; }
+};
+
+struct DynamicMesh {
+  std::vector<Vec3d> point;
+  std::vector<Vertex> vertex;
+  std::vector<int32_t> incident; ///< [vertices] an element at the vertex; -1: free slot
+  std::vector<int32_t> touched;  ///< [vertices] when an element at the vertex last changed
+  std::vector<uint32_t>
+      state; ///< [vertices] another number whenever what is there is written, the same when put back
+  LargeArray<Element> element;
+  std::vector<Label> labels; ///< [0] is no label
+  Walls walls;
+  /// [stretches] not 0 where the quality of an element may have changed since this was cleared.
+  std::vector<uint8_t> restless;
+  std::vector<float> worst; ///< [stretches] lowest quality where not restless; 2 where nothing is alive
+  /// [stretches] not 0 where a face of an element may be labelled.
+  std::vector<uint8_t> labelled;
+  static constexpr int64_t stretch = 512; ///< elements
+  static int64_t stretches(size_t elements) { return (static_cast<int64_t>(elements) + stretch - 1) / stretch; }
+
+  /// To so many slots; new ones are free.
+  void resize(size_t elements, size_t vertices);
+  /// Of the element's quality. From any thread.
+  void note_change(int32_t e) {
+    std::atomic_ref(restless[size_t(e / stretch)]).store(1, std::memory_order_relaxed);
+  }
+
+  /// A face of it is labelled. From any thread.
+  void note_label(int32_t e) { std::atomic_ref(labelled[size_t(e / stretch)]).store(1, std::memory_order_relaxed); }
+  /// f(e) for the slots of stretch s.
+  template <class F>
+  void for_stretch(int64_t s, F&& f) const {
+    for (int64_t e = s * stretch, end = std::min(static_cast<int64_t>(element.size()), e + stretch); e < end; ++e)
+      f(e);
+  }
+
+  /// Whether the face is labelled and this side's to count: the lower region's.
+  bool counts_here(const Element& e, size_t face) const {
+    return e.label[face] != 0 && (e.n[face] < 0 || element[size_t(e.n[face])].region > e.region);
+  }
+  /// Whether a labelled face, seen as an outward one of e, runs as the target's normal does.
+  bool outward(const Element& e, size_t face) const {
+    const bool lower = e.n[face] < 0 || e.region < element[size_t(e.n[face])].region;
+    return lower != labels[e.label[face]].reversed;
+  }
+  /// Whether two of its corners are.
+  bool crowded(const std::array<int32_t, 3>& triangle) const {
+    return std::count_if(triangle.begin(), triangle.end(), [&](int32_t v) { return vertex[size_t(v)].crowded; }) >=
+           2;
+  }
+  float quality(const std::array<int32_t, 4>& v) const {
+    return tet_quality(point[size_t(v[0])], point[size_t(v[1])], point[size_t(v[2])], point[size_t(v[3])]);
+  }
+};
+
+// Indices are 32-bit, and faces and triangles are grouped together, 2^32 - 1 of them at most. Each throws one clear
+// line where that does not hold.
+void require_size(int64_t elements, int64_t triangles,
+                  int64_t points);                      ///< of a mesh that came in: Error(bad_input)
+void require_slots(int64_t elements, int64_t vertices); ///< of one that grows: Error(failed)
+
+/// Edges of a curved label that bend by more than `sharp` degrees are kept: their ends are fixed.
+/// Throws Error(bad_input) naming the first element, face or triangle that makes the mesh no valid one:
+/// more than require_size allows, non-positive volume by exact sign, a face with three elements, two elements on
+/// one side of a face, triangles that are not exactly the faces between regions and on the outside.
+DynamicMesh build(const TetMesh& mesh, double sharp, int threads);
+
+/// Elements, vertices and triangles in slot order, unused slots squeezed out; triangles point as they did.
+/// across [4 tets]: the tetrahedron beyond each face, -1: none. `out` lends its memory; isovalue, source and
+/// creator stay as they are there.
+TetMesh extract(const DynamicMesh& mesh, int threads = 1, LargeArray<int32_t>* across = nullptr, TetMesh out = {});
+
+} // namespace molmesh::optimize

@@ -1,0 +1,78 @@
+// part_copy.cpp — elements and vertices of a part, numbered anew in their order.
+#include "optimize/mesh/part_copy.hpp"
+#include "optimize/mesh/open_table.hpp"
+#include "par/par.hpp"
+
+namespace molmesh::optimize {
+namespace {
+
+/// Small numbers of what is kept, in its order; -1 of all else.
+class Numbers {
+public:
+  explicit Numbers(const std::vector<int32_t>& kept) {
+    for (size_t k = 0; k < kept.size(); ++k)
+      number_[static_cast<uint32_t>(kept[k])] = static_cast<int32_t>(k);
+  }
+  int32_t operator()(int32_t id) const {
+    const int32_t* number = id < 0 ? nullptr : number_.find(static_cast<uint32_t>(id));
+    return number ? *number : -1;
+  }
+  std::vector<int32_t> operator()(std::vector<int32_t> ids) const {
+    for (int32_t& id : ids)
+      id = (*this)(id);
+    return ids;
+  }
+
+private:
+  OpenTable number_;
+};
+
+} // namespace
+
+PartCopy copy_part(const DynamicMesh& m, const Parts& parts, const PartRoom& room,
+                   const std::vector<int32_t>& slots) {
+  PartCopy c;
+  c.element = slots;
+  for (const int32_t t : slots)
+    for (const int32_t n : m.element[size_t(t)].n)
+      if (n >= 0)
+        c.element.push_back(n);
+  par::sort_unique(c.element, 1);
+  std::vector<int32_t> vertex = room.vertex;
+  for (const int32_t t : c.element)
+    if (const Element& e = m.element[size_t(t)]; e.alive())
+      vertex.insert(vertex.end(), e.v.begin(), e.v.end());
+  par::sort_unique(vertex, 1);
+  const Numbers element_number(c.element), vertex_number(vertex);
+  c.mesh.labels = m.labels;
+  c.mesh.walls = m.walls;
+  c.mesh.resize(c.element.size(), vertex.size());
+  c.parts.low = parts.low;
+  c.parts.cell = parts.cell;
+  c.parts.offset = parts.offset;
+  c.parts.n = parts.n;
+  for (size_t k = 0; k < vertex.size(); ++k) {
+    const auto v = size_t(vertex[k]);
+    c.parts.owner.push_back(parts.owner[v]);
+    if (parts.owner[v] != room.part)
+      continue; // another part's editor may be writing there, and no operation of this one asks
+    c.mesh.point[k] = m.point[v];
+    c.mesh.vertex[k] = m.vertex[v];
+    c.mesh.incident[k] = element_number(m.incident[v]);
+  }
+  for (size_t k = 0; k < c.element.size(); ++k) {
+    Element e = m.element[size_t(c.element[k])];
+    for (size_t i = 0; i < 4; ++i) {
+      e.v[i] = vertex_number(e.v[i]);
+      e.n[i] = element_number(e.n[i]);
+      if (e.alive() && c.mesh.incident[size_t(e.v[i])] < 0)
+        c.mesh.incident[size_t(e.v[i])] = static_cast<int32_t>(k); // of another part
+    }
+    c.mesh.element[k] = e;
+  }
+  c.room = {room.part, element_number(room.element), vertex_number(room.vertex)};
+  c.slots = element_number(slots);
+  return c;
+}
+
+} // namespace molmesh::optimize

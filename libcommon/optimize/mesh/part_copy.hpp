@@ -1,0 +1,30 @@
+// part_copy.hpp — a part of a mesh by itself, where operations can be tried without changing it.
+#pragma once
+#include "optimize/mesh/dynamic_mesh.hpp"
+#include "optimize/mesh/snapshot.hpp"
+#include "optimize/schedule/parts.hpp"
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace molmesh::optimize {
+
+/// Of elements and vertices the numbers are others, in the same order: what an operation does there is what it
+/// would do in the mesh. Surface triangles beyond the part are not known.
+struct PartCopy {
+  DynamicMesh mesh; ///< elements of the part, those beside them, and what it has in reserve
+  Parts parts;
+  PartRoom room;
+  std::vector<int32_t> slots;   ///< as given
+  std::vector<int32_t> element; ///< [elements] their numbers in the mesh, ascending
+
+  int32_t number(int32_t mesh_element) const {
+    return static_cast<int32_t>(std::lower_bound(element.begin(), element.end(), mesh_element) - element.begin());
+  }
+};
+
+/// slots: all that elements of the part may be in.
+PartCopy copy_part(const DynamicMesh& mesh, const Parts& parts, const PartRoom& room,
+                   const std::vector<int32_t>& slots);
+
+} // namespace molmesh::optimize

@@ -1,0 +1,55 @@
+// optimize.hpp — quality improvement of a tetrahedral mesh: §5 of the paper and design §10.
+#pragma once
+#include "grid/block_grid.hpp"
+#include "mesh/tet_mesh.hpp"
+#include "optimize/mesh/angles.hpp"
+#include "optimize/mesh/fidelity.hpp"
+#include "optimize/mesh/snapshot.hpp"
+#include "optimize/schedule/pass.hpp"
+#include <functional>
+#include <string>
+#include <utility>
+
+namespace molmesh::optimize {
+
+struct Options {
+  /// No better elements are aimed at: few meshes come so far, and time goes into all of their elements.
+  static constexpr double most_min_dihedral = 34, least_max_dihedral = 125;
+  double min_dihedral = 26, max_dihedral = 138.5; ///< degrees aimed at; the work stops where they are reached
+  int iterations = 15;                            ///< rounds at most; 0 leaves the mesh as it is
+  double sharp = 50; ///< degrees; without a density, edges of the surface that bend by more are kept
+  int threads = 1;
+  /// Result::measure() is left to the caller, to run beside what is serial. It needs the density still.
+  bool measure_later = false;
+};
+
+struct Result {
+  Counts counts;
+  int rounds = 0;
+  bool in_vain = false; ///< the worst element would have become worse: the mesh is as it came
+  Angles before, after;
+  Fidelity fidelity; ///< after (with a density)
+  /// [4 tets] The tetrahedron beyond each face, -1: none; empty where the mesh stayed as it came.
+  LargeArray<int32_t> across;
+  /// Where it was put off: what sets `after` and `fidelity`, and gives the memory worked in back.
+  std::function<void(Result&)> rest;
+  void measure() {
+    if (rest)
+      std::exchange(rest, {})(*this);
+  }
+};
+
+/// Moves many points at once where no element below the pass' goal becomes worse: what a device does before each
+/// round of operations. The isosurface is null without a density. Returns how many moves were done; changed
+/// elements have their new quality and count as never tried.
+using FlowPass = std::function<int64_t(DynamicMesh&, const Isosurface*, const Pass&)>;
+
+/// Improves the mesh in place. With a density, points of the curved boundary labels are put on G = isovalue;
+/// without, they move on the surface that came in, whose sharp edges are kept. Regions, labels
+/// and the topology of every surface stay; the worst element never becomes worse (I9). Same result for any number
+/// of threads. phase(name), when given, is told what begins. Throws Error(bad_input) for a mesh that is not valid
+/// or whose surface runs against the isosurface.
+Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
+               const std::function<void(const std::string&)>& phase = {}, const FlowPass& flow = {});
+
+} // namespace molmesh::optimize

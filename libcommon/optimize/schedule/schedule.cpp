@@ -1,0 +1,270 @@
+// schedule.cpp — which parts there are, what they reserve, and the work of one part after the other.
+#include "optimize/schedule/schedule.hpp"
+#include "optimize/crossings/crowded.hpp"
+#include "optimize/schedule/choose.hpp"
+#include "optimize/schedule/element_pass.hpp"
+#include "par/pages.hpp"
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace molmesh::optimize {
+
+Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads)
+    : m_(mesh), target_(target), cell_(cell), threads_(threads), sheets_(1) {
+  const auto with_room = [&](auto& v, size_t n) { par::reserve_pages(v, n, n / 4, threads_); };
+  with_room(stamp_, m_.element.size());
+  with_room(parts_.owner, m_.point.size());
+  find_crowded(guarded);
+}
+
+int64_t Schedule::parts_at_surface(double cell) {
+  set_lattice(0, cell * cell_, bounds());
+  std::vector<uint8_t> met(static_cast<size_t>(parts_.count()));
+  par::for_n(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
+    if (m_.incident[size_t(v)] >= 0 && m_.vertex[size_t(v)].kind == Kind::surface)
+      std::atomic_ref(met[size_t(parts_.at(m_.point[size_t(v)]))]).store(1, std::memory_order_relaxed);
+  });
+  return std::count(met.begin(), met.end(), uint8_t{1});
+}
+
+void Schedule::find_crowded(double apart) {
+  if (!target_ || watching_)
+    return;
+  watching_ = apart == everywhere;
+  std::vector<SheetTriangle> triangle = end_triangles(m_, threads_);
+  ends_in_surface_ = !triangle.empty();
+  const std::vector<uint8_t> crowded =
+      watching_ ? std::vector<uint8_t>(triangle.size(), 1)
+                : facing(m_.point, triangle, *target_,
+                         {.apart = apart * target_->spacing(), .kept = guarded / 2 * target_->spacing()}, threads_);
+  for (Vertex& v : m_.vertex)
+    v.crowded = false;
+  for (size_t t = 0; t < triangle.size(); ++t)
+    if (crowded[t])
+      for (const int32_t v : triangle[t].v)
+        m_.vertex[size_t(v)].crowded = true;
+  sheets() = Sheets(cell_for(triangle));
+  std::erase_if(triangle, [&](const SheetTriangle& t) { return !m_.crowded(t.v); });
+  sheets_.reserve(triangle.size(), threads_);
+  add([this, all = SheetChanges{std::move(triangle), {}}] { sheets_.merge(all); });
+}
+
+Sheets& Schedule::sheets() {
+  if (adding_.valid())
+    adding_.get();
+  return sheets_;
+}
+
+void Schedule::add(std::function<void()> work) {
+  sheets();
+  if (threads_ > 1)
+    adding_ = std::async(std::launch::async, std::move(work));
+  else
+    work();
+}
+
+void Schedule::find_worst() {
+  par::for_n(static_cast<int64_t>(m_.restless.size()), threads_, 16, [&](int64_t s) {
+    if (!m_.restless[size_t(s)])
+      return;
+    m_.restless[size_t(s)] = 0;
+    float worst = 2;
+    m_.for_stretch(s, [&](int64_t e) {
+      if (const Element& el = m_.element[size_t(e)]; el.alive())
+        worst = std::min(worst, el.q);
+    });
+    m_.worst[size_t(s)] = worst;
+  });
+}
+
+float Schedule::worst() {
+  find_worst();
+  return m_.worst.empty() ? 2 : *std::min_element(m_.worst.begin(), m_.worst.end());
+}
+
+int64_t Schedule::below(float goal) const {
+  return par::reduce(
+      static_cast<int64_t>(m_.element.size()), threads_, int64_t{0},
+      [&](int64_t e) { return int64_t{m_.element[size_t(e)].alive() && m_.element[size_t(e)].q < goal}; },
+      [](int64_t a, int64_t b) { return a + b; });
+}
+
+PointBox Schedule::bounds() const {
+  return par::reduce(
+      static_cast<int64_t>(m_.point.size()), threads_, PointBox{},
+      [&](int64_t v) {
+        return m_.incident[size_t(v)] >= 0 ? PointBox{m_.point[size_t(v)], m_.point[size_t(v)]} : PointBox{};
+      },
+      [](PointBox a, const PointBox& b) {
+        a.add(b);
+        return a;
+      });
+}
+
+double Schedule::cell_of_all(double cell) const {
+  const double most = cell * cell_ / 4;
+  const PointBox box = bounds();
+  const double extent = std::max({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z});
+  if (extent <= most)
+    return 0;
+  const bool any_longer = par::reduce(
+      static_cast<int64_t>(m_.element.size()), threads_, false,
+      [&](int64_t e) {
+        const Element& el = m_.element[size_t(e)];
+        return el.alive() && std::any_of(std::begin(edges), std::end(edges), [&](const auto& ij) {
+                 return norm(m_.point[size_t(el.v[size_t(ij[0])])] - m_.point[size_t(el.v[size_t(ij[1])])]) > most;
+               });
+      },
+      [](bool a, bool b) { return a || b; });
+  return any_longer ? 16 * extent / cell_ : 0;
+}
+
+void Schedule::set_lattice(int shift, double cell, const PointBox& box) {
+  const double most = std::clamp(16. * double(m_.point.size()), 1e6, 1e8); // memory as the points
+  parts_.set_lattice(box, cell, shift, most);
+}
+
+void Schedule::set_parts(int shift, double cell) {
+  set_lattice(shift, cell, bounds());
+  find_owners();
+}
+
+void Schedule::find_owners() {
+  parts_.owner.resize(m_.point.size());
+  par::for_n(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
+    parts_.owner[size_t(v)] = m_.incident[size_t(v)] >= 0 ? parts_.at(m_.point[size_t(v)]) : -1;
+  });
+}
+
+void Schedule::set_parts_around(const std::vector<int32_t>& points, int shift, double size) {
+  constexpr int32_t reach = 2; // cells: the point stays two fifths of the size from the cube's sides
+  const double cell = size / (2 * reach + 1);
+  set_lattice(shift, cell, bounds());
+  if (parts_.cell > cell) { // too many for the whole mesh, as in a far box: round the points alone
+    PointBox around;
+    for (const int32_t v : points)
+      around.add({m_.point[size_t(v)], m_.point[size_t(v)]});
+    for (double now = 0, next = cell; next > now; next = parts_.cell) {
+      now = next;
+      const double beyond = (reach + 2) * now; // so that no point beyond the outermost cells is in a box
+      set_lattice(shift, now,
+                  {around.low - Vec3d{beyond, beyond, beyond}, around.high + Vec3d{beyond, beyond, beyond}});
+    }
+  }
+  for (size_t i = 0; i < points.size(); ++i)
+    parts_.add_box(m_.point[size_t(points[shift % 2 == 0 ? i : points.size() - 1 - i])], reach);
+  find_owners();
+}
+
+int32_t Schedule::part_of(const Element& e) const {
+  const int32_t p = parts_.owner[size_t(e.v[0])];
+  return p >= 0 && parts_.owns(p, e.v) ? p : -1;
+}
+
+std::vector<int32_t> Schedule::elements_of_parts() const {
+  return choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
+    const Element& e = m_.element[size_t(t)];
+    return e.alive() && part_of(e) >= 0;
+  });
+}
+
+std::vector<int32_t> Schedule::parts_of(const std::vector<int32_t>& elements) const {
+  std::vector<int32_t> part(elements.size());
+  par::for_n(static_cast<int64_t>(part.size()), threads_,
+             [&](int64_t i) { part[size_t(i)] = part_of(m_.element[size_t(elements[size_t(i)])]); });
+  return part;
+}
+
+// Items of one part, in order, go to one editor with slots of its own.
+Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item,
+                           const Guard& guard, const Work& work, const PartShares& shares) {
+  struct Job {
+    PartRoom room;
+    std::vector<int32_t> items;
+    size_t weight = 0;
+    Counts counts;
+    SheetChanges sheets;
+    uint32_t clock = 0;
+  };
+  std::vector<int32_t> job_of(static_cast<size_t>(parts_.count()), -1);
+  std::vector<Job> jobs;
+  for (size_t i = 0; i < items.size(); ++i) {
+    if (part_of_item[i] < 0)
+      continue;
+    int32_t& j = job_of[size_t(part_of_item[i])];
+    if (j < 0) {
+      j = static_cast<int32_t>(jobs.size());
+      jobs.push_back({});
+      jobs.back().room.part = part_of_item[i];
+    }
+    jobs[size_t(j)].items.push_back(items[i]);
+  }
+  for (Job& job : jobs) {
+    const auto elements = shares.slots + static_cast<size_t>(shares.slots_per_item * double(job.items.size())),
+               vertices = 16 + elements / 4;
+    const auto reserve = [](std::vector<int32_t>& pool, std::vector<int32_t>& room, size_t count, size_t& size) {
+      while (room.size() < count && !pool.empty())
+        room.push_back(pool.back()), pool.pop_back();
+      while (room.size() < count)
+        room.push_back(static_cast<int32_t>(size++));
+    };
+    size_t element_size = m_.element.size(), vertex_size = m_.point.size();
+    reserve(free_element_, job.room.element, elements, element_size);
+    reserve(free_vertex_, job.room.vertex, vertices, vertex_size);
+    require_slots(static_cast<int64_t>(element_size), static_cast<int64_t>(vertex_size));
+    m_.resize(element_size, vertex_size);
+    parts_.owner.resize(vertex_size);
+    for (const int32_t v : job.room.vertex)
+      parts_.owner[size_t(v)] = job.room.part;
+  }
+  if (last_stamp_ > UINT32_MAX / 2) {
+    stamp_.clear();
+    last_stamp_ = 0;
+    std::fill(m_.state.begin(), m_.state.end(), 0);
+  }
+  stamp_.resize(m_.element.size(), 0);
+  std::vector<Job*> largest_first; // else threads wait for one that came last
+  for (Job& job : jobs) {
+    job.weight = shares.weight ? shares.weight(job.room.part) : job.items.size();
+    largest_first.push_back(&job);
+  }
+  std::stable_sort(largest_first.begin(), largest_first.end(),
+                   [](const Job* a, const Job* b) { return a->weight > b->weight; });
+  Sheets& sheets_now = sheets();
+  std::atomic<size_t> next{0};
+  par::for_n(jobs.empty() ? 0 : threads_, threads_, 1, [&](int64_t) {
+    for (const par::Helpers::Busy busy(helpers_);;) {
+      const size_t j = next++;
+      if (j >= jobs.size())
+        break;
+      Job& job = *largest_first[j];
+      Editor editor(m_, target_, ends_in_surface_ ? &sheets_now : nullptr, parts_, stamp_, job.room, guard,
+                    last_stamp_);
+      work(editor, job.items);
+      job.counts = editor.counts;
+      job.sheets = editor.take_sheet_changes();
+      job.clock = editor.clock();
+    }
+    helpers_.help();
+  });
+  par::for_n(static_cast<int64_t>(jobs.size()), threads_, 1,
+             [&](int64_t j) { sheets_now.move_along(jobs[size_t(j)].sheets); });
+  Counts sum;
+  std::vector<SheetChanges> changes;
+  for (Job& job : jobs) {
+    sum += job.counts;
+    last_stamp_ = std::max(last_stamp_, job.clock);
+    changes.push_back(std::move(job.sheets));
+    free_element_.insert(free_element_.end(), job.room.element.begin(), job.room.element.end());
+    free_vertex_.insert(free_vertex_.end(), job.room.vertex.begin(), job.room.vertex.end());
+  }
+  if (ends_in_surface_)
+    add([this, changes = std::move(changes)] {
+      for (const SheetChanges& of_part : changes)
+        sheets_.merge(of_part);
+    });
+  return sum;
+}
+
+} // namespace molmesh::optimize

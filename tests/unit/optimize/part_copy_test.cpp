@@ -1,0 +1,80 @@
+// part_copy_test.cpp — what an operation does to the copy of a part it does to the part.
+#include "isosurface/isosurface.hpp"
+#include "lattice_mesh.hpp"
+#include "optimize/optimize.hpp"
+#include "optimize/schedule/element_pass.hpp"
+#include "recovery_pass.hpp"
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+using namespace molmesh;
+using namespace molmesh::test;
+
+namespace {
+
+constexpr double h = 0.5;
+constexpr int n = 22;
+
+} // namespace
+
+TEST_CASE("a part and its copy change alike") {
+  const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  const TetMesh mesh = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
+  Isosurface surface(grid, 1);
+  optimize::DynamicMesh m = optimize::build(mesh, 180, 1);
+  const size_t elements = m.element.size(), vertices = m.point.size();
+  m.resize(elements + 200, vertices + 50);
+  optimize::Parts parts; // one half of the mesh
+  parts.owner.resize(m.point.size(), 0);
+  for (size_t v = 0; v < vertices; ++v)
+    parts.owner[v] = m.point[v].x < 5 ? 0 : -1;
+  optimize::PartRoom room;
+  std::vector<int32_t> slots;
+  for (size_t t = 0; t < elements; ++t)
+    if (parts.owns(0, m.element[t].v))
+      slots.push_back(static_cast<int32_t>(t));
+  for (size_t k = 0; k < 200; ++k) // not in order
+    room.element.push_back(static_cast<int32_t>(elements + 7 * k % 200));
+  for (size_t k = 0; k < 50; ++k)
+    room.vertex.push_back(static_cast<int32_t>(vertices + 7 * k % 50));
+  slots.insert(slots.end(), room.element.begin(), room.element.end());
+  std::vector<uint32_t> stamp(m.element.size());
+  const optimize::Pass pass = recovery_pass(1);
+  optimize::Editor editor(m, &surface, nullptr, parts, stamp, room, pass.guard);
+  REQUIRE(editor.alone());
+
+  optimize::PartCopy copy = editor.copy(slots);
+  REQUIRE(copy.slots.size() == slots.size());
+  REQUIRE(copy.mesh.element.size() < elements);
+  std::vector<uint32_t> stamp_of_copy(copy.mesh.element.size());
+  optimize::Editor like(editor, copy, stamp_of_copy);
+  const auto alike = [&] {
+    for (size_t k = 0; k < slots.size(); ++k) {
+      const optimize::Element &e = m.element[size_t(slots[k])], &c = copy.mesh.element[size_t(copy.slots[k])];
+      if (e.alive() != c.alive() || e.q != c.q || e.label != c.label || e.region != c.region)
+        return false;
+      for (size_t i = 0; i < 4 && e.alive(); ++i)
+        if (m.point[size_t(e.v[i])] != copy.mesh.point[size_t(c.v[i])] ||
+            (e.n[i] < 0 ? -1 : copy.number(e.n[i])) != c.n[i])
+          return false;
+    }
+    return true;
+  };
+  CHECK(alike());
+  for (optimize::Editor* e : {&editor, &like})
+    e->goal = pass.goal;
+  for (size_t k = 0; k < slots.size(); ++k) {
+    if (!m.element[size_t(slots[k])].alive() || m.element[size_t(slots[k])].q >= pass.goal)
+      continue;
+    const bool done = optimize::improve_element(editor, m, slots[k], pass);
+    CHECK(optimize::improve_element(like, copy.mesh, copy.slots[k], pass) == done);
+  }
+  CHECK(editor.counts.moves > 20);
+  CHECK(editor.counts.splits + editor.counts.contractions > 0);
+  CHECK(editor.counts.edge_removals > 0);
+  CHECK(like.counts.total() == editor.counts.total());
+  CHECK(alike());
+  for (size_t t = 0; t < elements; ++t) // what is beyond the part keeps its vertices
+    if (!std::binary_search(slots.begin(), slots.end() - 200, static_cast<int32_t>(t)))
+      REQUIRE(m.element[t].v == mesh.tet[t]);
+}

@@ -1,0 +1,286 @@
+// recover_test.cpp — points that were pushed off the isosurface come back or leave it; what fails leaves no trace.
+#include "lattice_mesh.hpp"
+#include "optimize/acceptance/faults.hpp"
+#include "optimize/optimize.hpp"
+#include "optimize/schedule/schedule.hpp"
+#include "push_off.hpp"
+#include "recovery_pass.hpp"
+#include "surface_shape.hpp"
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+using namespace molmesh;
+using namespace molmesh::test;
+
+namespace {
+
+constexpr double h = 0.5;
+constexpr int n = 22;
+
+struct Case {
+  BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  Isosurface surface{grid, 1};
+  TetMesh mesh;
+  optimize::DynamicMesh m;
+  explicit Case(int keep = 0) : mesh(lattice_mesh(three_atoms, {0, 0, 0}, h, n, keep)) {
+    optimize::improve(mesh, &grid, {});
+    m = optimize::build(mesh, 180, 1);
+  }
+  std::vector<int32_t> star(int32_t v) const {
+    std::vector<int32_t> all;
+    for (size_t e = 0; e < m.element.size(); ++e)
+      if (m.element[e].find(v) >= 0)
+        all.push_back(static_cast<int32_t>(e));
+    return all;
+  }
+};
+
+} // namespace
+
+TEST_CASE("points pushed off the isosurface are recovered, no element is the worse for it") {
+  Case c;
+  REQUIRE(push_off(c.m, c.surface) > 10);
+  const optimize::Fidelity before = optimize::measure_fidelity(c.m, c.surface, 1);
+  REQUIRE(before.points_off > 10);
+  optimize::Schedule schedule(c.m, &c.surface, 32 * h, 1);
+  const optimize::Pass pass = recovery_pass(0.5);
+  const float worst = schedule.worst();
+  const int64_t below = schedule.below(optimize::FaultCount::share * pass.goal);
+  for (int k = 0; k < 4; ++k)
+    schedule.recover(pass);
+  const optimize::Fidelity after = optimize::measure_fidelity(c.m, c.surface, 1);
+  CHECK(after.points_off == 0);
+  CHECK(after.turned <= before.turned);
+  CHECK(schedule.worst() >= worst);
+  CHECK(schedule.below(optimize::FaultCount::share * pass.goal) <= below);
+  CHECK(surface_shape(optimize::extract(c.m)).euler() == 2);
+  CHECK_NOTHROW(optimize::build(optimize::extract(c.m), 180, 1));
+}
+
+TEST_CASE("points where the isosurface is not known count as off, and come back") {
+  Case c;
+  const auto is_known = [&](size_t v) {
+    double distance;
+    Vec3d normal;
+    return c.surface.probe(c.m.point[v], distance, normal);
+  };
+  int lost = 0;
+  for (size_t v = 0; v < c.m.point.size() && lost < 8; ++v) {
+    double distance;
+    Vec3d normal;
+    const Vec3d from = c.m.point[v];
+    if (c.m.vertex[v].kind != optimize::Kind::surface || !c.surface.probe(from, distance, normal))
+      continue;
+    const std::vector<int32_t> star = c.star(static_cast<int32_t>(v));
+    for (double step = 0.3; step < 1.5 && is_known(v); step += 0.05)
+      c.m.point[v] = from + step * h * normal;
+    const bool positive = std::all_of(star.begin(), star.end(),
+                                      [&](int32_t e) { return c.m.quality(c.m.element[size_t(e)].v) > 1e-4f; });
+    if (is_known(v) || !positive)
+      c.m.point[v] = from;
+    else
+      ++lost;
+    for (const int32_t e : star) {
+      c.m.element[size_t(e)].q = c.m.quality(c.m.element[size_t(e)].v);
+      c.m.note_change(e);
+    }
+  }
+  REQUIRE(lost > 2);
+  REQUIRE(optimize::measure_fidelity(c.m, c.surface, 1).points_off == lost);
+  optimize::Schedule schedule(c.m, &c.surface, 32 * h, 1);
+  for (int k = 0; k < 4; ++k)
+    schedule.recover(recovery_pass(0.5));
+  CHECK(optimize::measure_fidelity(c.m, c.surface, 1).points_off == 0);
+}
+
+TEST_CASE("one pass has room around every point, wherever the lattice of the parts lies") {
+  Case c;
+  optimize::Schedule schedule(c.m, &c.surface, 32 * h, 1);
+  const optimize::Pass pass =
+      recovery_pass(0.3); // a fifth of the molecule's surface is near a side of a lattice of such cells
+  int pushed = 0;
+  for (size_t v = 0; v < c.m.point.size() && pushed < 60; ++v) {
+    double distance;
+    Vec3d normal;
+    if (c.m.incident[v] < 0 || c.m.vertex[v].kind != optimize::Kind::surface || v % 7 != 0 ||
+        !c.surface.probe(c.m.point[v], distance, normal))
+      continue;
+    c.m.point[v] += 0.05 * h * normal;
+    for (const int32_t e : c.star(static_cast<int32_t>(v))) {
+      c.m.element[size_t(e)].q = c.m.quality(c.m.element[size_t(e)].v);
+      c.m.note_change(e);
+    }
+    REQUIRE(optimize::measure_fidelity(c.m, c.surface, 1).points_off == 1);
+    ++pushed;
+    schedule.recover(pass);
+    REQUIRE(optimize::measure_fidelity(c.m, c.surface, 1).points_off == 0);
+  }
+  CHECK(pushed > 20);
+}
+
+TEST_CASE("boxes of cells are parts that do not overlap") {
+  optimize::Parts parts;
+  parts.n = {10, 10, 10};
+  parts.low = {-1, -1, -1};
+  parts.cell = 0.5;
+  CHECK(parts.count() == 1000);
+  CHECK(parts.at({-0.9, -0.9, -0.4}) == 1);
+  REQUIRE(parts.add_box({0, 0, 0}, 1));           // cells 1 to 3
+  CHECK_FALSE(parts.add_box({1.3, 0.1, 0.1}, 1)); // 3 to 5
+  REQUIRE(parts.add_box({1.6, 0.1, 0.1}, 1));     // 4 to 6
+  REQUIRE(parts.add_box({9, 9, 9}, 2));           // 7 to 9, and all beyond
+  CHECK(parts.count() == 3);
+  CHECK(parts.at({0.9, -0.4, 0.9}) == 0);
+  CHECK(parts.at({1.1, 0.1, 0.1}) == 1);
+  CHECK(parts.at({2.6, 0.1, 0.1}) == -1);
+  CHECK(parts.at({-0.9, 0.1, 0.1}) == -1);
+  CHECK(parts.at({100, 100, 100}) == 2);
+}
+
+TEST_CASE("what is restored is as it was saved") {
+  Case c(GENERATE(0, 1)); // in the inside alone, edges of the surface have no full ring
+  const optimize::DynamicMesh before = c.m;
+  const auto size = static_cast<int32_t>(c.m.element.size()), points = static_cast<int32_t>(c.m.point.size());
+  optimize::PartRoom room{0, {}, {}};
+  for (int32_t k = 0; k < 1000; ++k)
+    room.element.push_back(size + k), room.vertex.push_back(points + k);
+  c.m.resize(size_t(size) + 1000, size_t(points) + 1000);
+  // One part owns what lies below half the box, so that some elements are of neither.
+  optimize::Parts parts;
+  std::vector<int32_t>& owner = parts.owner;
+  owner.resize(c.m.point.size());
+  for (size_t v = 0; v < owner.size(); ++v)
+    owner[v] = v < size_t(points) && c.m.point[v].x > h * n / 2;
+  std::vector<uint32_t> stamp(c.m.element.size());
+  optimize::Editor editor(c.m, &c.surface, nullptr, parts, stamp, room, recovery_guard);
+  std::vector<int32_t> inner;
+  for (int32_t e = 0; e < size; ++e)
+    if (editor.owned(e))
+      inner.push_back(e);
+  const optimize::Snapshot snapshot = editor.save(inner);
+  editor.straighten = editor.bold = true; // any edge of the surface that can be flipped
+  editor.goal = 1e-4f;
+  for (const int32_t e : inner)
+    for (int i = 0; i < 3; ++i)
+      for (int j = i + 1; j < 4; ++j)
+        if (c.m.element[size_t(e)].alive())
+          editor.remove_edge(e, i, j);
+  REQUIRE(editor.counts.surface_flips > 10);
+  editor.straighten = editor.bold = false;
+  editor.goal = static_cast<float>(angle_quality(35));
+  for (const int32_t e : inner)
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j)
+        if (i != j && c.m.element[size_t(e)].alive() && !editor.split(e, i, j) && !editor.remove_edge(e, i, j) &&
+            !editor.contract(e, i, j))
+          editor.smooth(c.m.element[size_t(e)].v[size_t(i)]);
+  REQUIRE(editor.counts.moves > 10);
+  REQUIRE(editor.counts.splits + editor.counts.contractions > 10);
+  const optimize::Snapshot changed = editor.save([&] {
+    std::vector<int32_t> alive;
+    for (int32_t e = 0; e < size + 1000; ++e)
+      if (c.m.element[size_t(e)].alive() && editor.owned(e))
+        alive.push_back(e);
+    return alive;
+  }());
+  const optimize::DynamicMesh then = c.m;
+  const int64_t operations = editor.counts.total();
+  const size_t free_then = room.element.size();
+  editor.restore(snapshot);
+  editor.restore(changed);
+  CHECK(editor.counts.total() == operations);
+  CHECK(room.element.size() == free_then);
+  for (size_t v = 0; v < then.point.size(); ++v)
+    REQUIRE((c.m.incident[v] == then.incident[v] && (then.incident[v] < 0 || c.m.point[v] == then.point[v])));
+  for (size_t e = 0; e < then.element.size(); ++e)
+    REQUIRE((c.m.element[e].v == then.element[e].v && c.m.element[e].n == then.element[e].n &&
+             c.m.element[e].label == then.element[e].label));
+  const auto as_before = [&] {
+    for (int32_t v = 0; v < points; ++v)
+      REQUIRE((c.m.point[size_t(v)] == before.point[size_t(v)] &&
+               c.m.incident[size_t(v)] == before.incident[size_t(v)] &&
+               c.m.touched[size_t(v)] == before.touched[size_t(v)] &&
+               c.m.state[size_t(v)] == before.state[size_t(v)] &&
+               c.m.vertex[size_t(v)].kind == before.vertex[size_t(v)].kind));
+    for (int32_t e = 0; e < size + 1000; ++e) {
+      const optimize::Element& x = c.m.element[size_t(e)];
+      if (e >= size)
+        REQUIRE_FALSE(x.alive());
+      else
+        REQUIRE((x.v == before.element[size_t(e)].v && x.n == before.element[size_t(e)].n &&
+                 x.label == before.element[size_t(e)].label && x.q == before.element[size_t(e)].q));
+    }
+  };
+  editor.restore(snapshot);
+  CHECK(editor.counts.total() == 0);
+  CHECK(room.element.size() == 1000);
+  as_before();
+  // Again and again, where little has been written; and faults, counted by what was written.
+  std::vector<int32_t> slots = inner;
+  slots.insert(slots.end(), room.element.begin(), room.element.end());
+  const auto goal = static_cast<float>(angle_quality(35));
+  optimize::FaultCount kept(editor, c.m, slots, goal);
+  const auto counts_as_anew = [&] {
+    optimize::FaultCount anew(editor, c.m, slots, goal);
+    const optimize::Faults a = kept(), b = anew();
+    REQUIRE((a.off == b.off && a.bent == b.bent && a.below == b.below && a.worst == b.worst));
+    REQUIRE(kept.points_off() == anew.points_off());
+  };
+  counts_as_anew();
+  int64_t done = 0;
+  for (size_t k = 0; k < inner.size(); k += 1 + inner.size() / 40) {
+    const optimize::Snapshot here = editor.save(inner);
+    for (const bool bold : {true, false}) {
+      editor.straighten = editor.bold = bold;
+      editor.goal = bold ? 1e-4f : goal;
+      for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j)
+          if (const optimize::Element& e = c.m.element[size_t(inner[k])]; i != j && e.alive())
+            editor.remove_edge(inner[k], i, j) || editor.split(inner[k], i, j) || editor.contract(inner[k], i, j) ||
+                editor.hand_over(e.v[size_t(i)]) || editor.smooth(e.v[size_t(i)]);
+      counts_as_anew();
+    }
+    done += editor.counts.total();
+    editor.restore(k % 2 == 0 ? here : snapshot);
+    as_before();
+    counts_as_anew();
+  }
+  CHECK(done > 20);
+}
+
+TEST_CASE("a surface point that leaves the surface leaves a surface behind") {
+  Case c;
+  optimize::Parts parts;
+  parts.owner.resize(c.m.point.size());
+  std::vector<uint32_t> stamp(c.m.element.size());
+  optimize::PartRoom room;
+  optimize::Editor editor(c.m, &c.surface, nullptr, parts, stamp, room, recovery_guard);
+  editor.straighten = editor.bold = true;
+  editor.goal = 1e-4f;
+  int gone = 0;
+  double volume = optimize::measure_fidelity(c.m, c.surface, 1).volume;
+  LargeArray<optimize::Element> before = c.m.element;
+  for (size_t v = 0; v < parts.owner.size() && gone < 40; ++v) {
+    std::fill(c.m.labelled.begin(), c.m.labelled.end(), uint8_t{0});
+    if (!editor.hand_over(static_cast<int32_t>(v)))
+      continue;
+    ++gone;
+    for (size_t e = 0; e < before.size(); ++e)
+      for (size_t f = 0; f < 4; ++f)
+        if (c.m.element[e].label[f] > before[e].label[f])
+          REQUIRE(c.m.labelled[e / size_t(optimize::DynamicMesh::stretch)]);
+    before = c.m.element;
+    std::fill(c.m.labelled.begin(), c.m.labelled.end(), uint8_t{1});
+    CHECK(c.m.vertex[v].kind == optimize::Kind::interior);
+    const double now = optimize::measure_fidelity(c.m, c.surface, 1).volume;
+    CHECK(now != volume);
+    volume = now;
+  }
+  CHECK(gone > 2);
+  std::fill(c.m.labelled.begin(), c.m.labelled.end(), uint8_t{1});
+  const TetMesh mesh = optimize::extract(c.m);
+  CHECK(surface_shape(mesh).euler() == 2);
+  const optimize::DynamicMesh again = optimize::build(mesh, 180, 1); // throws when faces or labels are wrong
+  for (size_t v = 0; v < again.point.size(); ++v)
+    REQUIRE(again.vertex[v].kind == c.m.vertex[v].kind);
+}
