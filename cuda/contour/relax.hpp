@@ -185,7 +185,7 @@ private:
   HD Vec3d corner(int32_t k, int i) const {
     const Tet& t = r_.e.tet[element_[k]];
     const int moving = t[0] == vertex_ ? 0 : t[1] == vertex_ ? 1 : t[2] == vertex_ ? 2 : 3;
-    return r_.e.position[t[static_cast<size_t>(spoke_corner(moving, i))]];
+    return r_.e.position[t[spoke_corner(moving, i)]];
   }
   HD Vec3f local(Vec3d x, bool asked) const {
     const Vec3d u = (x - origin_) * inverse_[asked];

@@ -17,7 +17,7 @@ inline bool single_holds(const density::Field& f, double tolerance) {
   for (size_t c = 0; c < f.group.size(); ++c) {
     if (f.ln_peak[c] - f.decay * f.cutoff2[c] < -95 || f.decay * f.cutoff2[c] > 87)
       return false;
-    largest[static_cast<size_t>(f.group[c])] += std::exp(std::min(f.ln_peak[c], 80.0));
+    largest[f.group[c]] += std::exp(std::min(f.ln_peak[c], 80.0));
   }
   for (size_t g = 0; g < largest.size(); ++g)
     if (std::max(1.0, f.level[0].exponent[g]) * std::log(largest[g]) > 80)
@@ -48,8 +48,8 @@ public:
     d.begin = up(begin_, f.begin), d.group = up(group_, f.group), d.box = up(box_, f.box);
     d.ln_peak = up(ln_peak_, f.ln_peak), d.cutoff2 = up(cutoff2_, f.cutoff2);
     for (int l = 0; l < d.levels; ++l) {
-      d.exponent[l] = up(exponent_[l], f.level[static_cast<size_t>(l)].exponent);
-      d.parent[l] = up(parent_[l], f.level[static_cast<size_t>(l)].parent);
+      d.exponent[l] = up(exponent_[l], f.level[l].exponent);
+      d.parent[l] = up(parent_[l], f.level[l].parent);
     }
     const std::vector<TreeNode> tree = molecule_tree(f);
     d.node = up(node_, tree);

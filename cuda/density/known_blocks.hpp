@@ -152,8 +152,8 @@ public:
     std::vector<int64_t> start(key.size());
     par::for_n(blocks, threads, [&](int64_t i) {
       const uint64_t* const active = bits.data() + 16 * i;
-      start[static_cast<size_t>(i)] = std::accumulate(
-          active, active + 8, int64_t{0}, [](int64_t sum, uint64_t word) { return sum + std::popcount(word); });
+      start[i] = std::accumulate(active, active + 8, int64_t{0},
+                                 [](int64_t sum, uint64_t word) { return sum + std::popcount(word); });
     });
     par::exclusive_scan(start);
     band.block.resize(first + key.size());

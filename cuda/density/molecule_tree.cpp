@@ -24,7 +24,7 @@ public:
     group_[0] = f.group;
     for (size_t l = 1; l < f.level.size(); ++l)
       for (const int64_t g : group_[l - 1])
-        group_[l].push_back(f.level[l - 1].parent[static_cast<size_t>(g)]);
+        group_[l].push_back(f.level[l - 1].parent[g]);
   }
   std::vector<TreeNode> run() {
     divide(0, f_.group.size(), f_.level.size());

@@ -140,7 +140,7 @@ private:
         std::max<int64_t>(std::min(b_.room() / bytes_a_block, std::max(worth, all / slabs_beside + 1)), 1);
     std::vector<int64_t> blocks(static_cast<size_t>((frame_.blocks.x + node_edge - 1) / node_edge), 0);
     for (const Key k : nodes_)
-      blocks[static_cast<size_t>(BlockFrame::block(k).x / node_edge)] += node_blocks;
+      blocks[BlockFrame::block(k).x / node_edge] += node_blocks;
     std::vector<SlabRange> slabs;
     int64_t sum = 0;
     for (size_t i = 0; i < blocks.size(); ++i) {

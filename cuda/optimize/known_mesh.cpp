@@ -20,7 +20,7 @@ template <class Known, class AsItIs>
 std::vector<uint32_t> KnownMesh::renew(std::vector<Known>& known, size_t n, const AsItIs& as_it_is) const {
   const size_t before = std::min(n, known.size());
   const auto changed = par::select<uint32_t>(static_cast<int64_t>(n), threads_, [&](int64_t i) {
-    return static_cast<size_t>(i) >= before || !(known[static_cast<size_t>(i)] == as_it_is(static_cast<size_t>(i)));
+    return static_cast<size_t>(i) >= before || !(known[i] == as_it_is(static_cast<size_t>(i)));
   });
   known.resize(n);
   for (const uint32_t i : changed)

@@ -24,7 +24,7 @@ public:
   /// Slots in which the mesh is not as known, or of which nothing was; from now on it is.
   ElementChanges element_changes(const optimize::DynamicMesh& m);
   PointChanges point_changes(const optimize::DynamicMesh& m);
-  void move(int32_t point, Vec3d to) { point_[static_cast<size_t>(point)].at = to; }
+  void move(int32_t point, Vec3d to) { point_[point].at = to; }
 
 private:
   struct Element {

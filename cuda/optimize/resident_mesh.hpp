@@ -48,13 +48,13 @@ public:
     const std::vector<int32_t> slot = on_host(moved.array, moved.n);
     const std::vector<Vec3d> to = on_host(place, moved.n);
     for (size_t i = 0; i < slot.size(); ++i) {
-      m.point[static_cast<size_t>(slot[i])] = to[i];
+      m.point[slot[i]] = to[i];
       known_.move(slot[i], to[i]);
     }
     const auto changed = par::gather<NewQuality>(
         b_, "new qualities", elements, GatherNewQualities{corners.data(), point.data(), has_moved.data()});
     for (const NewQuality& n : on_host(changed.array, changed.n)) {
-      optimize::Element& e = m.element[static_cast<size_t>(n.element)];
+      optimize::Element& e = m.element[n.element];
       e.q = n.q;
       m.note_change(n.element);
       e.tried = 0;

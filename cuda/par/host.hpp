@@ -94,8 +94,8 @@ public:
       const std::vector<K> k(keys, keys + n);
       const std::vector<V> v(values, values + n);
       par::for_n(n, threads_, [&](int64_t i) {
-        keys[i] = k[static_cast<size_t>(order[static_cast<size_t>(i)])];
-        values[i] = v[static_cast<size_t>(order[static_cast<size_t>(i)])];
+        keys[i] = k[order[i]];
+        values[i] = v[order[i]];
       });
     });
   }

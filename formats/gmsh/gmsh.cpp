@@ -27,8 +27,8 @@ Groups groups(const TetMesh& m, const Cells& cells, const std::vector<int32_t>& 
     group.cell.push_back(c);
     for (const int32_t p : cells[c])
       for (int a = 0; a < 3; ++a) {
-        group.lo[a] = std::min(group.lo[a], m.point[static_cast<size_t>(p)][a]);
-        group.hi[a] = std::max(group.hi[a], m.point[static_cast<size_t>(p)][a]);
+        group.lo[a] = std::min(group.lo[a], m.point[p][a]);
+        group.hi[a] = std::max(group.hi[a], m.point[p][a]);
       }
   }
   return g;

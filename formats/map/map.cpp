@@ -32,7 +32,7 @@ public:
       const int64_t b = index_.find(at);
       const int32_t stop = std::min(end, block_corner(at)[axis] + 8);
       for (; at[axis] < stop; ++at[axis])
-        use(b >= 0                    ? grid_.value[static_cast<size_t>(512 * b + slot(at))]
+        use(b >= 0                    ? grid_.value[512 * b + slot(at)]
             : b == BlockIndex::inside ? static_cast<float>(grid_.info.inside_value)
                                       : 0.0f);
     }

@@ -9,14 +9,14 @@ namespace molmesh::formats {
 namespace {
 
 const Flat::Residue& residue_of(const Arrangement& a, size_t item) {
-  return a.flat.residue[static_cast<size_t>(a.items[item].residue)];
+  return a.flat.residue[a.items[item].residue];
 }
 
 /// "A/GLY:12/CA": what a message calls an atom.
 std::string address(const Arrangement& a, size_t item, int64_t atom) {
   const gemmi::Residue& r = *residue_of(a, item).source;
-  return a.placed[static_cast<size_t>(a.items[item].placed)].name + "/" + r.name + ":" + r.seqid.str() + "/" +
-         a.flat.names[a.flat.atom[static_cast<size_t>(atom)].name];
+  return a.placed[a.items[item].placed].name + "/" + r.name + ":" + r.seqid.str() + "/" +
+         a.flat.names[a.flat.atom[atom].name];
 }
 std::string address(const Arrangement& a, size_t item) {
   return address(a, item, residue_of(a, item).begin);
@@ -43,7 +43,7 @@ void domains_from_parts(Arrangement& a, const std::vector<DomainPart>& parts) {
       if (touched[i] == 1) {
         const Flat::Residue& residue = residue_of(a, i);
         int64_t outside = residue.begin;
-        while (selection.atom(residue.source->atoms[static_cast<size_t>(outside - residue.begin)]))
+        while (selection.atom(residue.source->atoms[outside - residue.begin]))
           ++outside;
         fail_input(part.where + ": found atom " + address(a, i, outside) + " outside domain '" + part.name +
                    "' that holds other atoms of its residue, expected whole residues");
@@ -101,7 +101,7 @@ void assign_domains(Arrangement& a, const gemmi::Structure& st, const std::strin
   } else {
     std::map<std::string, int32_t> index;
     for (Item& item : a.items) {
-      const Placed& p = a.placed[static_cast<size_t>(item.placed)];
+      const Placed& p = a.placed[item.placed];
       const std::string name = options.domains == PdbOptions::Domains::copy
                                    ? "copy_" + std::to_string(p.copy)
                                    : entity_of(st, *a.flat.chain[p.chain].source);
@@ -118,14 +118,14 @@ void assign_domains(Arrangement& a, const gemmi::Structure& st, const std::strin
     return;
   std::vector<int64_t> first(a.placed.size(), -1);
   for (size_t i = 0; i < a.items.size(); ++i) {
-    int64_t& f = first[static_cast<size_t>(a.items[i].placed)];
+    int64_t& f = first[a.items[i].placed];
     if (f < 0)
       f = static_cast<int64_t>(i);
     const auto other = static_cast<size_t>(f);
     if (a.items[other].domain != a.items[i].domain)
-      fail_input(file + ": found chain " + a.placed[static_cast<size_t>(a.items[i].placed)].name + " in domains '" +
-                 a.domains[static_cast<size_t>(a.items[other].domain)] + "' (" + address(a, other) + ") and '" +
-                 a.domains[static_cast<size_t>(a.items[i].domain)] + "' (" + address(a, i) +
+      fail_input(file + ": found chain " + a.placed[a.items[i].placed].name + " in domains '" +
+                 a.domains[a.items[other].domain] + "' (" + address(a, other) + ") and '" +
+                 a.domains[a.items[i].domain] + "' (" + address(a, i) +
                  "), expected each chain in one domain; --levels chain,domain,residue has domains within chains");
   }
 }
@@ -147,9 +147,9 @@ void assign_exponents(Arrangement& a, const PdbOptions& options, PdbReport& repo
       if (rule.residue)
         a.residue_exponent[i] = *rule.residue;
       if (rule.chain)
-        a.chain_exponent[static_cast<size_t>(a.items[i].placed)] = *rule.chain;
+        a.chain_exponent[a.items[i].placed] = *rule.chain;
       if (rule.domain && !a.domains.empty())
-        a.domain_exponent[static_cast<size_t>(a.items[i].domain)] = *rule.domain;
+        a.domain_exponent[a.items[i].domain] = *rule.domain;
     }
     if (!any)
       fail_input(rule.where + ": found no atom in selection '" + rule.selection + "', expected some");
@@ -174,7 +174,7 @@ void sort_items(Arrangement& a, const std::vector<std::string>& levels) {
     return;
   const bool within_chain = std::find(levels.begin(), domain, "chain") != domain;
   std::stable_sort(a.order.begin(), a.order.end(), [&](int32_t i, int32_t j) {
-    const Item &x = a.items[static_cast<size_t>(i)], &y = a.items[static_cast<size_t>(j)];
+    const Item &x = a.items[i], &y = a.items[j];
     if (within_chain && x.placed != y.placed)
       return x.placed < y.placed;
     return x.domain < y.domain;

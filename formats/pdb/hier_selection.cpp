@@ -50,8 +50,8 @@ void filter(const Hierarchy& h, size_t l, std::vector<uint8_t>& chosen, Take tak
       continue;
     int64_t begin = g.begin, end = g.end; // of the level below, down to the atoms
     for (size_t below = l + 1; below < h.level.size(); ++below) {
-      end = h.level[below].group[static_cast<size_t>(end - 1)].end;
-      begin = h.level[below].group[static_cast<size_t>(begin)].begin;
+      end = h.level[below].group[end - 1].end;
+      begin = h.level[below].group[begin].begin;
     }
     std::fill(chosen.begin() + begin, chosen.begin() + end, uint8_t{0});
   }

@@ -223,7 +223,7 @@ void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, Pd
   if (!parsed.pqr.empty() && options.own_radii)
     report.no_radius = drop_atoms(st, [&](Model, Chain, Residue) {
       return [&](Atom a) {
-        const Parsed::Values& own = parsed.pqr[static_cast<size_t>(a.serial)];
+        const Parsed::Values& own = parsed.pqr[a.serial];
         report.no_radius_charge += own.radius == 0 ? own.charge : 0;
         return own.radius == 0;
       };

@@ -54,8 +54,8 @@ std::map<std::string, gemmi::Transform> read_operators(cif::Block& block, const 
     gemmi::Transform t;
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j)
-        t.mat[i][j] = cif::as_number(row[static_cast<size_t>(1 + 4 * i + j)]);
-      t.vec.at(i) = cif::as_number(row[static_cast<size_t>(4 + 4 * i)]);
+        t.mat[i][j] = cif::as_number(row[1 + 4 * i + j]);
+      t.vec.at(i) = cif::as_number(row[4 + 4 * i]);
       for (size_t k = static_cast<size_t>(1 + 4 * i); k < static_cast<size_t>(5 + 4 * i); ++k)
         if (!std::isfinite(cif::as_number(row[k])))
           fail_input(file + ": found " + in_quotes(row[k]) + " in operator " + row.str(0) +

@@ -90,7 +90,7 @@ PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbO
   p.report.residues = static_cast<int64_t>(a.items.size());
   p.report.domains = static_cast<int64_t>(a.domains.size());
   for (const Item& item : a.items) {
-    const Flat::Residue& r = a.flat.residue[static_cast<size_t>(item.residue)];
+    const Flat::Residue& r = a.flat.residue[item.residue];
     p.report.atoms += r.end - r.begin;
   }
   add_notes(p.report, p.parsed, options);
@@ -109,9 +109,9 @@ void PdbHierarchy::write(std::ostream& out) const {
   std::vector<int32_t> open(levels.size(), -1);
   std::string residue_name;
   for (const int32_t i : a.order) {
-    const Item& item = a.items[static_cast<size_t>(i)];
-    const Placed& placed = a.placed[static_cast<size_t>(item.placed)];
-    const Flat::Residue& residue = a.flat.residue[static_cast<size_t>(item.residue)];
+    const Item& item = a.items[i];
+    const Placed& placed = a.placed[item.placed];
+    const Flat::Residue& residue = a.flat.residue[item.residue];
     bool opened = false;
     for (size_t l = 0; l < levels.size(); ++l) {
       const bool is_residue = levels[l] == "residue", is_chain = levels[l] == "chain";
@@ -122,16 +122,15 @@ void PdbHierarchy::write(std::ostream& out) const {
       open[l] = id;
       if (is_residue) {
         residue_name = residue.source->name + ":" + residue.source->seqid.str();
-        writer.group(l, residue_name, a.residue_exponent[static_cast<size_t>(i)]);
+        writer.group(l, residue_name, a.residue_exponent[i]);
       } else if (is_chain) {
-        writer.group(l, placed.name, a.chain_exponent[static_cast<size_t>(item.placed)]);
+        writer.group(l, placed.name, a.chain_exponent[item.placed]);
       } else {
-        writer.group(l, a.domains[static_cast<size_t>(item.domain)],
-                     a.domain_exponent[static_cast<size_t>(item.domain)]);
+        writer.group(l, a.domains[item.domain], a.domain_exponent[item.domain]);
       }
     }
     for (int64_t n = residue.begin; n < residue.end; ++n) {
-      const Atom& atom = a.flat.atom[static_cast<size_t>(n)];
+      const Atom& atom = a.flat.atom[n];
       writer.atom(a.flat.names[atom.name], a.flat.names[atom.element], placed.position(atom.center), atom.radius,
                   atom.charge);
     }

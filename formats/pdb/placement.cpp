@@ -57,7 +57,7 @@ std::vector<int64_t> generated(const Flat& flat, const Flat::Chain& chain, const
   std::vector<int64_t> residues;
   const bool whole = gemmi::in_vector(chain.source->name, gen.chains);
   for (int64_t r = chain.begin; r < chain.end; ++r)
-    if (whole || gemmi::in_vector(flat.residue[static_cast<size_t>(r)].source->subchain, gen.subchains))
+    if (whole || gemmi::in_vector(flat.residue[r].source->subchain, gen.subchains))
       residues.push_back(r);
   return residues;
 }
@@ -86,7 +86,7 @@ Flat flatten(const Parsed& parsed, const std::string& file, const PdbOptions& op
           atom.center = {a.pos.x, a.pos.y, a.pos.z};
           atom.name = flat.names.add(a.name.empty() ? "X" : a.name);
           atom.element = flat.names.add(a.element.name());
-          const Parsed::Values* own = parsed.pqr.empty() ? nullptr : &parsed.pqr[static_cast<size_t>(a.serial)];
+          const Parsed::Values* own = parsed.pqr.empty() ? nullptr : &parsed.pqr[a.serial];
           if (own != nullptr)
             atom.charge = own->charge;
           if (own != nullptr && options.own_radii) {
@@ -175,7 +175,7 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
   std::vector<uint8_t> used(flat.residue.size(), 0);
   for (const Placed& p : placed)
     for (const int64_t r : *p.residues)
-      used[static_cast<size_t>(r)] = 1;
+      used[r] = 1;
   for (size_t r = 0; r < used.size(); ++r)
     if (!used[r])
       report.unassembled += flat.residue[r].end - flat.residue[r].begin;

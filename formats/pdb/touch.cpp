@@ -17,11 +17,11 @@ void for_each_selected(const Selection& s, const Arrangement& arrangement, Take 
   const Flat& flat = arrangement.flat;
   for (size_t i = 0; i < arrangement.items.size(); ++i) {
     const Item& item = arrangement.items[i];
-    const Flat::Residue& residue = flat.residue[static_cast<size_t>(item.residue)];
-    if (!selects(s, flat, arrangement.placed[static_cast<size_t>(item.placed)]) || !s.residue(*residue.source))
+    const Flat::Residue& residue = flat.residue[item.residue];
+    if (!selects(s, flat, arrangement.placed[item.placed]) || !s.residue(*residue.source))
       continue;
     for (int64_t a = residue.begin; a < residue.end; ++a)
-      if (s.atom(residue.source->atoms[static_cast<size_t>(a - residue.begin)]))
+      if (s.atom(residue.source->atoms[a - residue.begin]))
         take(i, a);
   }
 }
@@ -40,14 +40,13 @@ std::vector<uint8_t> touch(const Selection& s, const Arrangement& arrangement) {
   if (s.around() > 0) {
     Near near(s.around());
     for_each_selected(s, arrangement, [&](size_t i, int64_t a) {
-      near.add(placed[static_cast<size_t>(items[i].placed)].position(flat.atom[static_cast<size_t>(a)].center));
+      near.add(placed[items[i].placed].position(flat.atom[a].center));
     });
     for (size_t i = 0; i < items.size(); ++i) {
-      const Flat::Residue& residue = flat.residue[static_cast<size_t>(items[i].residue)];
+      const Flat::Residue& residue = flat.residue[items[i].residue];
       int64_t touched = 0;
       for (int64_t a = residue.begin; a < residue.end; ++a)
-        touched += near.has(
-            placed[static_cast<size_t>(items[i].placed)].position(flat.atom[static_cast<size_t>(a)].center));
+        touched += near.has(placed[items[i].placed].position(flat.atom[a].center));
       result[i] = share(touched, residue.end - residue.begin);
     }
     return result;
@@ -58,11 +57,11 @@ std::vector<uint8_t> touch(const Selection& s, const Arrangement& arrangement) {
   for (size_t p = 0; p < placed.size(); ++p)
     of_chain[p] = selects(s, flat, placed[p]);
   for (size_t i = 0; i < items.size(); ++i) {
-    if (!of_chain[static_cast<size_t>(items[i].placed)])
+    if (!of_chain[items[i].placed])
       continue;
-    uint8_t& known = of_residue[static_cast<size_t>(items[i].residue)];
+    uint8_t& known = of_residue[items[i].residue];
     if (known == unknown) {
-      const Flat::Residue& residue = flat.residue[static_cast<size_t>(items[i].residue)];
+      const Flat::Residue& residue = flat.residue[items[i].residue];
       const std::vector<gemmi::Atom>& atoms = residue.source->atoms;
       const auto touched =
           s.residue(*residue.source)

@@ -27,7 +27,7 @@ Surface surface_of(const TetMesh& m, const std::string& file) {
     if (m.boundary[t] == Boundary::surface) {
       s.source.push_back(t);
       for (const int32_t p : m.tri[t])
-        number[static_cast<size_t>(p)] = 0;
+        number[p] = 0;
     }
   if (s.source.empty())
     fail_input(file + ": no triangle of boundary 1, expected a molecular surface");
@@ -39,7 +39,7 @@ Surface surface_of(const TetMesh& m, const std::string& file) {
   for (const size_t t : s.source) {
     Tri corner = m.tri[t];
     for (int32_t& p : corner)
-      p = number[static_cast<size_t>(p)];
+      p = number[p];
     s.tri.push_back(corner);
   }
   return s;
@@ -74,7 +74,7 @@ void write_stl(std::ostream& out, const TetMesh& m, const std::string& file) {
     Vec3d p[3];
     float record[12];
     for (int i = 0; i < 3; ++i)
-      p[i] = s.point[static_cast<size_t>(t[static_cast<size_t>(i)])];
+      p[i] = s.point[t[i]];
     Vec3d normal = tri_normal(p[0], p[1], p[2]);
     const double length = norm(normal);
     normal = length > 0 ? normal / length : Vec3d{};

@@ -135,16 +135,16 @@ void write_leaves(std::ostream& out, const std::vector<Entry>& entry, int thread
     par::for_n(now + 1, threads, 1, [&](int64_t task) {
       if (task == 0) {
         for (int64_t i = 0; i < gathered; ++i) {
-          const std::string& piece = ready[static_cast<size_t>(i)];
+          const std::string& piece = ready[i];
           out.write(piece.data(), static_cast<std::streamsize>(piece.size()));
         }
         return;
       }
-      std::string& piece = next[static_cast<size_t>(task - 1)];
+      std::string& piece = next[task - 1];
       piece.clear();
       const int64_t begin = (first + task - 1) * a_piece;
       for (int64_t i = begin; i < std::min(n, begin + a_piece); ++i) {
-        const Leaves::Leaf* const l = entry[static_cast<size_t>(i)].leaf;
+        const Leaves::Leaf* const l = entry[i].leaf;
         piece.append(l->bytes, l->size);
       }
     });

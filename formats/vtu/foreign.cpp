@@ -22,7 +22,7 @@ void take_rebuilt_triangles(TetMesh& m, VtuNotes& notes) {
       const std::vector of_file(values.begin() + static_cast<std::ptrdiff_t>(tets), values.end());
       values.resize(tets);
       for (size_t t = 0; t < same.size(); ++t)
-        values.push_back(same[t] ? of_file[static_cast<size_t>(*same[t])] : standard(t));
+        values.push_back(same[t] ? of_file[*same[t]] : standard(t));
     };
     if (a.real.empty())
       take(a.integer, [&](size_t t) { return a.name == "patch" ? m.boundary[t] : 0; });

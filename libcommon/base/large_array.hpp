@@ -2,6 +2,7 @@
 // Its pages are large ones where the system grants them: they are filled several times as fast, unless a virtual
 // machine's host has to fetch them, and walks over scattered elements miss fewer translations (docs/density.md).
 #pragma once
+#include "base/array.hpp"
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -70,7 +71,7 @@ struct LargeAllocator : std::allocator<T> {
 };
 
 template <class T>
-using LargeArray = std::vector<T, LargeAllocator<T>>;
+using LargeArray = Array<T, LargeAllocator<T>>;
 
 /// Asks the system for the pages that [begin, begin + bytes), all of it the caller's, lies in at once, where it
 /// can: from a quarter cheaper to 17 times (virtual machines that leave to their host for every fault) than one by

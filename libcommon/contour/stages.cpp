@@ -46,7 +46,7 @@ TetMesh HostStages::assemble(Options::Meshed meshed) {
 void HostStages::count(Summary& summary) const {
   summary.leaves = tree_->size();
   summary.surface_cells = static_cast<int64_t>(surface_.cells.size());
-  const auto is_split = [&](int64_t leaf) { return dual_.complex.split[at(leaf)] >= 0; };
+  const auto is_split = [&](int64_t leaf) { return dual_.complex.split[leaf] >= 0; };
   summary.split_cells = static_cast<int64_t>(par::select(tree_->size(), threads_, is_split).size());
   summary.restored_points = dual_.restored_points;
   summary.relaxed_points = relaxed_;

@@ -78,23 +78,23 @@ struct EightBoxes {
 
 inline uint32_t EightBoxes::met(const Boxf& box) const {
   // Vectors that any x86-64 has: left to itself g++ takes none here.
-  typedef float Floats __attribute__((vector_size(16)));
-  typedef int32_t Ints __attribute__((vector_size(16)));
+  typedef float Four __attribute__((vector_size(16)));
+  typedef int32_t FourInts __attribute__((vector_size(16)));
   const auto load = [](auto& into, const auto* from) { std::memcpy(&into, from, sizeof into); };
   uint32_t bits = 0;
   for (size_t first = 0; first < 8; first += 4) {
-    Ints taken;
+    FourInts taken;
     load(taken, &id[first]);
-    Ints meet = taken >= Ints{};
+    FourInts meet = taken >= FourInts{};
     for (size_t k = 0; k < 3; ++k) {
       const float from = box.low[int(k)], to = box.high[int(k)];
-      Floats lows, highs;
+      Four lows, highs;
       load(lows, &low[k][first]);
       load(highs, &high[k][first]);
-      meet &= lows <= Floats{to, to, to, to};
-      meet &= highs >= Floats{from, from, from, from};
+      meet &= lows <= Four{to, to, to, to};
+      meet &= highs >= Four{from, from, from, from};
     }
-    meet &= Ints{1, 2, 4, 8};
+    meet &= FourInts{1, 2, 4, 8};
     bits |= static_cast<uint32_t>(meet[0] | meet[1] | meet[2] | meet[3]) << first;
   }
   return bits;

@@ -47,8 +47,8 @@ template <class T>
 CellRange cell_range(Vec3<T> low, Vec3<T> high, double size) {
   CellRange r;
   for (int a = 0; a < 3; ++a) {
-    r.low[size_t(a)] = cell_of(double(low[a]) / size);
-    r.high[size_t(a)] = cell_of(double(high[a]) / size);
+    r.low[a] = cell_of(double(low[a]) / size);
+    r.high[a] = cell_of(double(high[a]) / size);
   }
   return r;
 }

@@ -55,7 +55,7 @@ HD inline bool segment_meets_triangle(Vec3d p, Vec3d q, Vec3d a, Vec3d b, Vec3d 
 /// corner nor on a common edge. Triangles on the same three points do not count.
 template <class Points>
 bool triangles_cross(const Points& point, std::array<int32_t, 3> s, std::array<int32_t, 3> t) {
-  const auto at = [&](int32_t v) -> Vec3d { return point[static_cast<std::size_t>(v)]; };
+  const auto at = [&](int32_t v) -> Vec3d { return point[v]; };
   const auto has = [](const std::array<int32_t, 3>& x, int32_t v) { return x[0] == v || x[1] == v || x[2] == v; };
   int common = 0;
   for (int32_t v : s)

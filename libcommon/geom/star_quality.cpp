@@ -5,7 +5,7 @@
 namespace molmesh {
 
 void Spokes::add(const std::array<Vec3d, 4>& p, int moving) {
-  const auto corner = [&](int i) { return p[size_t(spoke_corner(moving, i))]; };
+  const auto corner = [&](int i) { return p[spoke_corner(moving, i)]; };
   if (inverse_ == 0)
     inverse_ = 1 / std::max(norm(corner(1) - corner(2)), 1e-300);
   const auto lane = order_.size() % SpokeGroup::lanes;

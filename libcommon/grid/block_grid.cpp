@@ -28,7 +28,7 @@ float value_at(const BlockGrid& grid, const BlockIndex& index, Vec3i p) {
     return 0;
   if (b == BlockIndex::inside)
     return static_cast<float>(grid.info.inside_value);
-  return grid.value[static_cast<size_t>(512 * b + slot(p))];
+  return grid.value[512 * b + slot(p)];
 }
 
 bool is_active(const BlockGrid& grid, const BlockIndex& index, Vec3i p) {
@@ -36,7 +36,7 @@ bool is_active(const BlockGrid& grid, const BlockIndex& index, Vec3i p) {
   if (b < 0)
     return false;
   const int s = slot(p);
-  return grid.active[static_cast<size_t>(8 * b + (s >> 6))] >> (s & 63) & 1;
+  return grid.active[8 * b + (s >> 6)] >> (s & 63) & 1;
 }
 
 } // namespace molmesh

@@ -11,8 +11,7 @@ namespace molmesh {
 Isosurface::Isosurface(const BlockGrid& grid, int threads)
     : frame_(grid.frame), index_(grid), log_(grid.value.size()) {
   par::for_n(static_cast<int64_t>(grid.active.size()), threads, 64, [&](int64_t w) {
-    log_ratios(grid.value.data() + 64 * w, grid.active[static_cast<size_t>(w)], grid.info.isovalue,
-               log_.data() + 64 * w);
+    log_ratios(grid.value.data() + 64 * w, grid.active[w], grid.info.isovalue, log_.data() + 64 * w);
   });
 }
 
@@ -43,8 +42,7 @@ bool Isosurface::pocket(Vec3d p, bool hole, Vec3d& inside) const {
     return false;
   const auto is_inside = [&](Vec3i g) { // the piece
     const int64_t b = index_.find(g);
-    return b >= 0 && std::isfinite(log_[size_t(512 * b + slot(g))]) &&
-           (log_[size_t(512 * b + slot(g))] > 0) != hole;
+    return b >= 0 && std::isfinite(log_[512 * b + slot(g)]) && (log_[512 * b + slot(g)] > 0) != hole;
   };
   double nearest = 1.7; // spacings
   bool found = false;

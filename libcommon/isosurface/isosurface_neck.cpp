@@ -16,13 +16,11 @@ struct Lobes {
   std::array<int, count> root, order;
 
   int find(int k) {
-    while (root[size_t(k)] != k)
-      k = root[size_t(k)] = root[size_t(root[size_t(k)])];
+    while (root[k] != k)
+      k = root[k] = root[root[k]];
     return k;
   }
-  bool deeper(int a, int b) const {
-    return depth[size_t(a)] != depth[size_t(b)] ? depth[size_t(a)] > depth[size_t(b)] : a < b;
-  }
+  bool deeper(int a, int b) const { return depth[a] != depth[b] ? depth[a] > depth[b] : a < b; }
   /// The sample at the neck and the deepest ones of its lobes; -1: none. Necks are looked for between two depths.
   std::array<int, 3> neck(double narrow, double least) {
     std::array<int, 3> best{-1, -1, -1};
@@ -31,22 +29,22 @@ struct Lobes {
     std::sort(order.begin(), order.end(), [&](int a, int b) { return deeper(a, b); });
     root.fill(-1);
     for (const int k : order) {
-      const double here = depth[size_t(k)];
+      const double here = depth[k];
       if (here < least)
         break;
-      root[size_t(k)] = k;
+      root[k] = k;
       for (int d = 0; d < 27; ++d) {
         const int x = k / (wide * wide) + d / 9 - 1, y = k / wide % wide + d / 3 % 3 - 1, z = k % wide + d % 3 - 1;
         const int beside = (x * wide + y) * wide + z;
-        if (std::min({x, y, z}) < 0 || std::max({x, y, z}) >= wide || root[size_t(beside)] < 0)
+        if (std::min({x, y, z}) < 0 || std::max({x, y, z}) >= wide || root[beside] < 0)
           continue;
         const int a = find(k), b = find(beside);
         if (a == b)
           continue;
-        const double parted = std::min(depth[size_t(a)], depth[size_t(b)]) - here;
+        const double parted = std::min(depth[a], depth[b]) - here;
         if (parted > most && here < narrow)
           most = parted, best = {k, a, b};
-        root[size_t(deeper(a, b) ? b : a)] = deeper(a, b) ? a : b;
+        root[deeper(a, b) ? b : a] = deeper(a, b) ? a : b;
       }
     }
     return best;
@@ -71,7 +69,7 @@ bool Isosurface::neck(Vec3d p, Neck& neck) const {
       return centre + step * to_double(at);
     };
     for (int k = 0; k < count; ++k)
-      lobes.depth[size_t(k)] = evaluate(place(k), f, gradient) ? side * f : -1e30;
+      lobes.depth[k] = evaluate(place(k), f, gradient) ? side * f : -1e30;
     const auto [k, a, b] = lobes.neck(narrow, least);
     if (k >= 0)
       neck = {place(k), (place(a) - place(b)) / norm(place(a) - place(b))};

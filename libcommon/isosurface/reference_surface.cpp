@@ -50,7 +50,7 @@ ReferenceSurface::ReferenceSurface(const TetMesh& mesh, const std::vector<uint8_
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
     if (!take[t])
       continue;
-    const auto p = [&](size_t i) { return mesh.point[size_t(mesh.tri[t][i])]; };
+    const auto p = [&](size_t i) { return mesh.point[mesh.tri[t][i]]; };
     const Vec3d n = cross(p(1) - p(0), p(2) - p(0));
     triangle_.push_back({p(0), p(1), p(2), n / std::max(norm(n), 1e-300)});
     edges.insert(edges.end(), {norm(p(1) - p(0)), norm(p(2) - p(1)), norm(p(0) - p(2))});
@@ -83,7 +83,7 @@ ReferenceSurface::ReferenceSurface(const TetMesh& mesh, const std::vector<uint8_
   each([&](uint64_t b, int32_t) { ++begin_[b]; });
   entry_.resize(static_cast<size_t>(par::exclusive_scan(begin_)));
   std::vector<int64_t> next = begin_;
-  each([&](uint64_t b, int32_t t) { entry_[size_t(next[b]++)] = t; });
+  each([&](uint64_t b, int32_t t) { entry_[next[b]++] = t; });
 }
 
 bool ReferenceSurface::closest(Vec3d p, double reach, Vec3d& point, int32_t& triangle) const {
@@ -96,8 +96,8 @@ bool ReferenceSurface::closest(Vec3d p, double reach, Vec3d& point, int32_t& tri
     cell_range(p - wide, p + wide, cell_size(cell_, level)).for_each([&](int64_t i, int64_t j, int64_t k) {
       const uint64_t b = bucket(cell_key(i, j, k, level));
       for (int64_t x = begin_[b]; x < begin_[b + 1]; ++x) {
-        const int32_t t = entry_[size_t(x)];
-        const Vec3d q = closest_on(triangle_[size_t(t)].a, triangle_[size_t(t)].b, triangle_[size_t(t)].c, p);
+        const int32_t t = entry_[x];
+        const Vec3d q = closest_on(triangle_[t].a, triangle_[t].b, triangle_[t].c, p);
         const double d = norm2(q - p);
         if (d < best || (d == best && triangle >= 0 && t < triangle))
           best = d, point = q, triangle = t;
@@ -118,7 +118,7 @@ bool ReferenceSurface::probe(Vec3d p, double& distance, Vec3d& normal) const {
   Vec3d q;
   if (!closest(p, 0.5 * cell_, q, t))
     return false;
-  normal = triangle_[size_t(t)].normal;
+  normal = triangle_[t].normal;
   const double length = norm(p - q);
   distance = dot(p - q, normal) < 0 ? -length : length;
   return true;

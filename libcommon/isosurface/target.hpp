@@ -49,7 +49,7 @@ inline EightProbes probe_some(const Target& target, const std::vector<Vec3d>& po
   EightPlaces places;
   EightProbes probes;
   for (size_t i = 0; i < n; ++i)
-    places.set(i, point[size_t(v[i])]);
+    places.set(i, point[v[i]]);
   target.probe_eight(places, static_cast<int>(n), probes);
   return probes;
 }

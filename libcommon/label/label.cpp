@@ -46,7 +46,7 @@ public:
       sum_[l].clear();
       term_.clear();
       for (const Sum& child : sum_[l - 1]) {
-        const int64_t parent = f_.level[l - 1].parent[static_cast<size_t>(child.group)];
+        const int64_t parent = f_.level[l - 1].parent[child.group];
         open(l, parent);
         add_term(l, power(l - 1, child));
       }
@@ -80,9 +80,7 @@ public:
   }
 
 private:
-  double power(size_t level, const Sum& s) const {
-    return f_.level[level].exponent[static_cast<size_t>(s.group)] * s.ln;
-  }
+  double power(size_t level, const Sum& s) const { return f_.level[level].exponent[s.group] * s.ln; }
   /// The sum of `group`, which comes after those before or is the last of them.
   void open(size_t level, int64_t group) {
     if (sum_[level].empty() || sum_[level].back().group != group)
@@ -181,9 +179,8 @@ Tiles make_tiles(const std::vector<Vec3d>& place, int threads) {
   Tiles t;
   t.item.resize(place.size());
   par::for_n(static_cast<int64_t>(place.size()), threads, [&](int64_t i) {
-    const Vec3d v = (place[static_cast<size_t>(i)] - lo) / size;
-    t.item[static_cast<size_t>(i)] = {
-        morton(Vec3i{static_cast<int32_t>(v.x), static_cast<int32_t>(v.y), static_cast<int32_t>(v.z)}), i};
+    const Vec3d v = (place[i] - lo) / size;
+    t.item[i] = {morton(Vec3i{static_cast<int32_t>(v.x), static_cast<int32_t>(v.y), static_cast<int32_t>(v.z)}), i};
   });
   par::sort(t.item, threads);
   for (size_t i = 0; i < t.item.size(); ++i)
@@ -215,12 +212,12 @@ Labels find_labels(const Hierarchy& h, const std::vector<Vec3d>& place, const Op
   const Reach reach(f);
   const Tiles tiles = make_tiles(place, options.threads);
   par::for_n(static_cast<int64_t>(tiles.begin.size()) - 1, options.threads, 1, [&](int64_t t) {
-    const auto begin = static_cast<size_t>(tiles.begin[static_cast<size_t>(t)]),
+    const auto begin = static_cast<size_t>(tiles.begin[t]),
                end = static_cast<size_t>(tiles.begin[static_cast<size_t>(t) + 1]);
     Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
     for (size_t i = begin; i < end; ++i)
       for (int a = 0; a < 3; ++a) {
-        const double v = place[static_cast<size_t>(tiles.item[i].second)][a];
+        const double v = place[tiles.item[i].second][a];
         box.lo[a] = std::min(box.lo[a], v);
         box.hi[a] = std::max(box.hi[a], v);
       }

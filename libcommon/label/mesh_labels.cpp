@@ -44,8 +44,8 @@ void add_labels(TetMesh& m, const Places& places, Labels&& labels) {
     CellArray index{labels.level[l], std::vector<int32_t>(cells(m), -1), {}},
         share{labels.level[l] + "_share", {}, std::vector<double>(cells(m), 0)};
     for (size_t i = 0; i < places.cell.size(); ++i) {
-      index.integer[static_cast<size_t>(places.cell[i])] = labels.index[l][i];
-      share.real[static_cast<size_t>(places.cell[i])] = labels.share[l][i];
+      index.integer[places.cell[i]] = labels.index[l][i];
+      share.real[places.cell[i]] = labels.share[l][i];
     }
     labels.index[l] = {};
     labels.share[l] = {};
@@ -66,8 +66,8 @@ Patches add_patches(TetMesh& m, const Places& places, const Labels& labels,
   for (auto i = static_cast<size_t>(places.tets); i < places.cell.size(); ++i) {
     const int32_t atom = labels.index.back()[i];
     for (size_t b = boundary.size(); atom >= 0 && b-- > 0;)
-      if (boundary[b].atom[static_cast<size_t>(atom)]) {
-        patch.integer[static_cast<size_t>(places.cell[i])] = result.first + static_cast<int32_t>(b);
+      if (boundary[b].atom[atom]) {
+        patch.integer[places.cell[i]] = result.first + static_cast<int32_t>(b);
         ++result.count[b];
         break;
       }

@@ -17,7 +17,7 @@ Reach::Reach(const density::Field& f) : f_(f) {
       bounded_ = bounded_ && p <= 1;
     if (l + 1 < f.level.size())
       for (size_t g = 0; g < path.size(); ++g)
-        path[g] *= outer[static_cast<size_t>(f.level[l].parent[g])];
+        path[g] *= outer[f.level[l].parent[g]];
     outer = path;
   }
   power_ = path;

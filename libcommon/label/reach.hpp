@@ -15,7 +15,7 @@ public:
   /// §1). With an exponent above 1: all clusters.
   std::vector<int32_t> matter(const density::Box& box) const;
   bool bounded() const { return bounded_; }
-  double power(int64_t innermost) const { return power_[static_cast<size_t>(innermost)]; }
+  double power(int64_t innermost) const { return power_[innermost]; }
 
 private:
   const density::Field& f_;

@@ -25,9 +25,8 @@ std::vector<int64_t> boundary_faces(const TetMesh& m, const LargeArray<int32_t>&
   std::vector<std::vector<int64_t>> part(static_cast<size_t>(chunks));
   par::for_n(chunks, threads, 1, [&](int64_t c) {
     for (int64_t f = c * chunk; f < std::min(faces, (c + 1) * chunk); ++f)
-      if (across[static_cast<size_t>(f)] != crowded_face &&
-          region_across(m, across, f) != m.region[static_cast<size_t>(f / 4)])
-        part[static_cast<size_t>(c)].push_back(f);
+      if (across[f] != crowded_face && region_across(m, across, f) != m.region[f / 4])
+        part[c].push_back(f);
   });
   std::vector<int64_t> boundary;
   for (const auto& p : part)
@@ -39,7 +38,7 @@ void rebuild_triangles(TetMesh& m, int threads) {
   m.tri.clear();
   const LargeArray<int32_t> across = face_neighbors(m, threads);
   for (int64_t face : boundary_faces(m, across, threads)) {
-    const int32_t region = m.region[static_cast<size_t>(face / 4)], other = region_across(m, across, face);
+    const int32_t region = m.region[face / 4], other = region_across(m, across, face);
     if (other != 0 && region >= other)
       continue; // the lower label owns the triangle
     Tri t = face_points(m, face);
@@ -53,26 +52,25 @@ void rebuild_triangles(TetMesh& m, int threads) {
 void label_walls(TetMesh& m, int threads) {
   if (std::all_of(m.region.begin(), m.region.end(), [&](int32_t r) { return r == m.region[0]; }))
     return;
-  Vec3d low = m.point[static_cast<size_t>(m.tet[0][0])], high = low;
+  Vec3d low = m.point[m.tet[0][0]], high = low;
   for (const Tet& t : m.tet)
     for (int32_t v : t)
       for (int a = 0; a < 3; ++a) {
-        low[a] = std::min(low[a], m.point[static_cast<size_t>(v)][a]);
-        high[a] = std::max(high[a], m.point[static_cast<size_t>(v)][a]);
+        low[a] = std::min(low[a], m.point[v][a]);
+        high[a] = std::max(high[a], m.point[v][a]);
       }
   const auto wall = [&](const Tri& t, int side) {
-    return std::all_of(t.begin(), t.end(), [&](int32_t v) {
-      return m.point[static_cast<size_t>(v)][side / 2] == (side % 2 == 0 ? low : high)[side / 2];
-    });
+    return std::all_of(t.begin(), t.end(),
+                       [&](int32_t v) { return m.point[v][side / 2] == (side % 2 == 0 ? low : high)[side / 2]; });
   };
   const LargeArray<int32_t> across = face_neighbors(m, threads);
   size_t next = 0; // as rebuild_triangles counts them
   for (int64_t face : boundary_faces(m, across, threads)) {
-    const int32_t region = m.region[static_cast<size_t>(face / 4)], other = region_across(m, across, face);
+    const int32_t region = m.region[face / 4], other = region_across(m, across, face);
     if (other != 0 && region >= other)
       continue;
     const size_t t = next++;
-    for (int side = 0; side < 6 && across[static_cast<size_t>(face)] == no_face; ++side)
+    for (int side = 0; side < 6 && across[face] == no_face; ++side)
       if (wall(m.tri[t], side)) {
         m.tri[t] = face_points(m, face);
         m.boundary[t] = Boundary::box_x0 + side;

@@ -8,10 +8,9 @@ namespace molmesh {
 /// Face f of tetrahedron t is opposite to corner f; its number is 4 t + f. Corners counter-clockwise seen from
 /// outside (when the tetrahedron is positive).
 inline Tri face_points(const TetMesh& m, int64_t face) {
-  const Tet& t = m.tet[static_cast<size_t>(face / 4)];
+  const Tet& t = m.tet[face / 4];
   const int f = static_cast<int>(face % 4);
-  return {t[static_cast<size_t>(tet_face(f, 0))], t[static_cast<size_t>(tet_face(f, 1))],
-          t[static_cast<size_t>(tet_face(f, 2))]};
+  return {t[tet_face(f, 0)], t[tet_face(f, 1)], t[tet_face(f, 2)]};
 }
 
 enum : int32_t { no_face = -1, crowded_face = -2 };
@@ -22,7 +21,7 @@ LargeArray<int32_t> face_neighbors(const TetMesh& m, int threads);
 
 /// Region on the other side of the face; 0 where no tetrahedron is, or several are. across: face_neighbors.
 inline int32_t region_across(const TetMesh& m, const LargeArray<int32_t>& across, int64_t face) {
-  const int32_t f = across[static_cast<size_t>(face)];
+  const int32_t f = across[face];
   return f < 0 ? 0 : m.region[static_cast<size_t>(f) / 4];
 }
 

@@ -19,7 +19,7 @@ public:
       std::vector<EightBoxes> level((boxes + 7) / 8);
       par::for_n(static_cast<int64_t>(level.size()), threads, 64, [&](int64_t e) {
         for (size_t i = 8 * size_t(e); i < boxes && i < 8 * size_t(e) + 8; ++i)
-          level[size_t(e)].set(i % 8, static_cast<int32_t>(i), box_of(i));
+          level[e].set(i % 8, static_cast<int32_t>(i), box_of(i));
       });
       level_.push_back(std::move(level));
     };
@@ -41,7 +41,7 @@ private:
     const EightBoxes& eight = level_[level][e];
     const size_t from = first >> (3 * level);
     for (uint32_t met = eight.met(box); met; met &= met - 1) {
-      const auto below = size_t(eight.id[size_t(std::countr_zero(met))]);
+      const auto below = size_t(eight.id[std::countr_zero(met)]);
       if (below >= from && (level == 0 ? f(below) : descend(level - 1, below, box, first, f)))
         return true;
     }

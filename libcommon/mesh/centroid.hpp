@@ -6,7 +6,7 @@ namespace molmesh {
 
 /// Of a cell as cell arrays count them: tetrahedra first, then triangles (Å).
 inline Vec3d cell_centroid(const TetMesh& m, size_t cell) {
-  const auto p = [&](int32_t v) { return m.point[static_cast<size_t>(v)]; };
+  const auto p = [&](int32_t v) { return m.point[v]; };
   if (cell < m.tet.size()) {
     const Tet& t = m.tet[cell];
     return 0.25 * (p(t[0]) + p(t[1]) + p(t[2]) + p(t[3]));

@@ -17,7 +17,7 @@ namespace {
 /// [triangles] The first of the triangles that each is connected with through edges.
 std::vector<int32_t> pieces(const std::vector<Tri>& tri, int64_t points, int threads) {
   const auto end = [&](int64_t half, size_t which) {
-    return tri[static_cast<size_t>(half / 3)][(static_cast<size_t>(half % 3) + which) % 3];
+    return tri[half / 3][(static_cast<size_t>(half % 3) + which) % 3];
   };
   std::vector<uint32_t> first(3 * tri.size()); // half edge at the same edge
   for_each_group(
@@ -74,7 +74,7 @@ public:
   }
 
 private:
-  Vec3d at(int32_t v) const { return point_[static_cast<size_t>(v)]; }
+  Vec3d at(int32_t v) const { return point_[v]; }
   const std::vector<Vec3d>& point_;
   std::vector<Tri> tri_;
   BoxTree tree_;
@@ -88,25 +88,22 @@ Covering check_covering(const TetMesh& m, const std::vector<int64_t>& skin, int 
   if (skin.empty())
     return found;
   std::vector<Tri> tri(skin.size());
-  par::for_n(static_cast<int64_t>(skin.size()), threads,
-             [&](int64_t i) { tri[static_cast<size_t>(i)] = face_points(m, skin[static_cast<size_t>(i)]); });
-  const auto at = [&](int32_t v) { return m.point[static_cast<size_t>(v)]; };
+  par::for_n(static_cast<int64_t>(skin.size()), threads, [&](int64_t i) { tri[i] = face_points(m, skin[i]); });
+  const auto at = [&](int32_t v) { return m.point[v]; };
   const std::vector<int32_t> piece = pieces(tri, static_cast<int64_t>(m.point.size()), threads);
   std::vector<int32_t> largest(tri.size(), -1); // of a piece, at its first triangle
   std::vector<double> area(tri.size());
   for (size_t t = 0; t < tri.size(); ++t)
-    if (const double a = tri_area(at(tri[t][0]), at(tri[t][1]), at(tri[t][2]));
-        a > area[static_cast<size_t>(piece[t])]) {
-      area[static_cast<size_t>(piece[t])] = a;
-      largest[static_cast<size_t>(piece[t])] = static_cast<int32_t>(t);
+    if (const double a = tri_area(at(tri[t][0]), at(tri[t][1]), at(tri[t][2])); a > area[piece[t]]) {
+      area[piece[t]] = a;
+      largest[piece[t]] = static_cast<int32_t>(t);
     }
   std::erase(largest, -1);
   const Skin all(m.point, tri, threads);
   const auto is_wrong = [&](int64_t i) {
-    const auto t = static_cast<size_t>(largest[static_cast<size_t>(i)]);
+    const auto t = static_cast<size_t>(largest[i]);
     const int64_t face = skin[t];
-    const Vec3d a = at(tri[t][0]), b = at(tri[t][1]), c = at(tri[t][2]),
-                apex = at(m.tet[static_cast<size_t>(face / 4)][static_cast<size_t>(face % 4)]);
+    const Vec3d a = at(tri[t][0]), b = at(tri[t][1]), c = at(tri[t][2]), apex = at(m.tet[face / 4][face % 4]);
     constexpr double near = 1e-4;
     for (const bool inner : {true, false})
       for (const double share : {0.3137, 0.2718, 0.3679, 0.4142}) { // another place where a ray meets an edge
@@ -123,7 +120,7 @@ Covering check_covering(const TetMesh& m, const std::vector<int64_t>& skin, int 
   return par::reduce(
       static_cast<int64_t>(largest.size()), threads, Covering{},
       [&](int64_t i) {
-        return is_wrong(i) ? Covering{1, skin[static_cast<size_t>(largest[static_cast<size_t>(i)])]} : Covering{};
+        return is_wrong(i) ? Covering{1, skin[largest[i]]} : Covering{};
       },
       [](const Covering& x, const Covering& y) {
         return Covering{x.wrong + y.wrong, x.wrong > 0 ? x.face : y.face};

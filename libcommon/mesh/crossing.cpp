@@ -11,7 +11,7 @@ Crossings find_crossings(const std::vector<Vec3d>& point, const std::vector<Tri>
   const std::vector<Tri> sorted = in_order(tri, index);
   const auto box = [&](size_t i) {
     const Tri& t = sorted[i];
-    return box_around(point[size_t(t[0])], point[size_t(t[1])], point[size_t(t[2])]);
+    return box_around(point[t[0]], point[t[1]], point[t[2]]);
   };
   const BoxTree tree(sorted.size(), box, threads);
   const auto after = [&](int64_t i) {
@@ -19,9 +19,8 @@ Crossings find_crossings(const std::vector<Vec3d>& point, const std::vector<Tri>
     tree.any(
         box(size_t(i)),
         [&](size_t j) {
-          if (triangles_cross(point, sorted[size_t(i)], sorted[j])) {
-            const std::array<int32_t, 2> pair{std::min(index[size_t(i)], index[j]),
-                                              std::max(index[size_t(i)], index[j])};
+          if (triangles_cross(point, sorted[i], sorted[j])) {
+            const std::array<int32_t, 2> pair{std::min(index[i], index[j]), std::max(index[i], index[j])};
             c.first = c.pairs++ == 0 ? pair : std::min(c.first, pair);
           }
           return false;

@@ -23,7 +23,7 @@ public:
   }
 
 private:
-  int32_t& at(int32_t i) { return parent_[static_cast<size_t>(i)]; }
+  int32_t& at(int32_t i) { return parent_[i]; }
   std::vector<int32_t> parent_;
 };
 

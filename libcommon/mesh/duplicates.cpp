@@ -18,7 +18,7 @@ std::vector<int32_t> point_twins(const std::vector<Vec3d>& point, int threads) {
   for_each_group(
       n_points, n_points, threads,
       [&](int64_t i) {
-        const Vec3d p = point[static_cast<size_t>(i)];
+        const Vec3d p = point[i];
         const uint64_t h = mix(mix(mix(bits(p.x)) + bits(p.y)) + bits(p.z));
         return GroupKey{static_cast<int32_t>((h >> 32) * static_cast<uint64_t>(n_points) >> 32), h};
       },

@@ -20,11 +20,11 @@ struct FaceList {
   template <class F>
   void items_of(int64_t i, F&& f) const {
     if (i >= tets()) {
-      const Tri& t = tri[size_t(i - tets())];
+      const Tri& t = tri[i - tets()];
       f(std::min(std::min(t[0], t[1]), t[2]), static_cast<uint32_t>(tets() + i));
       return;
     }
-    const Tet& t = tet[size_t(i)];
+    const Tet& t = tet[i];
     const int32_t low = std::min(t[0], t[1]), high = std::max(t[0], t[1]), other_low = std::min(t[2], t[3]),
                   other_high = std::max(t[2], t[3]);
     f(std::min(low, other_low), static_cast<uint32_t>(2 * i));
@@ -43,7 +43,7 @@ struct FaceList {
   template <class F>
   void faces_of(uint32_t item, F&& f) const {
     if (item >= 2 * tets()) {
-      Tri t = tri[size_t(item - 2 * tets())];
+      Tri t = tri[item - 2 * tets()];
       std::sort(t.begin(), t.end());
       f(t[0], t[1], t[2], static_cast<uint32_t>(2 * tets() + item), false);
       return;
@@ -95,14 +95,14 @@ void for_each_face(const LargeArray<Tet>& tet, const std::vector<Tri>& tri, int6
     std::vector<int64_t> count(static_cast<size_t>(ranges));
     each_item(c, [&](size_t r, uint32_t) { ++count[r]; });
     for (int64_t r = 0; r < ranges; ++r)
-      place[size_t(r * chunks + c)] = count[size_t(r)];
+      place[r * chunks + c] = count[r];
   });
   const int64_t items = par::exclusive_scan(place);
   LargeArray<uint32_t> sorted(static_cast<size_t>(items));
   par::for_n(chunks, threads, 1, [&](int64_t c) {
     std::vector<uint32_t*> to(static_cast<size_t>(ranges));
     for (int64_t r = 0; r < ranges; ++r)
-      to[size_t(r)] = sorted.data() + place[size_t(r * chunks + c)];
+      to[r] = sorted.data() + place[r * chunks + c];
     each_item(c, [&](size_t r, uint32_t item) { *to[r]++ = item; });
   });
 
@@ -117,18 +117,19 @@ void for_each_face(const LargeArray<Tet>& tet, const std::vector<Tri>& tri, int6
     std::vector<uint32_t> last, heads, group;
     for (int64_t r = first_range * block, end = std::min(ranges, r + block); r < end; ++r) {
       const int64_t low = r << shift, width = std::min(points - low, int64_t{1} << shift);
-      const uint32_t *const from_item = sorted.data() + place[size_t(r * chunks)],
-                            *const to_item =
-                                sorted.data() + (r + 1 < ranges ? place[size_t((r + 1) * chunks)] : items);
+      const uint32_t *const from_item = sorted.data() + place[r * chunks], *const to_item =
+                                                                               sorted.data() +
+                                                                               (r + 1 < ranges
+                                                                                    ? place[(r + 1) * chunks]
+                                                                                    : items);
       start.assign(size_t(width + 1), 0);
       for (const uint32_t* i = from_item; i < to_item; ++i)
-        start[size_t(list.lead_of(*i) - low)] += list.faces_of(*i);
+        start[list.lead_of(*i) - low] += list.faces_of(*i);
       const int32_t most = *std::max_element(start.begin(), start.end());
       by_lead.resize(size_t(par::exclusive_scan(start)));
       for (const uint32_t* i = from_item; i < to_item; ++i)
         list.faces_of(*i, [&](int32_t lead, int32_t second, int32_t third, uint32_t face, bool odd) {
-          by_lead[size_t(start[size_t(lead - low)]++)] = {uint64_t(uint32_t(second)) << 32 | uint32_t(third), face,
-                                                          0, odd};
+          by_lead[start[lead - low]++] = {uint64_t(uint32_t(second)) << 32 | uint32_t(third), face, 0, odd};
         });
       // 1 + place of the last entry met on the same points, by open addressing; those of leads before count as
       // free.
@@ -136,7 +137,7 @@ void for_each_face(const LargeArray<Tet>& tet, const std::vector<Tri>& tri, int6
       group.resize(size_t(most));
       uint32_t from = 0;
       for (int64_t lead = 0; lead < width; ++lead) { // filling moved each start to its end
-        const auto to = static_cast<uint32_t>(start[size_t(lead)]);
+        const auto to = static_cast<uint32_t>(start[lead]);
         const size_t mask = std::bit_ceil(2 * size_t(to - from)) - 1;
         heads.clear();
         for (uint32_t k = from; k < to; ++k) {
@@ -153,7 +154,7 @@ void for_each_face(const LargeArray<Tet>& tet, const std::vector<Tri>& tri, int6
         for (const uint32_t head : heads) {
           int n = 0;
           for (uint32_t k = head + 1; k > 0; k = by_lead[k - 1].next)
-            group[size_t(n++)] = by_lead[k - 1].face;
+            group[n++] = by_lead[k - 1].face;
           const bool pair = n > 1 && group[1] < 4 * list.tets();
           visit(static_cast<const uint32_t*>(group.data()), n,
                 pair && by_lead[head].odd == by_lead[by_lead[head].next - 1].odd);

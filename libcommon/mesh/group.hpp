@@ -29,7 +29,7 @@ void for_each_group(int64_t count, int64_t leads, int threads, Key key, Visit vi
   const int64_t ranges = count > 0 ? ((leads - 1) >> shift) + 1 : 0;
   const auto range_of = [&](int64_t i) { return int64_t{key(i).lead} >> shift; };
   std::vector<int64_t> place(static_cast<size_t>(ranges * chunks)); // [range][chunk]
-  const auto at = [&](int64_t r, int64_t c) -> int64_t& { return place[static_cast<size_t>(r * chunks + c)]; };
+  const auto at = [&](int64_t r, int64_t c) -> int64_t& { return place[r * chunks + c]; };
   par::for_n(chunks, threads, 1, [&](int64_t c) {
     for (int64_t i = c * chunk, end = std::min(count, i + chunk); i < end; ++i)
       ++at(range_of(i), c);
@@ -37,11 +37,11 @@ void for_each_group(int64_t count, int64_t leads, int threads, Key key, Visit vi
   par::exclusive_scan(place);
   std::vector<int64_t> begin(static_cast<size_t>(ranges + 1), count);
   for (int64_t r = 0; r < ranges; ++r)
-    begin[static_cast<size_t>(r)] = at(r, 0);
+    begin[r] = at(r, 0);
   LargeArray<uint32_t> item(static_cast<size_t>(count));
   par::for_n(chunks, threads, 1, [&](int64_t c) {
     for (int64_t i = c * chunk, end = std::min(count, i + chunk); i < end; ++i)
-      item[static_cast<size_t>(at(range_of(i), c)++)] = static_cast<uint32_t>(i);
+      item[at(range_of(i), c)++] = static_cast<uint32_t>(i);
   });
 
   struct Entry {
@@ -50,26 +50,26 @@ void for_each_group(int64_t count, int64_t leads, int threads, Key key, Visit vi
     bool operator<(const Entry& o) const { return rest != o.rest ? rest < o.rest : item < o.item; }
   };
   par::for_n(ranges, threads, 1, [&](int64_t r) {
-    const int64_t first = begin[static_cast<size_t>(r)], size = begin[static_cast<size_t>(r + 1)] - first;
+    const int64_t first = begin[r], size = begin[r + 1] - first;
     const int64_t low = r << shift, width = std::min(leads - low, int64_t{1} << shift);
     std::vector<int32_t> start(static_cast<size_t>(width + 1));
     std::vector<Entry> sorted(static_cast<size_t>(size));
     uint32_t* const mine = item.data() + first;
     for (int64_t k = 0; k < size; ++k)
-      ++start[static_cast<size_t>(key(mine[k]).lead - low)];
+      ++start[key(mine[k]).lead - low];
     par::exclusive_scan(start);
     for (int64_t k = 0; k < size; ++k) {
       const GroupKey full = key(mine[k]);
-      sorted[static_cast<size_t>(start[static_cast<size_t>(full.lead - low)]++)] = {full.rest, mine[k]};
+      sorted[start[full.lead - low]++] = {full.rest, mine[k]};
     }
     for (int64_t lead = 0, from = 0; lead < width; ++lead) { // filling moved each start to its end
-      const int64_t to = start[static_cast<size_t>(lead)];
+      const int64_t to = start[lead];
       std::sort(sorted.begin() + from, sorted.begin() + to);
       for (int64_t k = from; k < to; ++k)
-        mine[k] = sorted[static_cast<size_t>(k)].item;
+        mine[k] = sorted[k].item;
       while (from < to) {
         int64_t end = from + 1;
-        while (end < to && sorted[static_cast<size_t>(end)].rest == sorted[static_cast<size_t>(from)].rest)
+        while (end < to && sorted[end].rest == sorted[from].rest)
           ++end;
         visit(const_cast<const uint32_t*>(mine + from), static_cast<int>(end - from));
         from = end;

@@ -30,14 +30,14 @@ LargeArray<uint32_t> along_curve(const TetMesh& m, int threads) {
   LargeArray<uint32_t> key(m.tet.size()), order(m.tet.size());
   par::for_n(n, threads, [&](int64_t t) {
     Vec3d c;
-    for (const int32_t v : m.tet[size_t(t)])
-      c += 0.25 * scale * (m.point[size_t(v)] - low);
+    for (const int32_t v : m.tet[t])
+      c += 0.25 * scale * (m.point[v] - low);
     const auto at = [](double x) { return static_cast<int32_t>(x); };
-    key[size_t(t)] = static_cast<uint32_t>(hilbert({at(c.x), at(c.y), at(c.z)}, bits));
+    key[t] = static_cast<uint32_t>(hilbert({at(c.x), at(c.y), at(c.z)}, bits));
   });
   par::place_by(
-      n, int64_t{1} << 3 * bits, threads, [&](int64_t t) { return int64_t{key[size_t(t)]}; }, [](int64_t) {},
-      [&](int64_t k, int64_t t) { order[size_t(k)] = static_cast<uint32_t>(t); });
+      n, int64_t{1} << 3 * bits, threads, [&](int64_t t) { return int64_t{key[t]}; }, [](int64_t) {},
+      [&](int64_t k, int64_t t) { order[k] = static_cast<uint32_t>(t); });
   return order;
 }
 
@@ -86,12 +86,12 @@ Graph dual_graph(const TetMesh& m, int64_t size, int threads, const LargeArray<i
   LargeArray<uint32_t> order;
   if (size > 1)
     order = along_curve(m, threads);
-  const auto tet_at = [&](int64_t k) { return size > 1 ? int64_t{order[size_t(k)]} : k; };
+  const auto tet_at = [&](int64_t k) { return size > 1 ? int64_t{order[k]} : k; };
   Graph g;
   g.cluster.resize(m.tet.size());
   g.node_weight.resize(size_t(nodes));
   g.begin.assign(size_t(nodes + 1), 0);
-  par::for_n(n, threads, [&](int64_t k) { g.cluster[size_t(tet_at(k))] = static_cast<int32_t>(k / size); });
+  par::for_n(n, threads, [&](int64_t k) { g.cluster[tet_at(k)] = static_cast<int32_t>(k / size); });
   struct Edges {
     std::vector<idx_t> neighbor, weight;
   };
@@ -100,14 +100,14 @@ Graph dual_graph(const TetMesh& m, int64_t size, int threads, const LargeArray<i
   par::for_n(static_cast<int64_t>(part.size()), threads, 1, [&](int64_t c) {
     FewValues near;
     std::array<int32_t, FewValues::most + 1> beyond;
-    Edges& edges = part[size_t(c)];
+    Edges& edges = part[c];
     for (int64_t node = c * chunk; node < std::min(nodes, (c + 1) * chunk); ++node) {
       const int64_t first = node * size, last = std::min(n, first + size);
       size_t count = 0;
       for (int64_t k = first; k < last; ++k)
         for (int64_t face = 4 * tet_at(k), end = face + 4; face < end; ++face) {
-          const int32_t other = across[size_t(face)];
-          beyond[count] = other < 0 ? static_cast<int32_t>(node) : g.cluster[size_t(other)];
+          const int32_t other = across[face];
+          beyond[count] = other < 0 ? static_cast<int32_t>(node) : g.cluster[other];
           count += beyond[count] != node; // no branch: which it is is a guess
         }
       near.clear();
@@ -117,17 +117,17 @@ Graph dual_graph(const TetMesh& m, int64_t size, int threads, const LargeArray<i
         edges.neighbor.push_back(neighbor);
         edges.weight.push_back(faces);
       });
-      g.begin[size_t(node)] = static_cast<idx_t>(near.size());
-      g.node_weight[size_t(node)] = static_cast<idx_t>(last - first);
+      g.begin[node] = static_cast<idx_t>(near.size());
+      g.node_weight[node] = static_cast<idx_t>(last - first);
     }
   });
   const auto edges = size_t(par::exclusive_scan(g.begin));
   g.neighbor.resize(edges);
   g.edge_weight.resize(edges);
   par::for_n(static_cast<int64_t>(part.size()), threads, 1, [&](int64_t c) {
-    const Edges& own = part[size_t(c)];
-    std::copy(own.neighbor.begin(), own.neighbor.end(), g.neighbor.begin() + g.begin[size_t(c * chunk)]);
-    std::copy(own.weight.begin(), own.weight.end(), g.edge_weight.begin() + g.begin[size_t(c * chunk)]);
+    const Edges& own = part[c];
+    std::copy(own.neighbor.begin(), own.neighbor.end(), g.neighbor.begin() + g.begin[c * chunk]);
+    std::copy(own.weight.begin(), own.weight.end(), g.edge_weight.begin() + g.begin[c * chunk]);
   });
   return g;
 }
@@ -137,7 +137,7 @@ std::vector<int32_t> cut_curve(const TetMesh& m, int64_t parts, int threads) {
   const LargeArray<uint32_t> order = along_curve(m, threads);
   const auto n = static_cast<int64_t>(order.size());
   std::vector<int32_t> part(order.size());
-  par::for_n(n, threads, [&](int64_t k) { part[order[size_t(k)]] = static_cast<int32_t>(k * parts / n); });
+  par::for_n(n, threads, [&](int64_t k) { part[order[k]] = static_cast<int32_t>(k * parts / n); });
   return part;
 }
 
@@ -145,19 +145,19 @@ std::vector<int32_t> cut_curve(const TetMesh& m, int64_t parts, int threads) {
 void fill_empty_parts(const TetMesh& m, std::vector<int32_t>& part, int32_t parts, int threads) {
   std::vector<int64_t> size(size_t(parts), 0);
   for (const int32_t p : part)
-    ++size[size_t(p)];
+    ++size[p];
   if (std::find(size.begin(), size.end(), 0) == size.end())
     return;
   const LargeArray<uint32_t> order = along_curve(m, threads);
   for (int32_t p = 0; p < parts; ++p) {
-    if (size[size_t(p)] > 0)
+    if (size[p] > 0)
       continue;
     const auto largest = static_cast<int32_t>(std::max_element(size.begin(), size.end()) - size.begin());
-    int64_t kept = (size[size_t(largest)] + 1) / 2;
+    int64_t kept = (size[largest] + 1) / 2;
     for (const uint32_t t : order)
       if (part[t] == largest && kept-- <= 0) {
         part[t] = p;
-        ++size[size_t(p)], --size[size_t(largest)];
+        ++size[p], --size[largest];
       }
   }
 }
@@ -210,8 +210,7 @@ std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeAr
   });
   if (status != METIS_OK)
     fail(Status::failed, "METIS cannot partition this mesh (status " + std::to_string(status) + ")");
-  par::for_n(int64_t(part.size()), threads,
-             [&](int64_t t) { part[size_t(t)] = part_of[size_t(g.cluster[size_t(t)])]; });
+  par::for_n(int64_t(part.size()), threads, [&](int64_t t) { part[t] = part_of[g.cluster[t]]; });
   fill_empty_parts(m, part, k, threads);
   return part;
 }

@@ -87,11 +87,11 @@ MeshQuality measure_quality(const TetMesh& m, int threads, AngleLimits limits) {
   const auto tets = static_cast<int64_t>(m.tet.size()), chunks = (tets + chunk - 1) / chunk;
   std::vector<ByRegion> part(static_cast<size_t>(chunks));
   par::for_n(chunks, threads, 1, [&](int64_t c) {
-    ByRegion& mine = part[static_cast<size_t>(c)];
+    ByRegion& mine = part[c];
     for (int64_t i = c * chunk; i < std::min(tets, (c + 1) * chunk); ++i) {
-      const Tet& t = m.tet[static_cast<size_t>(i)];
-      const auto p = [&](size_t k) { return m.point[static_cast<size_t>(t[k])]; };
-      mine[m.region[static_cast<size_t>(i)]].add(p(0), p(1), p(2), p(3), i, limits);
+      const Tet& t = m.tet[i];
+      const auto p = [&](size_t k) { return m.point[t[k]]; };
+      mine[m.region[i]].add(p(0), p(1), p(2), p(3), i, limits);
     }
   });
   ByRegion regions;

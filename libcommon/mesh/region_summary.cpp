@@ -20,14 +20,14 @@ std::vector<RegionSummary> summarize_regions(const TetMesh& m, const std::vector
   std::vector<int32_t> label;
   for (int64_t f : side) {
     boundary.push_back(face_points(m, f));
-    label.push_back(index(m.region[static_cast<size_t>(f / 4)]));
+    label.push_back(index(m.region[f / 4]));
   }
   const auto summaries = summarize_surfaces(m.point, boundary, label, static_cast<int32_t>(names.size()), threads);
   std::vector<RegionSummary> region;
   for (size_t r = 0; r < names.size(); ++r)
     region.push_back({names[r], 0, 0, summaries[r]});
   std::vector<double> lost(names.size()); // the sums must tell a box from its volumes
-  const auto point = [&](int32_t i) { return m.point[static_cast<size_t>(i)]; };
+  const auto point = [&](int32_t i) { return m.point[i]; };
   for (size_t i = 0; i < m.tet.size(); ++i) {
     const Tet& t = m.tet[i];
     const auto k = static_cast<size_t>(index(m.region[i]));

@@ -32,11 +32,11 @@ public:
   /// Corners in the fan of c.
   int64_t fan(int64_t c) const {
     int64_t n = 1, h = c;
-    while ((h = mate_[static_cast<size_t>(h)]) >= 0 && (h = next_half(h)) != c)
+    while ((h = mate_[h]) >= 0 && (h = next_half(h)) != c)
       ++n;
     if (h >= 0)
       return n; // closed
-    for (h = c; (h = mate_[static_cast<size_t>(previous_half(h))]) >= 0;)
+    for (h = c; (h = mate_[previous_half(h)]) >= 0;)
       ++n;
     return n;
   }
@@ -47,9 +47,9 @@ private:
 
 HalfEdges pair_halves(const std::vector<Tri>& tri, const std::vector<int32_t>& label, int64_t points, int threads) {
   const auto halves = static_cast<int64_t>(3 * tri.size());
-  const auto from = [&](int64_t h) { return tri[static_cast<size_t>(h / 3)][static_cast<size_t>(h % 3)]; };
+  const auto from = [&](int64_t h) { return tri[h / 3][h % 3]; };
   const auto to = [&](int64_t h) { return from(next_half(h)); };
-  const auto label_bits = [&](int64_t h) { return uint64_t(uint32_t(label[static_cast<size_t>(h / 3)])) << 32; };
+  const auto label_bits = [&](int64_t h) { return uint64_t(uint32_t(label[h / 3])) << 32; };
   HalfEdges e;
   e.mate.assign(static_cast<size_t>(halves), -1);
   e.edge.assign(static_cast<size_t>(halves), none);
@@ -92,11 +92,10 @@ std::vector<SurfaceSummary> summarize_surfaces(const std::vector<Vec3d>& point, 
     if (e.mate[h] >= 0)
       pieces.join(static_cast<int32_t>(h / 3), e.mate[h] / 3);
 
-  const Vec3d origin = point[static_cast<size_t>(tri[0][0])]; // volumes cancel less when seen from nearby
+  const Vec3d origin = point[tri[0][0]]; // volumes cancel less when seen from nearby
   for (size_t t = 0; t < tri.size(); ++t) {
-    SurfaceSummary& s = summary[static_cast<size_t>(label[t])];
-    const Vec3d a = point[static_cast<size_t>(tri[t][0])], b = point[static_cast<size_t>(tri[t][1])],
-                c = point[static_cast<size_t>(tri[t][2])];
+    SurfaceSummary& s = summary[label[t]];
+    const Vec3d a = point[tri[t][0]], b = point[tri[t][1]], c = point[tri[t][2]];
     ++s.triangles;
     s.components += pieces.first(static_cast<int32_t>(t)) == static_cast<int32_t>(t);
     s.area += tri_area(a, b, c);

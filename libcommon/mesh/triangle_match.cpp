@@ -7,15 +7,13 @@ namespace molmesh {
 
 TriangleMatch match_triangles(const TetMesh& m, const LargeArray<int32_t>& across,
                               const std::vector<int64_t>& boundary, int threads) {
-  const auto region = [&](int64_t face) { return m.region[static_cast<size_t>(face / 4)]; };
+  const auto region = [&](int64_t face) { return m.region[face / 4]; };
   TriangleMatch r;
   for (int64_t f : boundary)
     if (const int32_t other = region_across(m, across, f); other == 0 || region(f) < other)
       r.owner.push_back(f);
   const auto n = static_cast<int64_t>(r.owner.size()), tris = static_cast<int64_t>(m.tri.size());
-  const auto corners = [&](int64_t i) {
-    return i < n ? face_points(m, r.owner[static_cast<size_t>(i)]) : m.tri[static_cast<size_t>(i - n)];
-  };
+  const auto corners = [&](int64_t i) { return i < n ? face_points(m, r.owner[i]) : m.tri[i - n]; };
   r.kind.assign(static_cast<size_t>(n + tris), TriangleMatch::good);
   r.one_sided.assign(static_cast<size_t>(tris), 0);
   for_each_group(

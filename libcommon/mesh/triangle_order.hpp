@@ -11,7 +11,7 @@ inline std::vector<Tri> in_order(const std::vector<Tri>& tri, const std::vector<
   std::vector<Tri> sorted;
   sorted.reserve(index.size());
   for (const int32_t t : index)
-    sorted.push_back(tri[static_cast<size_t>(t)]);
+    sorted.push_back(tri[t]);
   return sorted;
 }
 

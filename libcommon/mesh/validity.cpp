@@ -57,8 +57,8 @@ public:
   }
 
 private:
-  std::string tet(int64_t i) const { return described("tet", i, m_.tet[static_cast<size_t>(i)]); }
-  std::string tri(int64_t i) const { return described("triangle", i, m_.tri[static_cast<size_t>(i)]); }
+  std::string tet(int64_t i) const { return described("tet", i, m_.tet[i]); }
+  std::string tri(int64_t i) const { return described("triangle", i, m_.tri[i]); }
   std::string face(int64_t i) const { return described("face of tet", i / 4, face_points(m_, i)); }
   void fault(const char* rule, int64_t count, const std::string& example) {
     if (count > 0)
@@ -69,7 +69,7 @@ private:
     if (t.count > 0)
       fault(rule, t.count, describe(t.first));
   }
-  Vec3d point(int32_t i) const { return m_.point[static_cast<size_t>(i)]; }
+  Vec3d point(int32_t i) const { return m_.point[i]; }
   int64_t tets() const { return static_cast<int64_t>(m_.tet.size()); }
   int64_t tris() const { return static_cast<int64_t>(m_.tri.size()); }
   int64_t points() const { return static_cast<int64_t>(m_.point.size()); }
@@ -81,18 +81,18 @@ private:
           return true;
       return false;
     };
-    fault("index", tally(tets(), threads_, [&](int64_t i) { return outside(m_.tet[static_cast<size_t>(i)]); }),
+    fault("index", tally(tets(), threads_, [&](int64_t i) { return outside(m_.tet[i]); }),
           [&](int64_t i) { return tet(i); });
     if (!v_.valid())
       return false;
-    fault("index", tally(tris(), threads_, [&](int64_t i) { return outside(m_.tri[static_cast<size_t>(i)]); }),
+    fault("index", tally(tris(), threads_, [&](int64_t i) { return outside(m_.tri[i]); }),
           [&](int64_t i) { return tri(i); });
     return v_.valid();
   }
 
   void check_tets() {
     const auto flat = [&](int64_t i) {
-      const Tet& t = m_.tet[static_cast<size_t>(i)];
+      const Tet& t = m_.tet[i];
       return orient3d(point(t[0]), point(t[1]), point(t[2]), point(t[3])) <= 0;
     };
     fault("volume", tally(tets(), threads_, flat), [&](int64_t i) { return tet(i); });
@@ -100,15 +100,13 @@ private:
 
   void check_points() {
     const std::vector<int32_t> twin = point_twins(m_.point, threads_);
-    fault("duplicate_point",
-          tally(points(), threads_, [&](int64_t i) { return twin[static_cast<size_t>(i)] >= 0; }), [&](int64_t i) {
-            return "points " + std::to_string(twin[static_cast<size_t>(i)]) + " and " + std::to_string(i);
-          });
+    fault("duplicate_point", tally(points(), threads_, [&](int64_t i) { return twin[i] >= 0; }),
+          [&](int64_t i) { return "points " + std::to_string(twin[i]) + " and " + std::to_string(i); });
     std::vector<uint8_t> used(m_.point.size(), 0);
     for (const Tet& t : m_.tet)
       for (int32_t i : t)
-        used[static_cast<size_t>(i)] = 1;
-    fault("unused_point", tally(points(), threads_, [&](int64_t i) { return !used[static_cast<size_t>(i)]; }),
+        used[i] = 1;
+    fault("unused_point", tally(points(), threads_, [&](int64_t i) { return !used[i]; }),
           [&](int64_t i) { return "point " + std::to_string(i); });
   }
 
@@ -116,7 +114,7 @@ private:
     const std::vector<int64_t> copies = tet_copies(m_, across_);
     if (!copies.empty())
       fault("duplicate_tet", static_cast<int64_t>(copies.size()), tet(copies.front()));
-    const auto neighbor = [&](int64_t f) { return across_[static_cast<size_t>(f)]; };
+    const auto neighbor = [&](int64_t f) { return across_[f]; };
     fault("crowded_face", tally(4 * tets(), threads_, [&](int64_t f) { return neighbor(f) == crowded_face; }),
           [&](int64_t f) { return face(f); });
     const auto folded = [&](int64_t f) {
@@ -129,9 +127,8 @@ private:
     TriangleMatch match = match_triangles(m_, across_, side_, threads_);
     const int64_t n = static_cast<int64_t>(match.owner.size());
     const auto count = [&](const char* rule, TriangleMatch::Kind broken) {
-      fault(rule,
-            tally(n + tris(), threads_, [&](int64_t i) { return match.kind[static_cast<size_t>(i)] == broken; }),
-            [&](int64_t i) { return i < n ? face(match.owner[static_cast<size_t>(i)]) : tri(i - n); });
+      fault(rule, tally(n + tris(), threads_, [&](int64_t i) { return match.kind[i] == broken; }),
+            [&](int64_t i) { return i < n ? face(match.owner[i]) : tri(i - n); });
     };
     count("missing_triangle", TriangleMatch::missing);
     count("stray_triangle", TriangleMatch::stray);
@@ -185,27 +182,27 @@ private:
     };
     if (!within(m_.region, Region::cavity) || !within(m_.boundary, Boundary::box_z1))
       return;
-    const auto side = [&](int64_t t) { return m_.boundary[static_cast<size_t>(t)] - Boundary::box_x0; };
+    const auto side = [&](int64_t t) { return m_.boundary[t] - Boundary::box_x0; };
     int sides = 0;
     bool closed = true; // by the box alone
     for (int64_t t = 0; t < tris(); ++t) {
       if (side(t) >= 0)
         sides |= 1 << side(t);
-      else if (one_sided_[static_cast<size_t>(t)])
+      else if (one_sided_[t])
         closed = false;
     }
     const auto in_plane = [&](int64_t t, int s) {
       const double plane = s % 2 == 0 ? v_.low[s / 2] : v_.high[s / 2];
-      for (int32_t i : m_.tri[static_cast<size_t>(t)])
+      for (int32_t i : m_.tri[t])
         if (point(i)[s / 2] != plane)
           return false;
       return true;
     };
     const auto wrong_label = [&](int64_t t) {
       if (side(t) >= 0)
-        return !one_sided_[static_cast<size_t>(t)];
+        return !one_sided_[t];
       for (int s = 0; s < 6; ++s)
-        if ((sides >> s & 1) && one_sided_[static_cast<size_t>(t)] && in_plane(t, s))
+        if ((sides >> s & 1) && one_sided_[t] && in_plane(t, s))
           return true;
       return false;
     };
@@ -225,7 +222,7 @@ private:
   void check_skin() {
     std::vector<int64_t> skin;
     for (const int64_t f : side_)
-      if (across_[static_cast<size_t>(f)] == no_face)
+      if (across_[f] == no_face)
         skin.push_back(f);
     const Covering c = check_covering(m_, skin, threads_);
     fault("overlap", c.wrong, c.wrong > 0 ? face(c.face) : "");
@@ -258,9 +255,7 @@ void add_crossings(Validity& v, const TetMesh& m, int threads) {
   const Crossings c = find_crossings(m.point, tri, threads);
   if (c.pairs == 0)
     return;
-  const auto name = [&](int32_t t) {
-    return described("triangle", number[static_cast<size_t>(t)], tri[static_cast<size_t>(t)]);
-  };
+  const auto name = [&](int32_t t) { return described("triangle", number[t], tri[t]); };
   v.faults.push_back({"crossing_triangles", c.pairs, name(c.first[0]) + " and " + name(c.first[1])});
 }
 

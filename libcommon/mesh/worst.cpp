@@ -11,7 +11,7 @@ namespace molmesh {
 namespace {
 
 WorstTet measure(const TetMesh& m, int64_t t) {
-  const auto p = [&](size_t i) { return m.point[size_t(m.tet[size_t(t)][i])]; };
+  const auto p = [&](size_t i) { return m.point[m.tet[t][i]]; };
   const Dihedrals d = dihedrals(p(0), p(1), p(2), p(3));
   return {t, cell_centroid(m, size_t(t)), *std::min_element(d.degree, d.degree + 6),
           *std::max_element(d.degree, d.degree + 6)};

@@ -17,7 +17,7 @@ public:
   Names() { add("X"); }
   /// The entry of `text`, added when new.
   int32_t add(std::string_view text);
-  const std::string& operator[](int32_t entry) const { return text_[static_cast<size_t>(entry)]; }
+  const std::string& operator[](int32_t entry) const { return text_[entry]; }
   int64_t size() const { return static_cast<int64_t>(text_.size()); }
 
 private:

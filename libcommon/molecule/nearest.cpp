@@ -30,7 +30,7 @@ std::string groups_of(const Hierarchy& h, int64_t atom) {
 
 std::string nearest_name(const Hierarchy& h, Vec3d p) {
   const int64_t atom = nearest_atom(h, p);
-  return groups_of(h, atom) + ' ' + h.names[h.atom[size_t(atom)].name];
+  return groups_of(h, atom) + ' ' + h.names[h.atom[atom].name];
 }
 
 } // namespace molmesh

@@ -71,11 +71,11 @@ public:
   template <class K, class V>
   void sort_pairs(const char*, K* keys, V* values, int64_t n) {
     std::vector<std::pair<K, V>> pair(static_cast<size_t>(n));
-    par::for_n(n, threads_, [&](int64_t i) { pair[static_cast<size_t>(i)] = {keys[i], values[i]}; });
+    par::for_n(n, threads_, [&](int64_t i) { pair[i] = {keys[i], values[i]}; });
     par::sort(pair, threads_);
     par::for_n(n, threads_, [&](int64_t i) {
-      keys[i] = pair[static_cast<size_t>(i)].first;
-      values[i] = pair[static_cast<size_t>(i)].second;
+      keys[i] = pair[i].first;
+      values[i] = pair[i].second;
     });
   }
 
@@ -92,7 +92,7 @@ public:
         f(i);
     };
     std::vector<int64_t> start(static_cast<size_t>(chunks));
-    const auto start_of = [&](int64_t c) -> int64_t& { return start[static_cast<size_t>(c)]; };
+    const auto start_of = [&](int64_t c) -> int64_t& { return start[c]; };
     if constexpr (requires { Item::most; }) {
       std::vector<std::vector<T>> part(static_cast<size_t>(chunks));
       par::for_n(chunks, threads, 1, [&](int64_t c) {
@@ -100,14 +100,12 @@ public:
         found.resize(static_cast<size_t>(grain * Item::most));
         int64_t count = 0;
         each(c, [&](int64_t i) { count += item(i, found.data() + count); });
-        part[static_cast<size_t>(c)].assign(found.begin(), found.begin() + count);
+        part[c].assign(found.begin(), found.begin() + count);
         start_of(c) = count;
       });
       Array<T> out = array<T>(exclusive_scan(start));
-      par::for_n(chunks, threads, 1, [&](int64_t c) {
-        std::copy(part[static_cast<size_t>(c)].begin(), part[static_cast<size_t>(c)].end(),
-                  out.begin() + start_of(c));
-      });
+      par::for_n(chunks, threads, 1,
+                 [&](int64_t c) { std::copy(part[c].begin(), part[c].end(), out.begin() + start_of(c)); });
       return out;
     } else {
       static_assert(grain % 64 == 0); // no two chunks share a word
@@ -116,7 +114,7 @@ public:
         int64_t count = 0;
         each(c, [&](int64_t i) {
           const int64_t here = item(i, static_cast<T*>(nullptr));
-          any[static_cast<size_t>(i >> 6)] |= uint64_t{here > 0} << (i & 63);
+          any[i >> 6] |= uint64_t{here > 0} << (i & 63);
           count += here;
         });
         start_of(c) = count;
@@ -125,7 +123,7 @@ public:
       par::for_n(chunks, threads, 1, [&](int64_t c) {
         T* to = out.data() + start_of(c);
         each(c, [&](int64_t i) {
-          if (any[static_cast<size_t>(i >> 6)] >> (i & 63) & 1)
+          if (any[i >> 6] >> (i & 63) & 1)
             to += item(i, to);
         });
       });

@@ -99,7 +99,7 @@ T reduce(int64_t n, int threads, T init, F&& f, C&& combine, int64_t grain = 409
     const int64_t end = std::min(n, (c + 1) * grain);
     for (int64_t i = c * grain; i < end; ++i)
       sum = combine(sum, f(i));
-    part[static_cast<size_t>(c)].sum = sum;
+    part[c].sum = sum;
   });
   T sum = init;
   for (const Part& p : part)
@@ -137,12 +137,12 @@ LargeArray<T> select(int64_t n, int threads, Keep&& keep) {
   for_n(chunks, threads, 1, [&](int64_t c) {
     int64_t kept = 0;
     each(c, [&](int64_t) { ++kept; });
-    start[static_cast<size_t>(c)] = kept;
+    start[c] = kept;
   });
   LargeArray<T> out(static_cast<size_t>(exclusive_scan(start)));
   prepare_pages(out.data(), out.size() * sizeof(T), threads);
   for_n(chunks, threads, 1, [&](int64_t c) {
-    auto to = out.begin() + start[static_cast<size_t>(c)];
+    auto to = out.begin() + start[c];
     each(c, [&](int64_t i) { *to++ = static_cast<T>(i); });
   });
   return out;
@@ -162,28 +162,27 @@ void place_by(int64_t n, int64_t keys, int threads, Key&& key, Sized&& sized, Pl
   const auto each = [&](int64_t c, auto&& f) {
     for (int64_t i = c * grain, end = std::min(n, i + grain); i < end; ++i)
       if (const int64_t k = key(i); k >= 0)
-        f(start[static_cast<size_t>((k >> shift) * chunks + c)], i);
+        f(start[(k >> shift) * chunks + c], i);
   };
   for_n(chunks, threads, 1, [&](int64_t c) { each(c, [](int64_t& count, int64_t) { ++count; }); });
   const int64_t total = exclusive_scan(start);
   sized(total);
   LargeArray<uint32_t> order(static_cast<size_t>(total));
   prepare_pages(order.data(), order.size() * sizeof(uint32_t), threads);
-  for_n(chunks, threads, 1, [&](int64_t c) {
-    each(c, [&](int64_t& slot, int64_t i) { order[static_cast<size_t>(slot++)] = static_cast<uint32_t>(i); });
-  });
+  for_n(chunks, threads, 1,
+        [&](int64_t c) { each(c, [&](int64_t& slot, int64_t i) { order[slot++] = static_cast<uint32_t>(i); }); });
   for_n(buckets, threads, 1, [&](int64_t b) { // each start has become its end
-    const int64_t first = b * chunks == 0 ? 0 : start[static_cast<size_t>(b * chunks - 1)],
-                  last = chunks == 0 ? 0 : start[static_cast<size_t>((b + 1) * chunks - 1)];
+    const int64_t first = b * chunks == 0 ? 0 : start[b * chunks - 1],
+                  last = chunks == 0 ? 0 : start[(b + 1) * chunks - 1];
     if (first == last)
       return;
     std::vector<int64_t> slot(size_t{1} << shift);
-    const auto slot_of = [&](int64_t i) -> int64_t& { return slot[static_cast<size_t>(key(i) - (b << shift))]; };
+    const auto slot_of = [&](int64_t i) -> int64_t& { return slot[key(i) - (b << shift)]; };
     for (int64_t m = first; m < last; ++m)
-      ++slot_of(order[static_cast<size_t>(m)]);
+      ++slot_of(order[m]);
     exclusive_scan(slot);
     for (int64_t m = first; m < last; ++m) {
-      const int64_t i = order[static_cast<size_t>(m)];
+      const int64_t i = order[m];
       place(first + slot_of(i)++, i);
     }
   });

@@ -25,7 +25,7 @@ Sample active_point(const Band& band, const std::vector<int64_t>& before, int64_
   const float* const value = active_values(block, room);
   int64_t left = n - before[b];
   for (int slot_of_point = 0; slot_of_point < 512; ++slot_of_point)
-    if (block.active[static_cast<size_t>(slot_of_point >> 6)] >> (slot_of_point & 63) & 1 && left-- == 0)
+    if (block.active[slot_of_point >> 6] >> (slot_of_point & 63) & 1 && left-- == 0)
       return {block.corner + Vec3i{slot_of_point >> 6, slot_of_point >> 3 & 7, slot_of_point & 7},
               value[n - before[b]]};
   std::abort();

@@ -48,7 +48,7 @@ Distances measure(const TetMesh& mesh, const Isosurface& isosurface) {
       continue;
     std::array<Vec3d, 3> x;
     for (size_t i = 0; i < 3; ++i)
-      x[i] = mesh.point[static_cast<size_t>(mesh.tri[t][i])];
+      x[i] = mesh.point[mesh.tri[t][i]];
     const Vec3d centroid = (x[0] + x[1] + x[2]) / 3., across = tri_normal(x[0], x[1], x[2]);
     constexpr double reach = 5, near = 0.5; // spacings
     double f;

@@ -25,7 +25,7 @@ CgalSurface cgal_surface(const std::vector<Vec3d>& point, const std::vector<Tri>
     for (std::size_t i = 0; i < 3; ++i) {
       const auto [place, fresh] = number.try_emplace(t[i], points.size());
       if (fresh) {
-        const Vec3d p = point[static_cast<std::size_t>(t[i])];
+        const Vec3d p = point[t[i]];
         points.emplace_back(p.x, p.y, p.z);
       }
       polygon[i] = place->second;

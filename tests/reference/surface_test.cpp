@@ -114,7 +114,7 @@ TEST_CASE("as many pairs of triangles cross as CGAL counts") {
           p[k] = step * std::round((p[k] + (n % 2 ? 1.0 : 0.3) * u(random)) / step);
     bool degenerate = false; // CGAL's answer is not defined for these
     for (const Tri& t : m.tri) {
-      const auto p = [&](size_t i) { return m.point[static_cast<size_t>(t[i])]; };
+      const auto p = [&](size_t i) { return m.point[t[i]]; };
       degenerate |= tri_normal(p(0), p(1), p(2)) == Vec3d{0, 0, 0};
     }
     if (degenerate)

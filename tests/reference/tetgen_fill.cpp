@@ -19,7 +19,7 @@ TetMesh tetgen_fill(const std::vector<Vec3d>& point, const std::vector<Tri>& tri
   in.pointlist = new REAL[3 * number.size()];
   for (const auto& [v, i] : number)
     for (int k = 0; k < 3; ++k)
-      in.pointlist[3 * i + k] = point[static_cast<size_t>(v)][k];
+      in.pointlist[3 * i + k] = point[v][k];
   in.numberoffacets = static_cast<int>(tri.size());
   in.facetlist = new tetgenio::facet[tri.size()];
   for (size_t f = 0; f < tri.size(); ++f) {

@@ -31,21 +31,21 @@ public:
       LargeArray<int32_t> list;
       for (int64_t t = tets * r / runs; t < tets * (r + 1) / runs; ++t)
         for (int32_t v : tet[t])
-          if (uint64_t& word = bits[at(v >> 6)], bit = uint64_t{1} << (v & 63); !(word & bit)) {
+          if (uint64_t& word = bits[v >> 6], bit = uint64_t{1} << (v & 63); !(word & bit)) {
             word |= bit;
             list.push_back(v);
           }
-      used[at(r)] = std::move(bits);
-      own[at(r)] = std::move(list);
+      used[r] = std::move(bits);
+      own[r] = std::move(list);
     });
     par::for_n(words, threads_, [&](int64_t w) { // each run's becomes that of all before
       uint64_t before = 0;
       for (auto& of_run : used)
-        before |= std::exchange(of_run[at(w)], before);
+        before |= std::exchange(of_run[w], before);
     });
     par::for_n(runs - 1, threads_, 1, [&](int64_t r) {
-      const LargeArray<uint64_t>& before = used[at(r + 1)];
-      std::erase_if(own[at(r + 1)], [&](int32_t v) { return before[at(v >> 6)] >> (v & 63) & 1; });
+      const LargeArray<uint64_t>& before = used[r + 1];
+      std::erase_if(own[r + 1], [&](int32_t v) { return before[v >> 6] >> (v & 63) & 1; });
     });
     std::vector<int64_t> start;
     for (const auto& list : own)
@@ -54,10 +54,10 @@ public:
     LargeArray<int32_t> number;
     par::resize_pages(number, at(e.positions), threads_);
     for (int64_t r = 0; r < runs; ++r)
-      par::for_n(static_cast<int64_t>(own[at(r)].size()), threads_, [&](int64_t i) {
-        const int32_t v = own[at(r)][at(i)];
-        number[at(v)] = static_cast<int32_t>(start[at(r)] + i);
-        point[start[at(r)] + i] = e.position[v];
+      par::for_n(static_cast<int64_t>(own[r].size()), threads_, [&](int64_t i) {
+        const int32_t v = own[r][i];
+        number[v] = static_cast<int32_t>(start[r] + i);
+        point[start[r] + i] = e.position[v];
       });
     return number;
   }

@@ -56,8 +56,8 @@ void join(const std::vector<Batch>& batches, int32_t first, Joined& out, int thr
   append(out.wall, s.point - before.point, threads);
   append(out.spoiled, s.spoiled - before.spoiled, threads);
   par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t i) {
-    const Batch& b = batches[at(i)];
-    const Start& to = start[at(i)];
+    const Batch& b = batches[i];
+    const Start& to = start[i];
     const int32_t zero = first + static_cast<int32_t>(to.point) - 1;
     const auto number = [&](int32_t v) { return v >= 0 || v == detail::no_vertex ? v : zero - v; };
     for (size_t k = 0; k < b.tet.size(); ++k)
@@ -89,9 +89,9 @@ void run(int64_t n, int32_t first, Joined& out, int threads, Make make) {
   for (int64_t begin = 0; begin < all; begin += most) {
     batches.resize(at(std::min(most, all - begin)));
     par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t b) {
-      batches[at(b)].clear();
+      batches[b].clear();
       const int64_t first_item = (begin + b) * batch_size;
-      make(first_item, std::min(n, first_item + batch_size), batches[at(b)]);
+      make(first_item, std::min(n, first_item + batch_size), batches[b]);
     });
     join(batches, first, out, threads);
   }
@@ -102,7 +102,7 @@ template <class Like>
 LargeArray<int64_t> firsts(const LargeArray<Link>& links, int threads, Like like) {
   const auto n = static_cast<int64_t>(links.size());
   LargeArray<int64_t> first =
-      par::select<int64_t>(n, threads, [&](int64_t i) { return i == 0 || !like(links[at(i - 1)], links[at(i)]); });
+      par::select<int64_t>(n, threads, [&](int64_t i) { return i == 0 || !like(links[i - 1], links[i]); });
   first.push_back(n);
   return first;
 }
@@ -112,14 +112,14 @@ LargeArray<int64_t> sort_by_edge(LargeArray<Link>& links, int32_t vertices, int 
   const auto n = static_cast<int64_t>(links.size());
   LargeArray<Link> sorted;
   par::place_by(
-      n, vertices, threads, [&](int64_t i) { return links[at(i)].inside; },
+      n, vertices, threads, [&](int64_t i) { return links[i].inside; },
       [&](int64_t slots) { par::resize_pages(sorted, at(slots), threads); },
-      [&](int64_t slot, int64_t i) { sorted[at(slot)] = links[at(i)]; });
+      [&](int64_t slot, int64_t i) { sorted[slot] = links[i]; });
   links.swap(sorted);
   const LargeArray<int64_t> run =
       firsts(links, threads, [](const Link& a, const Link& b) { return a.inside == b.inside; });
   par::for_n(static_cast<int64_t>(run.size()) - 1, threads,
-             [&](int64_t r) { std::sort(links.begin() + run[at(r)], links.begin() + run[at(r + 1)]); });
+             [&](int64_t r) { std::sort(links.begin() + run[r], links.begin() + run[r + 1]); });
   return firsts(links, threads, [](const Link& a, const Link& b) { return a.same_edge(b); });
 }
 
@@ -152,7 +152,7 @@ Joined make_all(const ComplexView& view, int64_t n, Leaf leaf, int threads, Stay
   run<check>(static_cast<int64_t>(first.size()) - 1, view.vertices(), out, threads,
              [&](int64_t begin, int64_t end, auto& to) {
                for (int64_t e = begin; e < end; ++e)
-                 detail::make_ring(vertices, &out.link[at(first[at(e)])], out.link.data() + first[at(e + 1)], to);
+                 detail::make_ring(vertices, &out.link[first[e]], out.link.data() + first[e + 1], to);
              });
   return out;
 }
@@ -165,7 +165,7 @@ LargeArray<int32_t> spoiled_of(const ComplexView& view, const LargeArray<int32_t
     return v >= view.grid_vertices || std::binary_search(ends->begin(), ends->end(), v);
   };
   Joined all = make_all<true>(
-      view, static_cast<int64_t>(leaves.size()), [&](int64_t i) { return leaves[at(i)]; }, threads,
+      view, static_cast<int64_t>(leaves.size()), [&](int64_t i) { return leaves[i]; }, threads,
       [&](const Link& l) { return !ends || (is_end(l.inside) && is_end(l.outside)); });
   par::sort_unique(all.spoiled, threads);
   return std::move(all.spoiled);
@@ -181,8 +181,7 @@ Elements make_elements(const ComplexView& view, int threads) {
   const int64_t own = view.vertices(), points = own + static_cast<int64_t>(more.size());
   par::reserve_pages(out.position, at(points), par::a_few(at(points)), threads);
   out.position.resize(at(points));
-  par::for_n(points, threads,
-             [&](int64_t i) { out.position[at(i)] = i < own ? view.position[i] : more[at(i - own)]; });
+  par::for_n(points, threads, [&](int64_t i) { out.position[i] = i < own ? view.position[i] : more[i - own]; });
   return std::move(out);
 }
 

@@ -69,7 +69,7 @@ IndexBox surface_bounds(const BlockGrid& grid, const uint64_t* inside_words, int
     box.lower.z = lowest_bit(columns);
     for (int z = 0; z < 8; ++z)
       box.upper.z = columns >> z & 1 ? z : box.upper.z;
-    const Vec3i corner = grid.corner[static_cast<size_t>(b)];
+    const Vec3i corner = grid.corner[b];
     return IndexBox{corner + box.lower, corner + box.upper};
   };
   IndexBox box = par::reduce(static_cast<int64_t>(grid.corner.size()), threads, IndexBox{}, of_block, both);
@@ -168,7 +168,7 @@ bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
   auto end = static_cast<int32_t>(exact ? std::floor(high + 0.5) : std::ceil(high));
   for (int side = 0; side < 2; ++side) {
     const double wall = side ? high : low;
-    Cut& cut = cut_[static_cast<size_t>(a)][static_cast<size_t>(side)];
+    Cut& cut = cut_[a][side];
     cut.cuts = exact && wall > first && wall < last;
     cut.plane = static_cast<int32_t>(std::floor(wall));
     cut.share = wall - cut.plane;
@@ -202,21 +202,21 @@ bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
   }
   cells[a] = end - begin;
   base_[a] = begin;
-  std::vector<double>& x = axis_[static_cast<size_t>(a)];
+  std::vector<double>& x = axis_[a];
   x.resize(static_cast<size_t>(cells[a]) + 1);
   for (int32_t i = 0; i <= cells[a]; ++i)
-    x[static_cast<size_t>(i)] = origin + h * (begin + i);
+    x[i] = origin + h * (begin + i);
   if (!exact || !whole)
     return whole;
   if (begin < first) {
     const double anchor = origin + h * first, step = (anchor - lower) / (first - begin);
     for (int32_t i = begin; i < first; ++i)
-      x[static_cast<size_t>(i - begin)] = anchor - step * (first - i);
+      x[i - begin] = anchor - step * (first - i);
   }
   if (end > last) {
     const double anchor = origin + h * last, step = (upper - anchor) / (end - last);
     for (int32_t i = last + 1; i <= end; ++i)
-      x[static_cast<size_t>(i - begin)] = anchor + step * (i - last);
+      x[i - begin] = anchor + step * (i - last);
   }
   x.front() = lower; // to the last bit
   x.back() = upper;

@@ -63,9 +63,9 @@ private:
   // isosurface; below this tolerance all surface cells that are not plane stay fine.
   static constexpr double most_cut = 0.0055, least_tolerance = 0.02;
 
-  Nodes& refined(int level) { return refined_[static_cast<size_t>(level)]; }
+  Nodes& refined(int level) { return refined_[level]; }
   NodeSet set(int level) { return {refined(level).data(), refined(level).n}; }
-  SurfaceNodes surface_nodes(int level) const { return level_[static_cast<size_t>(level)].view; }
+  SurfaceNodes surface_nodes(int level) const { return level_[level].view; }
 
   void collect_surface_nodes() {
     Level fine;

@@ -19,14 +19,14 @@ void join_touching(std::vector<Component>& part, const std::vector<std::array<in
   for (bool changed = true; changed;) {
     changed = false;
     for (const auto& [in, out] : next_to)
-      if (part[at(in)].region == part[at(out)].region && first[at(in)] != first[at(out)]) {
-        first[at(in)] = first[at(out)] = std::min(first[at(in)], first[at(out)]);
+      if (part[in].region == part[out].region && first[in] != first[out]) {
+        first[in] = first[out] = std::min(first[in], first[out]);
         changed = true;
       }
   }
   for (size_t i = 0; i < part.size(); ++i)
     if (at(first[i]) != i && part[i].region != outside) {
-      part[at(first[i])].volume += std::exchange(part[i].volume, 0);
+      part[first[i]].volume += std::exchange(part[i].volume, 0);
       part[i].joined = true;
     }
 }
@@ -37,10 +37,10 @@ void assign_regions(std::vector<Component>& part, const std::vector<detail::Part
                     const RegionOptions& options) {
   std::vector<std::array<int32_t, 2>> next_to; // (inside part, outside part)
   for (const detail::PartSurface& s : surfaces) {
-    part[at(s.behind)].volume += s.volume;
+    part[s.behind].volume += s.volume;
     if (s.behind == s.front)
       continue;
-    part[at(s.front)].volume -= s.volume;
+    part[s.front].volume -= s.volume;
     next_to.push_back({s.behind, s.front});
   }
   for (Component& c : part) {
@@ -59,8 +59,8 @@ void assign_regions(std::vector<Component>& part, const std::vector<detail::Part
   for (bool changed = true; changed;) {
     changed = false;
     for (const auto& [in, out] : next_to) {
-      Component &a = part[at(in)], &b = part[at(out)];
-      if (!dropped[at(in)])
+      Component &a = part[in], &b = part[out];
+      if (!dropped[in])
         continue;
       if (a.region == outside && b.region == cavity)
         b.region = outside, changed = true;

@@ -57,7 +57,7 @@ struct JoinLeaves {
       return;
     const CellTopology t = c.topology(leaf);
     for (int f = 0; f < 6; ++f)
-      if (const Diagonal d = t.diagonal[static_cast<size_t>(f)]; d != Diagonal::none) {
+      if (const Diagonal d = t.diagonal[f]; d != Diagonal::none) {
         const auto [a, b] = diagonal_corners(f, d);
         join(vertex(leaf, a), vertex(leaf, b));
       }

@@ -49,7 +49,7 @@ struct DescribeNear {
 /// Corner i % 4 of near element i / 4.
 struct CornerCandidate {
   const NearElement* element;
-  HD int64_t operator()(int64_t i) const { return element[i >> 2].corner[static_cast<size_t>(i & 3)]; }
+  HD int64_t operator()(int64_t i) const { return element[i >> 2].corner[i & 3]; }
 };
 /// In the order of the candidates, then of the elements.
 struct PlaceStars {

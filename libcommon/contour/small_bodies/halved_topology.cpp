@@ -27,7 +27,7 @@ struct Halves {
   Corners child(int octant) const {
     Corners v;
     for (int c = 0; c < 8; ++c)
-      v[static_cast<size_t>(c)] = value[static_cast<size_t>(at(octant, c))];
+      v[c] = value[at(octant, c)];
     return v;
   }
 };
@@ -44,14 +44,14 @@ template <int N, class Point>
 void join_cell(detail::SmallSets<N>& sets, const Corners& v, Point&& point) {
   const std::array<int, 8> label = joined_corners(cell_topology(v.data()));
   for (int c = 0; c < 8; ++c)
-    sets.join(point(c), point(label[static_cast<size_t>(c)]));
+    sets.join(point(c), point(label[c]));
 }
 
 /// The same on its face f.
 template <int N, class Point>
 void join_face(detail::SmallSets<N>& sets, const Corners& v, int f, Point&& point) {
   const auto corner = [&](int i) { return face_corner_of(f, i & 3); };
-  const auto at = [&](int i) { return v[static_cast<size_t>(corner(i))]; };
+  const auto at = [&](int i) { return v[corner(i)]; };
   for (int i = 0; i < 4; ++i)
     if ((at(i) > 0) == (at(i + 1) > 0))
       sets.join(point(corner(i)), point(corner(i + 1)));
@@ -63,11 +63,11 @@ void join_face(detail::SmallSets<N>& sets, const Corners& v, int f, Point&& poin
 
 /// Parts of what is inside on its face f.
 int face_parts(const Corners& v, int f) {
-  const auto at = [&](int i) { return v[static_cast<size_t>(face_corner_of(f, i))]; };
+  const auto at = [&](int i) { return v[face_corner_of(f, i)]; };
   if (!(at(0) > 0 || at(1) > 0 || at(2) > 0 || at(3) > 0))
     return 0;
   const Diagonal d = face_diagonal(at(0), at(1), at(2), at(3));
-  return d != Diagonal::none && !(v[static_cast<size_t>(diagonal_corners(f, d)[0])] > 0) ? 2 : 1;
+  return d != Diagonal::none && !(v[diagonal_corners(f, d)[0]] > 0) ? 2 : 1;
 }
 
 /// Of the points that take part: whether the cell's sets and the halves' tell the same corners from each other, and
@@ -79,13 +79,13 @@ bool same_parts(const detail::SmallSets<8>& whole, const detail::SmallSets<27>& 
     if (!takes(Halves::at(c, c)))
       continue;
     const int part = halves.find(Halves::at(c, c));
-    has_corner[static_cast<size_t>(part)] = true;
+    has_corner[part] = true;
     for (int d = 0; d < c; ++d)
       if (takes(Halves::at(d, d)) && (whole.find(c) == whole.find(d)) != (part == halves.find(Halves::at(d, d))))
         return false;
   }
   for (int p = 0; p < 27; ++p)
-    if (takes(p) && !has_corner[static_cast<size_t>(halves.find(p))])
+    if (takes(p) && !has_corner[halves.find(p)])
       return false;
   return true;
 }
@@ -97,8 +97,8 @@ int inside_euler(const Corners& v) {
                            within = joined_corners(t);
   int chi = 0;
   for (int c = 0; c < 8; ++c) {
-    const bool part = within[static_cast<size_t>(c)] == c;
-    chi += v[static_cast<size_t>(c)] > 0 ? part : part - (on_boundary[static_cast<size_t>(c)] == c);
+    const bool part = within[c] == c;
+    chi += v[c] > 0 ? part : part - (on_boundary[c] == c);
   }
   return chi;
 }
@@ -106,7 +106,7 @@ int inside_euler(const Corners& v) {
 /// The same through the halves: of these, less that of what two share, and so on.
 int inside_euler(const Halves& halves) {
   constexpr int middle = 13, steps[3] = {1, 3, 9};
-  const auto inside = [&](int p) { return halves.value[static_cast<size_t>(p)] > 0; };
+  const auto inside = [&](int p) { return halves.value[p] > 0; };
   int chi = -int(inside(middle));
   for (int o = 0; o < 8; ++o)
     chi += inside_euler(halves.child(o));
@@ -173,21 +173,20 @@ std::vector<Vec3i> cells_of_other_topology(const BlockGrid& grid, const BlockGri
   const auto is_other = [&](Vec3i p) {
     Corners v;
     for (int c = 0; c < 8; ++c)
-      v[static_cast<size_t>(c)] = over_isovalue(value_at(grid, index, p + corner_step(c)), iso);
+      v[c] = over_isovalue(value_at(grid, index, p + corner_step(c)), iso);
     if (const uint32_t inside = inside_of(v); inside == 0 || inside == 0xFF)
       return false;
     Halves halves;
     for (int q = 0; q < 27; ++q)
-      halves.value[static_cast<size_t>(q)] =
-          over_isovalue(value_at(half, half_index, 2 * p + Halves::step(q)), iso);
+      halves.value[q] = over_isovalue(value_at(half, half_index, 2 * p + Halves::step(q)), iso);
     return !same_topology(v, halves);
   };
   // The lowest corner of a cell that the surface crosses is active (I2): its block is one of these.
   std::vector<std::vector<Vec3i>> of_block(grid.corner.size());
   par::for_n(static_cast<int64_t>(of_block.size()), threads, 4, [&](int64_t b) {
     for (int s = 0; s < 512; ++s)
-      if (const Vec3i p = grid.corner[static_cast<size_t>(b)] + within_block(s); is_other(p))
-        of_block[static_cast<size_t>(b)].push_back(p);
+      if (const Vec3i p = grid.corner[b] + within_block(s); is_other(p))
+        of_block[b].push_back(p);
   });
   std::vector<Vec3i> all;
   for (const std::vector<Vec3i>& cells : of_block)

@@ -34,10 +34,10 @@ struct SplitCell {
   HD explicit SplitCell(const CellTopology& t) : topology(t) {
     for (int f = 0; f < 6; ++f) {
       const int c[4] = {face_corner_of(f, 0), face_corner_of(f, 1), face_corner_of(f, 2), face_corner_of(f, 3)};
-      if (t.diagonal[static_cast<size_t>(f)] == Diagonal::none) {
+      if (t.diagonal[f] == Diagonal::none) {
         add({f, 4, {c[0], c[1], c[2], c[3]}, 0});
       } else {
-        const int s = t.diagonal[static_cast<size_t>(f)] == Diagonal::even ? 0 : 1;
+        const int s = t.diagonal[f] == Diagonal::even ? 0 : 1;
         add({f, 3, {c[s], c[s + 1], c[(s + 2) % 4], -1}, 0});
         add({f, 3, {c[(s + 2) % 4], c[(s + 3) % 4], c[s], -1}, 0});
       }

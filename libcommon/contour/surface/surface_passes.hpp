@@ -41,7 +41,7 @@ SurfaceLists<Launcher> find_surface(Launcher& m, const LatticeView& l, const Gri
     m.download(failed, block.n + 1, before.data());
     m.download(culprit, block.n, key.data());
     const auto first = std::find(before.begin(), before.end(), 1) - before.begin() - 1;
-    const Vec3i cell = morton_point(key[static_cast<size_t>(first)]), p = l.base + cell;
+    const Vec3i cell = morton_point(key[first]), p = l.base + cell;
     for (int a = 0; a < 3; ++a) // spacings beyond the grid
       if (cell[a] < l.grid_first[a] || cell[a] >= l.grid_last[a])
         refuse_surface_at_wall();

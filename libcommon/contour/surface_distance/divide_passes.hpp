@@ -130,7 +130,7 @@ public:
     for (FarPatch& p : patches_) {
       const auto known = static_cast<int32_t>(p.vertex.size());
       const auto first_added = static_cast<int32_t>(r_.e.positions + static_cast<int64_t>(added.size()));
-      number_vertices(p, [&](int32_t v) { return v < known ? p.vertex[at(v)] : first_added + v - known; });
+      number_vertices(p, [&](int32_t v) { return v < known ? p.vertex[v] : first_added + v - known; });
       for (FarPatch::Element& e : p.element)
         e.at = e.at < 0 ? tets++ : e.at;
       for (FarPatch::Triangle& t : p.triangle)
@@ -187,19 +187,19 @@ private:
       const int32_t first = sets.first(v);
       if (first == v)
         patches_.emplace_back();
-      patch[at(v)] = first == v ? patches_.size() - 1 : patch[at(first)];
-      FarPatch& p = patches_[patch[at(v)]];
-      number[at(v)] = static_cast<int32_t>(p.vertex.size());
-      p.vertex.push_back(all.vertex[at(v)]);
-      p.position.push_back(all.position[at(v)]);
-      p.is_free.push_back(all.is_free[at(v)]);
+      patch[v] = first == v ? patches_.size() - 1 : patch[first];
+      FarPatch& p = patches_[patch[v]];
+      number[v] = static_cast<int32_t>(p.vertex.size());
+      p.vertex.push_back(all.vertex[v]);
+      p.position.push_back(all.position[v]);
+      p.is_free.push_back(all.is_free[v]);
     }
     for (const FarPatch::Element& e : all.element)
-      patches_[patch[at(e.tet[0])]].element.push_back(e);
+      patches_[patch[e.tet[0]]].element.push_back(e);
     for (const FarPatch::Triangle& t : all.triangle)
-      patches_[patch[at(t.tri[0])]].triangle.push_back(t);
+      patches_[patch[t.tri[0]]].triangle.push_back(t);
     for (FarPatch& p : patches_)
-      number_vertices(p, [&](int32_t v) { return number[at(v)]; });
+      number_vertices(p, [&](int32_t v) { return number[v]; });
   }
   template <class T, class Take>
   std::vector<T> taken(const par::List<Launcher, int32_t>& which, Take take) {

@@ -101,7 +101,7 @@ private:
   }
   std::array<size_t, 3> longest_first(size_t t) const {
     const Tri& v = p_.triangle[t].tri;
-    const auto length2 = [&](size_t i) { return norm2(p_.position[at(v[i])] - p_.position[at(v[(i + 1) % 3])]); };
+    const auto length2 = [&](size_t i) { return norm2(p_.position[v[i]] - p_.position[v[(i + 1) % 3]]); };
     std::array<size_t, 3> order{0, 1, 2};
     std::stable_sort(order.begin(), order.end(), [&](size_t i, size_t j) { return length2(i) > length2(j); });
     return order;
@@ -112,7 +112,7 @@ private:
   bool divide(const FarPatch::Edge& edge, int depth) {
     constexpr int most_depth = 3;
     const size_t moves = moved_.size();
-    const Vec3d a = p_.position[at(edge.end[0])], b = p_.position[at(edge.end[1])];
+    const Vec3d a = p_.position[edge.end[0]], b = p_.position[edge.end[1]];
     const int32_t m = p_.divide(edge, 0.5 * (a + b));
     bool done = false;
     if (find_place(m, edge)) {
@@ -146,7 +146,7 @@ private:
   bool find_place(int32_t m, const FarPatch::Edge& edge) {
     constexpr double short_of = 0.4; // in spacings, of the foot
     constexpr int most_tried = 6;    // what goes well does within three
-    const Vec3d x = p_.position[at(m)];
+    const Vec3d x = p_.position[m];
     Vec3d foot = x;
     if (!find_foot(foot, edge))
       return false;
@@ -176,7 +176,7 @@ private:
     Vec3d along, normal;
     double distance;
     for (const int32_t v : edge.end)
-      if (surface_.probe(p_.position[at(v)], distance, normal))
+      if (surface_.probe(p_.position[v], distance, normal))
         along += normal;
     const double length = norm(along);
     for (double way = step; length > 0 && way <= reach; way += step)
@@ -206,9 +206,9 @@ private:
       for (const int32_t v : around)
         any |= make_better(v, more * floor, [](Vec3d) { return true; });
       any |= make_better(m, floor, [&](Vec3d y) { return is_near(y); });
-      worst = worst_at(m, p_.position[at(m)]);
+      worst = worst_at(m, p_.position[m]);
       for (const int32_t v : around)
-        worst = std::min(worst, worst_at(v, p_.position[at(v)]));
+        worst = std::min(worst, worst_at(v, p_.position[v]));
       if (worst >= floor)
         return true;
       if (!any || (round > 0 && worst < before + least_gain * floor))
@@ -222,7 +222,7 @@ private:
     const auto collect = [&](int32_t c) {
       for (const size_t t : p_.elements_at(c))
         for (const int32_t v : p_.element[t].tet)
-          if (p_.is_free[at(v)])
+          if (p_.is_free[v])
             all.push_back(v);
     };
     const auto unique = [&] {
@@ -240,7 +240,7 @@ private:
   template <class May>
   bool make_better(int32_t v, float enough, May may) {
     constexpr double first = 0.8, last = 0.05; // steps, in spacings
-    const Vec3d x = p_.position[at(v)];
+    const Vec3d x = p_.position[v];
     Vec3d place = x;
     std::vector<size_t> star = p_.elements_at(v);
     float best = worst_of(star, v, x);
@@ -265,7 +265,7 @@ private:
 
   /// Along the isosurface's normal, where the triangles at m cost least.
   void choose_place(int32_t m) {
-    const Vec3d x = p_.position[at(m)];
+    const Vec3d x = p_.position[m];
     Vec3d foot = x, best = x;
     double least = cost_at(m);
     if (surface_.project(foot, reach * h_))
@@ -273,13 +273,13 @@ private:
         const Vec3d y = x + way * (foot - x);
         if (!is_near(y) || worst_at(m, y) < start_.floor)
           continue;
-        p_.position[at(m)] = y;
+        p_.position[m] = y;
         if (const double c = cost_at(m); c < least) {
           least = c;
           best = y;
         }
       }
-    p_.position[at(m)] = best;
+    p_.position[m] = best;
     cost_at(m);
   }
   /// Measures them, too.
@@ -304,12 +304,12 @@ private:
   }
 
   void move(int32_t v, Vec3d y) {
-    moved_.push_back({v, p_.position[at(v)]});
-    p_.position[at(v)] = y;
+    moved_.push_back({v, p_.position[v]});
+    p_.position[v] = y;
   }
   void move_back(size_t moves) {
     for (; moved_.size() > moves; moved_.pop_back())
-      p_.position[at(moved_.back().first)] = moved_.back().second;
+      p_.position[moved_.back().first] = moved_.back().second;
   }
 
   float worst_at(int32_t v, Vec3d y) {
@@ -319,7 +319,7 @@ private:
   /// Of elements at vertex v, with it at y; some value ≤ above as soon as one is no better than that, and that one
   /// is asked first from then on.
   float worst_of(std::vector<size_t>& star, int32_t v, Vec3d y, float above = -2) {
-    std::swap(p_.position[at(v)], y);
+    std::swap(p_.position[v], y);
     float worst = 1;
     for (size_t i = 0; i < star.size() && worst > above; ++i) {
       const FarPatch::Element& e = p_.element[star[i]];
@@ -327,14 +327,14 @@ private:
       if (worst <= above)
         std::swap(star[i], star[0]);
     }
-    std::swap(p_.position[at(v)], y);
+    std::swap(p_.position[v], y);
     return worst;
   }
   /// Of one that is not positive: less the more it is inverted, so that there is a way back.
   float quality_of(const Tet& tet, float weight) const {
     std::array<Vec3d, 4> x;
     for (size_t i = 0; i < 4; ++i)
-      x[i] = p_.position[at(tet[i])];
+      x[i] = p_.position[tet[i]];
     const double volume6 = six_volume(x[0], x[1], x[2], x[3]);
     if (volume6 > 0) {
       const float q = tet_quality(x[0], x[1], x[2], x[3], shape_);
@@ -350,7 +350,7 @@ private:
   float off_of(const Tri& tri) const {
     Vec3d centroid;
     for (const int32_t v : tri)
-      centroid += p_.position[at(v)];
+      centroid += p_.position[v];
     return Off::of(surface_, centroid / 3.);
   }
 

@@ -42,13 +42,13 @@ public:
     triangles_.assign(position.size(), {});
     for (size_t t = 0; t < element.size(); ++t)
       for (const int32_t v : element[t].tet)
-        elements_[at(v)].push_back(t);
+        elements_[v].push_back(t);
     for (size_t t = 0; t < triangle.size(); ++t)
       for (const int32_t v : triangle[t].tri)
-        triangles_[at(v)].push_back(t);
+        triangles_[v].push_back(t);
   }
-  const std::vector<size_t>& elements_at(int32_t v) const { return elements_[at(v)]; }
-  const std::vector<size_t>& triangles_at(int32_t v) const { return triangles_[at(v)]; }
+  const std::vector<size_t>& elements_at(int32_t v) const { return elements_[v]; }
+  const std::vector<size_t>& triangles_at(int32_t v) const { return triangles_[v]; }
 
   /// Of surface triangle t, from corner i to the next.
   Edge edge(size_t t, size_t i) const {
@@ -122,21 +122,21 @@ private:
   static void halve(Cell& cell, Cell& half, const Edge& e, int32_t middle, Stars& stars, size_t t, size_t t_half) {
     std::replace(cell.begin(), cell.end(), e.end[1], middle);
     std::replace(half.begin(), half.end(), e.end[0], middle);
-    std::erase(stars[at(e.end[1])], t);
-    stars[at(middle)].push_back(t);
+    std::erase(stars[e.end[1]], t);
+    stars[middle].push_back(t);
     for (const int32_t v : half)
-      stars[at(v)].push_back(t_half);
+      stars[v].push_back(t_half);
   }
   template <class Cell>
   static void unite(Cell& cell, const Edge& e, Stars& stars, size_t t) {
     std::replace(cell.begin(), cell.end(), static_cast<int32_t>(stars.size()) - 1, e.end[1]);
-    stars[at(e.end[1])].push_back(t);
+    stars[e.end[1]].push_back(t);
   }
   template <class Cells, class Corners>
   static void drop_last(size_t n, Cells& cells, Stars& stars, Corners corners) {
     for (; n > 0; --n) {
       for (const int32_t v : corners(cells.back()))
-        std::erase(stars[at(v)], cells.size() - 1);
+        std::erase(stars[v], cells.size() - 1);
       cells.pop_back();
     }
   }

@@ -93,7 +93,7 @@ struct NearTriangles {
 struct TriangleCandidate {
   const Tri* tri;
   const int32_t *near, *number;
-  HD int64_t operator()(int64_t i) const { return number[tri[near[i / 3]][static_cast<size_t>(i % 3)]]; }
+  HD int64_t operator()(int64_t i) const { return number[tri[near[i / 3]][i % 3]]; }
 };
 /// In the order of the candidates, then of the triangles.
 struct PlaceTriangleStars {

@@ -151,7 +151,7 @@ void NodeSearch::need_neighbors(NodeState& s, RowHints& hint) const {
     if ((row.x && !(open >> (row.x > 0) & 1)) || (row.y && !(open >> (2 + (row.y > 0)) & 1)))
       continue;
     const Vec3i first = s.corner + node_blocks * direction(n);
-    auto at = seek(nodes_.node.begin(), nodes_.node.end(), hint[static_cast<size_t>(n / 3)], first,
+    auto at = seek(nodes_.node.begin(), nodes_.node.end(), hint[n / 3], first,
                    [](const Node& a, Vec3i c) { return a.corner < c; });
     for (int z = -1; z <= 1; ++z) {
       const Vec3i corner = s.corner + node_blocks * direction(n + z + 1);

@@ -43,8 +43,7 @@ bool sides_around(const SlabState& before, const SlabState& slab, const SlabStat
   bool mixed = false;
   for (int n = 0; n < 27; n += 3) {
     const std::vector<NodeState>& nodes = slabs[n / 9]->node;
-    auto at = seek(nodes.begin(), nodes.end(), hint[static_cast<size_t>(n / 3)],
-                   s.corner + node_blocks * direction(n), before_corner);
+    auto at = seek(nodes.begin(), nodes.end(), hint[n / 3], s.corner + node_blocks * direction(n), before_corner);
     for (int z = n; z < n + 3; ++z) {
       below[z] = &outside->below;
       above[z] = &outside->above;

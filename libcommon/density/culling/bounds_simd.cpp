@@ -116,7 +116,7 @@ HWY_INLINE void bound_boxes(const LocalClusters& node, const NearUnits& u, const
   constexpr int boxes = sides * sides * sides;
   const V k = hn::Set(f, decay);
   for (int32_t n = 0; n < u.n; ++n) {
-    const int32_t begin = u.begin[static_cast<size_t>(n)],
+    const int32_t begin = u.begin[n],
                   clusters = u.begin[static_cast<size_t>(n) + 1] - begin, *const cluster = u.cluster.data() + begin;
     if (scaled) {
       for (int b = 0; b < boxes; ++b)

@@ -45,7 +45,7 @@ void halve(const Field& f, const GridFrame& frame, std::span<const int32_t> clus
   int32_t near[8][at_once];
   size_t found[8] = {};
   for (const int32_t c : clusters) {
-    const Box& box = f.box[static_cast<size_t>(c)];
+    const Box& box = f.box[c];
     double d2[3][2];
     for (int a = 0; a < 3; ++a)
       for (const bool second : {false, true}) {
@@ -55,7 +55,7 @@ void halve(const Field& f, const GridFrame& frame, std::span<const int32_t> clus
       }
     for (size_t i = 0; i < 8; ++i) {
       near[i][found[i]] = c;
-      found[i] += d2[0][i >> 2] + d2[1][i >> 1 & 1] + d2[2][i & 1] < f.cutoff2[static_cast<size_t>(c)];
+      found[i] += d2[0][i >> 2] + d2[1][i >> 1 & 1] + d2[2][i & 1] < f.cutoff2[c];
     }
   }
   for (size_t i = 0; i < 8; ++i)
@@ -80,7 +80,7 @@ NodeList halves(const Field& f, const GridFrame& frame, const NodeList& parents,
   }
   const auto n = static_cast<int64_t>(pieces.size());
   par::for_n(n, threads, 1, [&](int64_t i) {
-    Piece& p = pieces[static_cast<size_t>(i)];
+    Piece& p = pieces[i];
     const Node& parent = parents.node[p.parent];
     halve(f, frame, parents.clusters(parent).subspan(p.first, p.count), parent.corner, blocks, p.lists);
   });
@@ -102,7 +102,7 @@ NodeList halves(const Field& f, const GridFrame& frame, const NodeList& parents,
   }
   children.cluster.resize(static_cast<size_t>(total));
   par::for_n(n, threads, 16, [&](int64_t i) {
-    Piece& p = pieces[static_cast<size_t>(i)];
+    Piece& p = pieces[i];
     for (size_t c = 0; c < 8; ++c) {
       std::copy(p.lists[c].begin(), p.lists[c].end(), children.cluster.data() + p.to[c]);
       p.lists[c] = {};
@@ -121,13 +121,13 @@ double sure_bytes(const Field& f, const GridFrame& frame, const NodeList& nodes,
     const Box cube = points_box(frame, n.corner, blocks);
     int64_t everywhere = 0;
     for (const int32_t c : nodes.clusters(n)) {
-      const Box& box = f.box[static_cast<size_t>(c)];
+      const Box& box = f.box[c];
       double farthest2 = 0;
       for (int a = 0; a < 3; ++a) {
         const double d = std::max({cube.hi[a] - box.hi[a], box.lo[a] - cube.lo[a], 0.0});
         farthest2 += d * d;
       }
-      everywhere += farthest2 < f.cutoff2[static_cast<size_t>(c)];
+      everywhere += farthest2 < f.cutoff2[c];
     }
     if (everywhere > 0)
       bytes += double(sizeof(Node)) + double(sizeof(int32_t)) * double(everywhere);
@@ -189,7 +189,7 @@ NodeList nodes_by_tree(const Field& f, const GridFrame& frame, bool every, int t
   descend(descend, first_block(frame), blocks_across(frame));
   std::sort(asked.begin(), asked.end(), [](const Asked& a, const Asked& b) { return a.corner < b.corner; });
   par::for_n(static_cast<int64_t>(asked.size()), threads, 16, [&](int64_t i) {
-    Asked& a = asked[static_cast<size_t>(i)];
+    Asked& a = asked[i];
     a.near = tree.near(points_box(frame, a.corner, node_blocks));
   });
   NodeList nodes;

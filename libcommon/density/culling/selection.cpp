@@ -21,7 +21,7 @@ Arithmetic arithmetic_for(const Field& f, double tolerance) {
   // The smallest term of a group above the innermost level that can matter, as cutoffs see it.
   double least = 0;
   for (size_t c = 0; c < f.group.size(); ++c) {
-    const double p = f.level[0].exponent[static_cast<size_t>(f.group[c])];
+    const double p = f.level[0].exponent[f.group[c]];
     least = std::min(least, p * (f.ln_peak[c] - f.decay * f.cutoff2[c]));
   }
   if (f.ln_highest > 700 - margin)
@@ -96,8 +96,7 @@ void Selection::bound_octants_of_part(int alone) {
   for (int o = 0; o < 8; ++o)
     octant_[o] = local(octant_middle(o), 3.5 * h_ * Vec3d{1, 1, 1});
   if (alone >= 0)
-    return bound_units(local_, near_, octant_[alone], decay, scaled_,
-                       &octant_upper_[static_cast<size_t>(alone * stride_)]);
+    return bound_units(local_, near_, octant_[alone], decay, scaled_, &octant_upper_[alone * stride_]);
   bound_octants(local_, near_, octant_, decay, scaled_, octant_upper_.data(), stride_);
   octants_bounded_ = true;
 }
@@ -150,7 +149,7 @@ bool Selection::take_atoms() {
       u.folded ? static_cast<float>(budget_.roots) / (rough_root_error_ * static_cast<float>(n)) : -1;
   constexpr float roots[2] = {0, 2}; // looked up: a branch would be guessed wrong too often
   for (size_t i = 0; i < static_cast<size_t>(n); ++i)
-    u.root[i] = roots[effect_[static_cast<size_t>(kept_[i])] > rough];
+    u.root[i] = roots[effect_[kept_[i]] > rough];
   const auto take = [&](bool absolute) {
     return take_units(
         local_, near_, kept_.data(), n, box, static_cast<float>(log2e * f_.decay), absolute ? log2_upper_ : nullptr,
@@ -172,7 +171,7 @@ bool Selection::take_atoms() {
     }
   }
   added += 0.5 * blurred_ * static_cast<double>(u.dropped);
-  atoms = u.begin[static_cast<size_t>(n)];
+  atoms = u.begin[n];
   return holds;
 }
 
@@ -205,7 +204,7 @@ void Selection::take_octant(int octant, bool classify) {
   side = Side::mixed;
   arithmetic = least_;
   box = octant_[octant];
-  log2_upper_ = &octant_upper_[static_cast<size_t>(octant * stride_)];
+  log2_upper_ = &octant_upper_[octant * stride_];
   find_effects();
   if (classify && surely_outside()) {
     side = Side::outside;

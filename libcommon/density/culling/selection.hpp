@@ -59,7 +59,7 @@ public:
   /// the sum of the one around it, in the order in which OpenGroups closes them.
   std::vector<double> group_shift;
   LocalBox box; ///< of the block
-  int64_t group_of(int32_t u) const { return near_.group[static_cast<size_t>(kept_[static_cast<size_t>(u)])]; }
+  int64_t group_of(int32_t u) const { return near_.group[kept_[u]]; }
 
 private:
   static constexpr double single = 1e-3;         ///< more than single precision can do to a bound, relative

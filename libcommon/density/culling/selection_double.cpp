@@ -25,7 +25,7 @@ bool Selection::place_exactly(Vec3d middle) {
     double log2_term;
   };
   const auto placed = [&](int32_t slot) {
-    const auto cluster = static_cast<size_t>(local_.cluster[static_cast<size_t>(slot / 16)]);
+    const auto cluster = static_cast<size_t>(local_.cluster[slot / 16]);
     const auto a = static_cast<size_t>(f_.begin[cluster] + slot % 16);
     const Vec3d at{f_.x[a] - middle.x, f_.y[a] - middle.y, f_.z[a] - middle.z};
     return Placed{at, log2e * (f_.peak[a] - f_.decay * norm2(at))};
@@ -34,7 +34,7 @@ bool Selection::place_exactly(Vec3d middle) {
   const auto most = [](Vec3d slope) { return 3.5 * (std::abs(slope.x) + std::abs(slope.y) + std::abs(slope.z)); };
   double widest = 0, highest = 0; // logarithms of factors, and of what multiplies a power
   for (size_t u = 0; u < n; ++u) {
-    const double p = to.exponent[u] = f_.level[0].exponent[static_cast<size_t>(group_of(static_cast<int32_t>(u)))];
+    const double p = to.exponent[u] = f_.level[0].exponent[group_of(static_cast<int32_t>(u))];
     const auto begin = static_cast<size_t>(to.begin[u]), end = static_cast<size_t>(to.begin[u + 1]);
     const Placed center = placed(from.center_slot[u]);
     to.log2_term[u] = center.log2_term;
@@ -95,7 +95,7 @@ bool Selection::scale_groups(double range) {
       group_shift[k] -= largest;
     for (; l == 1 && first < unit; ++first)
       u.log2_term[first] -= largest / u.exponent[first];
-    const double raised = f_.level[l].exponent[static_cast<size_t>(g)] * largest;
+    const double raised = f_.level[l].exponent[g] * largest;
     open[l + 1].largest = std::max(open[l + 1].largest, raised);
     open[l + 1].closed.push_back(group_shift.size());
     group_shift.push_back(raised);

@@ -18,7 +18,7 @@ void Selection::enter(Vec3d middle, std::span<const int32_t> clusters) {
   for (size_t i = 0; i < n; ++i) {
     const auto c = static_cast<size_t>(clusters[i]);
     l.group[i] = f_.group[c];
-    l.exponent[i] = static_cast<float>(f_.level[0].exponent[static_cast<size_t>(f_.group[c])]);
+    l.exponent[i] = static_cast<float>(f_.level[0].exponent[f_.group[c]]);
     const Vec3d lo = f_.box[c].lo - middle, hi = f_.box[c].hi - middle;
     l.lo_x[i] = static_cast<float>(lo.x), l.lo_y[i] = static_cast<float>(lo.y),
     l.lo_z[i] = static_cast<float>(lo.z);
@@ -67,7 +67,7 @@ void Selection::keep_only() {
     const int32_t begin = u.begin[n], end = u.begin[n + 1];
     u.begin[units_to] = to;
     for (int32_t c = begin; c < end; ++c)
-      u.cluster[static_cast<size_t>(to++)] = u.cluster[static_cast<size_t>(c)];
+      u.cluster[to++] = u.cluster[c];
     u.group[units_to] = u.group[n];
     u.exponent[units_to++] = u.exponent[n];
   }

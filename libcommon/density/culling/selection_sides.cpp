@@ -39,7 +39,7 @@ void Selection::find_effects_of_levels() {
   const auto close_sum = [&](size_t l, int64_t g) {
     sum_[l].push_back(open[l]);
     if (l + 1 < open.size())
-      open[l + 1] = log_add(open[l + 1], f_.level[l].exponent[static_cast<size_t>(g)] * open[l]);
+      open[l + 1] = log_add(open[l + 1], f_.level[l].exponent[g] * open[l]);
     open[l] = -infinity;
   };
   for (size_t i = 0; i < n; ++i) {
@@ -55,8 +55,8 @@ void Selection::find_effects_of_levels() {
     double e = ln2 * effect_[i];
     int64_t g = near_.group[i];
     for (size_t l = 1; l < f_.level.size(); ++l) {
-      g = f_.level[l - 1].parent[static_cast<size_t>(g)];
-      const double p = f_.level[l].exponent[static_cast<size_t>(g)];
+      g = f_.level[l - 1].parent[g];
+      const double p = f_.level[l].exponent[g];
       e = p <= 1 ? p * e : e + std::log(p) + (p - 1) * sum_[l][run[l]];
     }
     effect_[i] = static_cast<float>(log2e * e);
@@ -74,7 +74,7 @@ double Selection::upper_bound() {
   OpenGroups up(f_);
   const auto close = [&](size_t l, int64_t g) {
     double& to = l + 1 < open.size() ? open[l + 1] : root;
-    to = log_add(to, f_.level[l].exponent[static_cast<size_t>(g)] * open[l]);
+    to = log_add(to, f_.level[l].exponent[g] * open[l]);
     open[l] = -infinity;
   };
   for (size_t i = 0; i < static_cast<size_t>(near_.n); ++i) {
@@ -117,7 +117,7 @@ bool Selection::surely_inside(Vec3d middle, Vec3d half) {
     OpenGroups groups(f_);
     std::vector<Fold> open(groups.levels());
     const auto close = [&](size_t l, int64_t g) {
-      (l + 1 < open.size() ? open[l + 1] : root).add(open[l].raised(f_.level[l].exponent[static_cast<size_t>(g)]));
+      (l + 1 < open.size() ? open[l + 1] : root).add(open[l].raised(f_.level[l].exponent[g]));
       open[l] = Fold{};
     };
     for (int32_t n = 0; n < block_units.n; ++n) {

@@ -57,7 +57,7 @@ int32_t find_centers(const LocalClusters& node, const NearUnits& from, const int
     hn::Store(where, I(), at_lane);
     const size_t first = lane + static_cast<size_t>(at_lane[lane]);
     slot[u] = static_cast<int32_t>(first);
-    exponent[u] = from.exponent[static_cast<size_t>(at)];
+    exponent[u] = from.exponent[at];
     log2_term[u] = hn::GetLane(log2_largest);
     x[u] = atom_x[first];
     y[u] = atom_y[first];

@@ -22,7 +22,7 @@ void split(const Hierarchy& h, LargeArray<int64_t>& order, int64_t begin, int64_
   Vec3d lo{infinity, infinity, infinity}, hi = -lo;
   for (int64_t i = begin; i < end; ++i)
     for (int a = 0; a < 3; ++a) {
-      const double c = h.atom[static_cast<size_t>(order[static_cast<size_t>(i)])].center[a];
+      const double c = h.atom[order[i]].center[a];
       lo[a] = std::min(lo[a], c);
       hi[a] = std::max(hi[a], c);
     }
@@ -36,7 +36,7 @@ void split(const Hierarchy& h, LargeArray<int64_t>& order, int64_t begin, int64_
   }
   const int64_t middle = begin + (end - begin) / 2;
   std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end, [&](int64_t a, int64_t b) {
-    const double ca = h.atom[static_cast<size_t>(a)].center[axis], cb = h.atom[static_cast<size_t>(b)].center[axis];
+    const double ca = h.atom[a].center[axis], cb = h.atom[b].center[axis];
     return ca != cb ? ca < cb : a < b;
   });
   split(h, order, begin, middle, cuts);
@@ -56,7 +56,7 @@ void add_levels(Field& f, const Hierarchy& h) {
       level.parent.resize(level.exponent.size());
       for (size_t p = 0; p < h.level[l - 1].group.size(); ++p)
         for (int64_t c = h.level[l - 1].group[p].begin; c < h.level[l - 1].group[p].end; ++c)
-          level.parent[static_cast<size_t>(c)] = static_cast<int64_t>(p);
+          level.parent[c] = static_cast<int64_t>(p);
     }
     f.level.push_back(std::move(level));
   }
@@ -112,14 +112,14 @@ void add_clusters(Field& f, const Hierarchy& h, int threads) {
   constexpr int64_t grain = 256; // groups
   std::vector<Piece> piece(static_cast<size_t>((groups + grain - 1) / grain));
   par::for_n(static_cast<int64_t>(piece.size()), threads, 1, [&](int64_t p) {
-    auto& [cuts, group] = piece[static_cast<size_t>(p)];
+    auto& [cuts, group] = piece[p];
     for (int64_t g = p * grain; g < std::min(groups, (p + 1) * grain); ++g) {
-      const auto begin = innermost[static_cast<size_t>(g)].begin, end = innermost[static_cast<size_t>(g)].end;
+      const auto begin = innermost[g].begin, end = innermost[g].end;
       std::iota(order.begin() + begin, order.begin() + end, begin);
       split(h, order, begin, end, cuts);
       group.resize(cuts.size(), g);
       for (auto a = static_cast<size_t>(begin); a < static_cast<size_t>(end); ++a) {
-        const Atom& atom = h.atom[static_cast<size_t>(order[a])];
+        const Atom& atom = h.atom[order[a]];
         f.x[a] = atom.center.x;
         f.y[a] = atom.center.y;
         f.z[a] = atom.center.z;
@@ -150,7 +150,7 @@ std::vector<std::vector<double>> largest_sums(const Field& f) {
     largest[l].assign(l < f.level.size() ? f.level[l].exponent.size() : 1, -infinity);
     if (l == 0)
       for (size_t c = 0; c < f.group.size(); ++c) {
-        double& sum = largest[0][static_cast<size_t>(f.group[c])];
+        double& sum = largest[0][f.group[c]];
         sum = log_add(sum, f.ln_peak[c]);
       }
     else
@@ -192,8 +192,7 @@ std::vector<double> allowed_change(const Field& f, double allowed) {
     change.resize(f.level[l].exponent.size());
     for (size_t g = 0; g < change.size(); ++g) {
       const double p = f.level[l].exponent[g];
-      const double t =
-          l + 1 < f.level.size() ? outer[static_cast<size_t>(f.level[l].parent[g])] : std::log(allowed);
+      const double t = l + 1 < f.level.size() ? outer[f.level[l].parent[g]] : std::log(allowed);
       change[g] = p <= 1 ? t / p : t - std::log(p) - (p - 1) * largest[l][g];
     }
     outer = change;
@@ -207,7 +206,7 @@ double steepest_path(const Field& f) {
     path = f.level[l].exponent;
     if (l + 1 < f.level.size())
       for (size_t g = 0; g < path.size(); ++g)
-        path[g] *= outer[static_cast<size_t>(f.level[l].parent[g])];
+        path[g] *= outer[f.level[l].parent[g]];
     outer = path;
   }
   return *std::max_element(path.begin(), path.end());
@@ -251,7 +250,7 @@ Field make_field(const Hierarchy& h, double decay, double far_error, int threads
   const std::vector<double> change = allowed_change(f, far_error / static_cast<double>(f.clusters()));
   f.cutoff2.reserve(f.group.size());
   for (size_t c = 0; c < f.group.size(); ++c)
-    f.cutoff2.push_back(std::max(0.0, (f.ln_peak[c] - change[static_cast<size_t>(f.group[c])]) / decay));
+    f.cutoff2.push_back(std::max(0.0, (f.ln_peak[c] - change[f.group[c]]) / decay));
   return f;
 }
 

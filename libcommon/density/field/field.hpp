@@ -71,14 +71,14 @@ public:
     size_t leave = 0;
     int64_t g = innermost;
     for (size_t l = 1; l < open_.size(); ++l) {
-      g = f_.level[l - 1].parent[static_cast<size_t>(g)];
+      g = f_.level[l - 1].parent[g];
       if (open_[l] != g)
         leave = l;
     }
     leave_to(leave, close);
     g = innermost;
     for (size_t l = 1; l < open_.size(); ++l)
-      open_[l] = g = f_.level[l - 1].parent[static_cast<size_t>(g)];
+      open_[l] = g = f_.level[l - 1].parent[g];
   }
   template <class Close>
   void finish(Close&& close) {

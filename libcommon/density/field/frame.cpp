@@ -37,7 +37,7 @@ double ln_bound_behind(const Field& f, const std::vector<Deep>& near, double mar
   int64_t current = -1;
   const auto close = [&](size_t l, int64_t g) {
     double& to = l + 1 < groups.levels() ? open[l + 1] : open[0];
-    to = log_add(to, f.level[l].exponent[static_cast<size_t>(g)] * open[l]);
+    to = log_add(to, f.level[l].exponent[g] * open[l]);
     open[l] = -infinity;
   };
   const auto close_innermost = [&] {
@@ -45,7 +45,7 @@ double ln_bound_behind(const Field& f, const std::vector<Deep>& near, double mar
       return;
     groups.enter(current, close);
     double& to = groups.levels() > 1 ? open[1] : open[0];
-    to = log_add(to, f.level[0].exponent[static_cast<size_t>(current)] * innermost);
+    to = log_add(to, f.level[0].exponent[current] * innermost);
     innermost = -infinity;
   };
   for (const auto& [c, depth] : near) {

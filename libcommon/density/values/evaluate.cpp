@@ -55,8 +55,7 @@ void Evaluator::sum(const Field& f, const Selection& s, const Units& u, const Bl
   size_t closed = 0;
   const auto close = [&](size_t l, int64_t g) {
     const double shift = s.arithmetic == Arithmetic::in_scaled ? s.group_shift[closed++] : 0;
-    raise_group(static_cast<T>(f.level[l].exponent[static_cast<size_t>(g)]), static_cast<T>(shift), sum_of(l),
-                sum_of(l + 1));
+    raise_group(static_cast<T>(f.level[l].exponent[g]), static_cast<T>(shift), sum_of(l), sum_of(l + 1));
   };
   for (int32_t i = 0; i < u.n; ++i) {
     groups.enter(s.group_of(i), close);
@@ -89,7 +88,7 @@ void Evaluator::by_logarithms(const Field& f, const Selection& s, double h, floa
     std::fill(open.begin(), open.end(), -infinity);
     const auto close = [&](size_t l, int64_t g) {
       double& to = l + 1 < open.size() ? open[l + 1] : open[0];
-      to = log_add(to, f.level[l].exponent[static_cast<size_t>(g)] * open[l]);
+      to = log_add(to, f.level[l].exponent[g] * open[l]);
       open[l] = -infinity;
     };
     for (int32_t n = 0; n < units.n; ++n) {

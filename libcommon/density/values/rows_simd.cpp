@@ -127,7 +127,7 @@ template <bool direct, bool bent, class T>
 HWY_INLINE void make_atom_rows(const UnitsOf<T>& u, T curvature, T* x, T* yz) {
   constexpr Tag<T> d{};
   const Bend<T> bend(curvature);
-  const int32_t atoms = u.begin[static_cast<size_t>(u.n)];
+  const int32_t atoms = u.begin[u.n];
   size_t unit = 0;
   for (int32_t a = 0; a < atoms; a += lanes_of<T>) {
     const auto get = [&](const Numbers<T>& v) { return hn::LoadU(d, v.data() + a); };

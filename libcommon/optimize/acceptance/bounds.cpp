@@ -19,7 +19,7 @@ double Editor::misfit_face(const Element& e, size_t face, double most_tilt) cons
   std::array<Vec3d, 3> p;
   const auto v = outward_triangle(e.v, face);
   for (size_t i = 0; i < 3; ++i)
-    p[i] = m_.point[size_t(v[i])];
+    p[i] = m_.point[v[i]];
   return m_.outward(e, face) ? misfit(p[0], p[1], p[2], most_tilt) : misfit(p[0], p[2], p[1], most_tilt);
 }
 
@@ -62,7 +62,7 @@ int Editor::put_all_on_target(const Vertex& k, Vec3d from, Vec3d* x, int n, doub
     for (int i = 0; i < count; ++i)
       eight.set(size_t(i), x[first + i]);
     for (uint32_t put = target_->project_eight(eight, count, reach); put; put &= put - 1)
-      if (const Vec3d y = eight[size_t(std::countr_zero(put))]; inside_walls(from, y))
+      if (const Vec3d y = eight[std::countr_zero(put)]; inside_walls(from, y))
         x[there++] = y;
   }
   return there;
@@ -128,7 +128,7 @@ void Editor::add_sail(const Element& e, size_t face, int32_t from) {
   Sail s{{}, -1};
   const auto v = outward_triangle(e.v, face);
   for (size_t i = 0; i < 3; ++i) {
-    s.p[i] = m_.point[size_t(v[i])];
+    s.p[i] = m_.point[v[i]];
     if (v[i] == from)
       s.moving = static_cast<int>(i);
   }
@@ -167,7 +167,7 @@ bool Editor::sails_fit(Vec3d x, const Fit& before) const {
 }
 
 bool Editor::bent(int32_t t, size_t face) const {
-  const Element& e = m_.element[size_t(t)];
+  const Element& e = m_.element[t];
   return m_.counts_here(e, face) && misfit_face(e, face, std::min(most_tilt_, bent_tilt_)) > 1;
 }
 
@@ -181,8 +181,7 @@ std::optional<double> Editor::off_at(Vec3d x) const {
 
 double Editor::off(int32_t v) const {
   constexpr double two_spacings = 100; // where the target is not known: it is not near
-  return follows_target(m_.vertex[size_t(v)].kind) && target_ ? off_at(m_.point[size_t(v)]).value_or(two_spacings)
-                                                              : 0;
+  return follows_target(m_.vertex[v].kind) && target_ ? off_at(m_.point[v]).value_or(two_spacings) : 0;
 }
 
 // Whether t and three triangles of beyond_, one across each of its edges, close a hole that is inside out.
@@ -191,7 +190,7 @@ bool Editor::turns_over(const std::array<int32_t, 3>& t) const {
     return std::any_of(beyond_.begin(), beyond_.end(),
                        [&](const Beyond& b) { return b.edge == k && b.apex == apex; });
   };
-  const auto p = [&](int32_t v) { return m_.point[size_t(v)]; };
+  const auto p = [&](int32_t v) { return m_.point[v]; };
   return std::any_of(beyond_.begin(), beyond_.end(), [&](const Beyond& b) {
     return b.edge == 0 && across(1, b.apex) && across(2, b.apex) &&
            !(orient3d(p(t[0]), p(t[1]), p(t[2]), p(b.apex)) > 0);
@@ -214,9 +213,9 @@ void Editor::gather_near(const Sheets& sheets, const Boxf& around, bool may_be_s
 bool Editor::stays_near(Near& n, bool stamped_go) const {
   if (n.stays == Near::Stays::yes || n.stays == Near::Stays::no)
     return n.stays == Near::Stays::yes;
-  const auto owner = [&](size_t k) { return parts_.owner[size_t(n.triangle.v[k])]; };
+  const auto owner = [&](size_t k) { return parts_.owner[n.triangle.v[k]]; };
   const bool stays = !((owner(0) >= 0 && owner(0) != room_.part && owner(0) == owner(1) && owner(0) == owner(2)) ||
-                       (stamped_go && stamp_[size_t(n.triangle.face / 4)] == clock_) ||
+                       (stamped_go && stamp_[n.triangle.face / 4] == clock_) ||
                        (n.stays == Near::Stays::may_be_stale && changed_sheets_.knows(n.triangle.face)));
   n.stays = stays ? Near::Stays::yes : Near::Stays::no;
   return stays;
@@ -225,7 +224,7 @@ bool Editor::stays_near(Near& n, bool stamped_go) const {
 // Triangles of a hole with four of them share edges, all with all: turned inside out none crosses another.
 void Editor::note_edge(const Apart& apart, const std::array<int32_t, 3>& other) {
   if (apart.share_edge())
-    beyond_.push_back({std::countr_zero(apart.of_first), other[size_t(std::countr_zero(apart.of_second))]});
+    beyond_.push_back({std::countr_zero(apart.of_first), other[std::countr_zero(apart.of_second)]});
 }
 
 // Whether they are seen not to cross without the exact test.
@@ -248,7 +247,7 @@ bool Editor::crosses(const SheetTriangle& now, Near& near, bool stamped_go) {
 // True when a triangle of rim_ leaves this part's cell.
 bool Editor::rim_leaves() const {
   return std::any_of(rim_.begin(), rim_.end(), [&](const auto& t) {
-    return std::any_of(t.begin(), t.end(), [&](int32_t v) { return parts_.at(m_.point[size_t(v)]) != room_.part; });
+    return std::any_of(t.begin(), t.end(), [&](int32_t v) { return parts_.at(m_.point[v]) != room_.part; });
   });
 }
 
@@ -277,7 +276,7 @@ bool Editor::rim_crosses(bool stamped_go) {
         return true;
     for (const EightBoxes& eight : near_box_)
       for (uint32_t met = eight.met(now); met; met &= met - 1)
-        if (crosses(now, near_[size_t(eight.id[size_t(std::countr_zero(met))])], stamped_go))
+        if (crosses(now, near_[eight.id[std::countr_zero(met)]], stamped_go))
           return true;
     if (turns_over(now.v))
       return true;
@@ -288,7 +287,7 @@ bool Editor::rim_crosses(bool stamped_go) {
 // Faces at v where the mesh ends, of elements that keep their vertices.
 void Editor::list_rim(const std::vector<int32_t>& elements, int32_t v, int32_t without) {
   for (const int32_t t : elements) {
-    const Element& e = m_.element[size_t(t)];
+    const Element& e = m_.element[t];
     if (without >= 0 && e.find(without) >= 0)
       continue;
     for (size_t f = 0; f < 4; ++f)

@@ -6,8 +6,8 @@ namespace molmesh::optimize {
 
 // Whether v is a corner of an element of the part; `element` was one.
 bool FaultCount::in_part(int32_t v, int32_t element) const {
-  const auto at_it = [&](int32_t t) { return m_.element[size_t(t)].alive() && m_.element[size_t(t)].find(v) >= 0; };
-  return m_.incident[size_t(v)] >= 0 && (at_it(element) || std::any_of(slots_.begin(), slots_.end(), at_it));
+  const auto at_it = [&](int32_t t) { return m_.element[t].alive() && m_.element[t].find(v) >= 0; };
+  return m_.incident[v] >= 0 && (at_it(element) || std::any_of(slots_.begin(), slots_.end(), at_it));
 }
 
 // A point or triangle changes where one of its elements is written.
@@ -26,13 +26,13 @@ void FaultCount::find_misfits() {
   surface_points_.clear();
   std::vector<PointOff> met;
   for (const int32_t t : some ? written_ : slots_) {
-    if (t < 0 || !m_.element[size_t(t)].alive())
+    if (t < 0 || !m_.element[t].alive())
       continue;
-    const Element& e = m_.element[size_t(t)];
+    const Element& e = m_.element[t];
     for (size_t f = 0; f < 4; ++f) {
       if (editor_.bent(t, f))
         bent_.push_back(4 * int64_t{t} + int64_t(f));
-      if (follows_target(m_.vertex[size_t(e.v[f])].kind) && surface_points_(e.v[f]) == met.size())
+      if (follows_target(m_.vertex[e.v[f]].kind) && surface_points_(e.v[f]) == met.size())
         met.push_back({e.v[f], t});
     }
   }
@@ -57,7 +57,7 @@ void FaultCount::count_bad(Faults& f) {
   const std::vector<int32_t>& low = low_();
   f.below = static_cast<int64_t>(low.size());
   for (const int32_t t : low)
-    f.worst = std::min(f.worst, m_.element[size_t(t)].q);
+    f.worst = std::min(f.worst, m_.element[t].q);
 }
 
 void FaultCount::count_misfits(Faults& f) {

@@ -16,7 +16,7 @@ size_t LowElements::place(int32_t element) const {
 }
 
 const std::vector<int32_t>& LowElements::operator()() {
-  const auto is_low = [&](int32_t t) { return m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < goal_; };
+  const auto is_low = [&](int32_t t) { return m_.element[t].alive() && m_.element[t].q < goal_; };
   const bool some = log_.since(seen_, written_);
   seen_ = log_.now();
   if (some && written_.empty())

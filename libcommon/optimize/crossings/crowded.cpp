@@ -15,7 +15,7 @@ bool reaches_before(const std::vector<Vec3d>& point, const SheetTriangle& a, con
                     double hardly) {
   const Vec3d normal{double(a.normal.x), double(a.normal.y), double(a.normal.z)};
   return std::any_of(b.v.begin(), b.v.end(),
-                     [&](int32_t v) { return dot(normal, point[size_t(v)] - point[size_t(a.v[0])]) > -hardly; });
+                     [&](int32_t v) { return dot(normal, point[v] - point[a.v[0]]) > -hardly; });
 }
 
 // How far off the target triangles are, at their centroids and the middles of their edges (Å). A spacing where that
@@ -27,7 +27,7 @@ std::vector<float> deviations(const std::vector<Vec3d>& point, const std::vector
     const auto first = size_t(2 * pair), end = std::min(triangle.size(), first + 2);
     EightPlaces place;
     for (size_t t = first; t < end; ++t) {
-      const auto at = [&](size_t i) { return point[size_t(triangle[t].v[i])]; };
+      const auto at = [&](size_t i) { return point[triangle[t].v[i]]; };
       const size_t k = 4 * (t - first);
       place.set(k, (at(0) + at(1) + at(2)) / 3.);
       for (size_t i = 0; i < 3; ++i)
@@ -50,23 +50,23 @@ std::vector<SheetTriangle> end_triangles(const DynamicMesh& m, int threads) {
   const auto ends = [&](const Element& e, size_t f) { return e.n[f] < 0 && m.labels[e.label[f]].curved(); };
   const std::vector<int32_t> element = choose(
       static_cast<int64_t>(m.element.size()), threads, DynamicMesh::stretch,
-      [&](int64_t s) { return m.labelled[size_t(s)] != 0; },
+      [&](int64_t s) { return m.labelled[s] != 0; },
       [&](int64_t t) {
-        const Element& e = m.element[size_t(t)];
+        const Element& e = m.element[t];
         return e.alive() && (ends(e, 0) || ends(e, 1) || ends(e, 2) || ends(e, 3));
       });
   const auto elements = static_cast<int64_t>(element.size());
   std::vector<int64_t> start(element.size());
   par::for_n(elements, threads, [&](int64_t i) {
-    const Element& e = m.element[size_t(element[size_t(i)])];
+    const Element& e = m.element[element[i]];
     for (size_t f = 0; f < 4; ++f)
-      start[size_t(i)] += ends(e, f);
+      start[i] += ends(e, f);
   });
   std::vector<SheetTriangle> triangle(static_cast<size_t>(par::exclusive_scan(start)));
   par::for_n(elements, threads, [&](int64_t i) {
-    const int64_t t = element[size_t(i)];
-    const Element& e = m.element[size_t(t)];
-    auto to = triangle.begin() + start[size_t(i)];
+    const int64_t t = element[i];
+    const Element& e = m.element[t];
+    auto to = triangle.begin() + start[i];
     for (size_t f = 0; f < 4; ++f)
       if (ends(e, f))
         *to++ = sheet_triangle(m.point, outward_triangle(e.v, f), 4 * t + int64_t(f));
@@ -104,7 +104,7 @@ std::vector<uint8_t> facing(const std::vector<Vec3d>& point, const std::vector<S
   std::vector<uint8_t> faces(triangle.size());
   par::for_n(static_cast<int64_t>(triangle.size()), threads, [&](int64_t t) {
     const SheetTriangle wide = widened(size_t(t), distance.apart);
-    faces[size_t(t)] = tree.any(wide, [&](size_t n) {
+    faces[t] = tree.any(wide, [&](size_t n) {
       const SheetTriangle& other = triangle[n];
       return !wide.of_one_sheet(other, false) && reaches_before(point, wide, other, hardly) &&
              reaches_before(point, other, wide, hardly);

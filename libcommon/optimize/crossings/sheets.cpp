@@ -10,7 +10,7 @@ namespace {
 
 // Whether such a plane of a has all of b on its other side, but for a corner that both have on the edge.
 bool edge_parts(const std::vector<Vec3d>& point, const SheetTriangle& a, const SheetTriangle& b) {
-  const auto at = [&](int32_t v) { return point[size_t(v)]; };
+  const auto at = [&](int32_t v) { return point[v]; };
   const Vec3d normal{double(a.normal.x), double(a.normal.y), double(a.normal.z)};
   for (size_t i = 0; i < 3; ++i) {
     const int32_t from = a.v[i], to = a.v[(i + 1) % 3], third = a.v[(i + 2) % 3];
@@ -33,7 +33,7 @@ bool side_by_side(const std::vector<Vec3d>& point, const SheetTriangle& a, const
 }
 
 SheetTriangle sheet_triangle(const std::vector<Vec3d>& point, std::array<int32_t, 3> v, int64_t face) {
-  const Vec3d a = point[size_t(v[0])], b = point[size_t(v[1])], c = point[size_t(v[2])];
+  const Vec3d a = point[v[0]], b = point[v[1]], c = point[v[2]];
   SheetTriangle t{box_around(a, b, c), v, face, {}};
   const Vec3d n = cross(b - a, c - a), unit = n / std::max(norm(n), 1e-300);
   t.normal = {static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)};
@@ -58,7 +58,7 @@ void Sheets::insert(const SheetTriangle& t) {
   }
   const int32_t id = free_.back();
   free_.pop_back();
-  triangle_[size_t(id)] = t;
+  triangle_[id] = t;
   face_[uint64_t(t.face)] = id;
   levels_ |= uint64_t{1} << cell_level(t.low, t.high, cell_);
   for_cells(t, [&](uint64_t key, uint8_t begins) { put(chain_[key], id, begins); });
@@ -66,16 +66,16 @@ void Sheets::insert(const SheetTriangle& t) {
 
 /// Most moves are short. False, and nothing done, where that needs other cells.
 bool Sheets::move(int32_t id, const SheetTriangle& t) {
-  SheetTriangle& before = triangle_[size_t(id)];
+  SheetTriangle& before = triangle_[id];
   const int level = cell_level(t.low, t.high, cell_);
   if (cell_level(before.low, before.high, cell_) != level || cells(before, level) != cells(t, level))
     return false;
   before = t;
   for_cells(t, [&](uint64_t key, uint8_t begins) {
     const int32_t* const first = chain_.find(key);
-    for (int32_t c = first ? *first : -1; c >= 0; c = eight_[size_t(c)].next)
+    for (int32_t c = first ? *first : -1; c >= 0; c = eight_[c].next)
       for (size_t n = 0; n < 8; ++n)
-        if (Eight& e = eight_[size_t(c)]; e.id[n] == id) {
+        if (Eight& e = eight_[c]; e.id[n] == id) {
           e.set_box(n, t);
           e.begins[n] = begins;
           return;
@@ -87,8 +87,8 @@ bool Sheets::move(int32_t id, const SheetTriangle& t) {
 void Sheets::put(int32_t& chain, int32_t id, uint8_t begins) {
   size_t n = 0; // where there is room
   int32_t at = chain;
-  for (; at >= 0; at = eight_[size_t(at)].next) {
-    const auto& held = eight_[size_t(at)].id;
+  for (; at >= 0; at = eight_[at].next) {
+    const auto& held = eight_[at].id;
     n = size_t(std::find(held.begin(), held.end(), -1) - held.begin());
     if (n < held.size())
       break;
@@ -99,14 +99,14 @@ void Sheets::put(int32_t& chain, int32_t id, uint8_t begins) {
     chain = at;
     n = 0;
   }
-  eight_[size_t(at)].set(n, id, triangle_[size_t(id)]);
-  eight_[size_t(at)].begins[n] = begins;
+  eight_[at].set(n, id, triangle_[id]);
+  eight_[at].begins[n] = begins;
 }
 
 void Sheets::take_out(int32_t chain, int32_t id) {
-  for (; chain >= 0; chain = eight_[size_t(chain)].next)
+  for (; chain >= 0; chain = eight_[chain].next)
     for (size_t n = 0; n < 8; ++n)
-      if (Eight& e = eight_[size_t(chain)]; e.id[n] == id) {
+      if (Eight& e = eight_[chain]; e.id[n] == id) {
         e.set(n, -1, {});
         return;
       }
@@ -117,7 +117,7 @@ void Sheets::erase(int64_t face) {
   if (at < 0)
     return;
   const int32_t id = std::exchange(at, -1);
-  SheetTriangle& t = triangle_[size_t(id)];
+  SheetTriangle& t = triangle_[id];
   for_cells(t, [&](uint64_t key, uint8_t) { take_out(chain_[key], id); });
   t.face = -1;
   free_.push_back(id);
@@ -136,7 +136,7 @@ SheetChanges Sheets::changes() const {
     if (triangle < 0)
       all.gone.push_back(int64_t(face));
     else
-      all.there.push_back(triangle_[size_t(triangle)]);
+      all.there.push_back(triangle_[triangle]);
   });
   return all;
 }

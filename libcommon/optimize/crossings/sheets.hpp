@@ -112,11 +112,11 @@ bool Sheets::any(const Boxf& t, F&& f) const {
         range.for_each([&](int64_t i, int64_t j, int64_t k) {
           const int32_t* first = found ? nullptr : chain_.find(cell_key(i, j, k, level));
           const uint8_t begun = range.begins(i, j, k); // each box in the first of the cells that t shares with it
-          for (int32_t c = first ? *first : -1; c >= 0 && !found; c = eight_[size_t(c)].next) {
-            const Eight& e = eight_[size_t(c)];
+          for (int32_t c = first ? *first : -1; c >= 0 && !found; c = eight_[c].next) {
+            const Eight& e = eight_[c];
             for (uint32_t met = e.met(t); met && !found; met &= met - 1) {
               const auto n = size_t(std::countr_zero(met));
-              found = (begun | e.begins[n]) == 7 && f(triangle_[size_t(e.id[n])]);
+              found = (begun | e.begins[n]) == 7 && f(triangle_[e.id[n]]);
             }
           }
         });

@@ -9,7 +9,7 @@ namespace molmesh::optimize {
 namespace {
 
 Angles of_element(const DynamicMesh& m, const Element& e) {
-  const auto p = [&](size_t i) { return m.point[size_t(e.v[i])]; };
+  const auto p = [&](size_t i) { return m.point[e.v[i]]; };
   Angles a;
   for (const double angle : dihedrals(p(0), p(1), p(2), p(3)).degree) {
     a.min = std::min(a.min, angle);
@@ -34,10 +34,10 @@ Angles measure_up_to(const DynamicMesh& m, float quality, int threads) {
       static_cast<int64_t>(m.restless.size()), threads, Angles{},
       [&](int64_t s) {
         Angles a;
-        if (!m.restless[size_t(s)] && m.worst[size_t(s)] > quality)
+        if (!m.restless[s] && m.worst[s] > quality)
           return a;
         m.for_stretch(s, [&](int64_t t) {
-          if (const Element& e = m.element[size_t(t)]; e.q <= quality && e.alive())
+          if (const Element& e = m.element[t]; e.q <= quality && e.alive())
             a = both(a, of_element(m, e));
         });
         return a;

@@ -24,7 +24,7 @@ void raise_to(int32_t& place, int32_t value) {
 }
 
 Tri face_at(const TetMesh& mesh, int64_t slot) {
-  return outward_triangle(mesh.tet[size_t(slot / 4)], size_t(slot % 4));
+  return outward_triangle(mesh.tet[slot / 4], size_t(slot % 4));
 }
 
 std::string name(const char* what, int64_t i) {
@@ -87,7 +87,7 @@ std::vector<uint8_t> link(DynamicMesh& m, const TetMesh& mesh, const std::vector
       if (sides == 2)
         e.n[face[i] % 4] = static_cast<int32_t>(face[1 - i] / 4);
       if (has_triangle) {
-        e.label[face[i] % 4] = label[size_t(face[sides] - faces)];
+        e.label[face[i] % 4] = label[face[sides] - faces];
         m.note_label(static_cast<int32_t>(face[i] / 4));
       }
     }
@@ -218,7 +218,7 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
     float worst = 2;
     const auto first = static_cast<size_t>(c * chunk), n = static_cast<size_t>(std::min(chunk, tets - c * chunk));
     prepare_pages(&m.element[first], n * sizeof(Element));
-    const auto corner = [&](size_t k, size_t i) { return m.point[size_t(mesh.tet[first + k][i])]; };
+    const auto corner = [&](size_t k, size_t i) { return m.point[mesh.tet[first + k][i]]; };
     judge_each(n, corner, [&](size_t k, float q) {
       Element& e = m.element[first + k] = {};
       e.v = mesh.tet[first + k];
@@ -231,10 +231,10 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
         });
       return true;
     });
-    m.worst[size_t(c)] = worst;
+    m.worst[c] = worst;
     for (size_t e = first + n; e-- > first;) // downwards: most find a higher one there
       for (const int32_t v : mesh.tet[e])
-        raise_to(m.incident[size_t(v)], static_cast<int32_t>(e));
+        raise_to(m.incident[v], static_cast<int32_t>(e));
   });
   fault.fail_if_any();
   std::vector<uint8_t> label = set_labels(m, mesh);

@@ -1,5 +1,6 @@
 // dynamic_mesh.hpp — tetrahedra that know their neighbours, labelled faces and constrained vertices.
 #pragma once
+#include "base/array.hpp"
 #include "geom/tet_measures.hpp"
 #include "geom/tet_quality.hpp"
 #include "mesh/tet_mesh.hpp"
@@ -58,7 +59,7 @@ struct Element {
 
 /// Face of the element v, seen from outside it.
 inline std::array<int32_t, 3> outward_triangle(const std::array<int32_t, 4>& v, size_t face) {
-  const auto corner = [&](int i) { return v[size_t(tet_face(int(face), i))]; };
+  const auto corner = [&](int i) { return v[tet_face(int(face), i)]; };
   return {corner(0), corner(1), corner(2)};
 }
 
@@ -79,32 +80,29 @@ struct Label {
 };
 
 struct DynamicMesh {
-  std::vector<Vec3d> point;
-  std::vector<Vertex> vertex;
-  std::vector<int32_t> incident; ///< [vertices] an element at the vertex; -1: free slot
-  std::vector<int32_t> touched;  ///< [vertices] when an element at the vertex last changed
-  std::vector<uint32_t>
-      state; ///< [vertices] another number whenever what is there is written, the same when put back
+  Array<Vec3d> point;
+  Array<Vertex> vertex;
+  Array<int32_t> incident; ///< [vertices] an element at the vertex; -1: free slot
+  Array<int32_t> touched;  ///< [vertices] when an element at the vertex last changed
+  Array<uint32_t> state;   ///< [vertices] another number whenever what is there is written, the same when put back
   LargeArray<Element> element;
-  std::vector<Label> labels; ///< [0] is no label
+  Array<Label> labels; ///< [0] is no label
   Walls walls;
   /// [stretches] not 0 where the quality of an element may have changed since this was cleared.
-  std::vector<uint8_t> restless;
-  std::vector<float> worst; ///< [stretches] lowest quality where not restless; 2 where nothing is alive
+  Array<uint8_t> restless;
+  Array<float> worst; ///< [stretches] lowest quality where not restless; 2 where nothing is alive
   /// [stretches] not 0 where a face of an element may be labelled.
-  std::vector<uint8_t> labelled;
+  Array<uint8_t> labelled;
   static constexpr int64_t stretch = 512; ///< elements
   static int64_t stretches(size_t elements) { return (static_cast<int64_t>(elements) + stretch - 1) / stretch; }
 
   /// To so many slots; new ones are free.
   void resize(size_t elements, size_t vertices);
   /// Of the element's quality. From any thread.
-  void note_change(int32_t e) {
-    std::atomic_ref(restless[size_t(e / stretch)]).store(1, std::memory_order_relaxed);
-  }
+  void note_change(int32_t e) { std::atomic_ref(restless[e / stretch]).store(1, std::memory_order_relaxed); }
 
   /// A face of it is labelled. From any thread.
-  void note_label(int32_t e) { std::atomic_ref(labelled[size_t(e / stretch)]).store(1, std::memory_order_relaxed); }
+  void note_label(int32_t e) { std::atomic_ref(labelled[e / stretch]).store(1, std::memory_order_relaxed); }
   /// f(e) for the slots of stretch s.
   template <class F>
   void for_stretch(int64_t s, F&& f) const {
@@ -114,20 +112,19 @@ struct DynamicMesh {
 
   /// Whether the face is labelled and this side's to count: the lower region's.
   bool counts_here(const Element& e, size_t face) const {
-    return e.label[face] != 0 && (e.n[face] < 0 || element[size_t(e.n[face])].region > e.region);
+    return e.label[face] != 0 && (e.n[face] < 0 || element[e.n[face]].region > e.region);
   }
   /// Whether a labelled face, seen as an outward one of e, runs as the target's normal does.
   bool outward(const Element& e, size_t face) const {
-    const bool lower = e.n[face] < 0 || e.region < element[size_t(e.n[face])].region;
+    const bool lower = e.n[face] < 0 || e.region < element[e.n[face]].region;
     return lower != labels[e.label[face]].reversed;
   }
   /// Whether two of its corners are.
   bool crowded(const std::array<int32_t, 3>& triangle) const {
-    return std::count_if(triangle.begin(), triangle.end(), [&](int32_t v) { return vertex[size_t(v)].crowded; }) >=
-           2;
+    return std::count_if(triangle.begin(), triangle.end(), [&](int32_t v) { return vertex[v].crowded; }) >= 2;
   }
   float quality(const std::array<int32_t, 4>& v) const {
-    return tet_quality(point[size_t(v[0])], point[size_t(v[1])], point[size_t(v[2])], point[size_t(v[3])]);
+    return tet_quality(point[v[0]], point[v[1]], point[v[2]], point[v[3]]);
   }
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 void add_triangle(const DynamicMesh& m, const Isosurface& surface, const Element& e, size_t face, Fidelity& sum) {
   const auto t = outward_triangle(e.v, face);
-  const Vec3d a = m.point[size_t(t[0])], b = m.point[size_t(t[1])], c = m.point[size_t(t[2])];
+  const Vec3d a = m.point[t[0]], b = m.point[t[1]], c = m.point[t[2]];
   const Vec3d n = tri_normal(a, b, c), centre = (a + b + c) / 3.;
   const double area = norm(n) / 2;
   ++sum.triangles;
@@ -67,7 +67,7 @@ T sum_of_chunks(const DynamicMesh& m, int threads, F&& f, Add&& add_to) {
 /// 1: the triangle faces the isosurface's way, -1: the other; 0: there is none.
 int64_t sense_at(const DynamicMesh& m, const Isosurface& surface, const Element& e, size_t face) {
   const auto t = outward_triangle(e.v, face);
-  const Vec3d a = m.point[size_t(t[0])], b = m.point[size_t(t[1])], c = m.point[size_t(t[2])];
+  const Vec3d a = m.point[t[0]], b = m.point[t[1]], c = m.point[t[2]];
   double distance;
   Vec3d normal;
   if (!surface.probe((a + b + c) / 3., distance, normal))
@@ -81,10 +81,10 @@ T sum_of_triangles(const DynamicMesh& m, int threads, Each each, AddTo add_to) {
   return sum_of_chunks<T>(
       m, threads,
       [&](int64_t s, T& sum) {
-        if (!m.labelled[size_t(s)])
+        if (!m.labelled[s])
           return;
         m.for_stretch(s, [&](int64_t t) {
-          if (const Element& e = m.element[size_t(t)]; e.alive())
+          if (const Element& e = m.element[t]; e.alive())
             for (size_t f = 0; f < 4; ++f)
               if (m.counts_here(e, f) && m.labels[e.label[f]].curved())
                 each(e, f, sum);
@@ -109,10 +109,10 @@ Regions find_regions(const DynamicMesh& m, int threads) {
   const auto all = static_cast<int64_t>(m.labelled.size());
   std::vector<Regions> part(size_t((all + stretches - 1) / stretches));
   par::for_n(static_cast<int64_t>(part.size()), threads, 1, [&](int64_t c) {
-    Regions& r = part[size_t(c)];
+    Regions& r = part[c];
     for (int64_t s = c * stretches; s < std::min(all, (c + 1) * stretches); ++s)
       m.for_stretch(s, [&](int64_t t) {
-        const Element& e = m.element[size_t(t)];
+        const Element& e = m.element[t];
         if (!e.alive())
           return;
         r.lowest = std::min(r.lowest, e.region);
@@ -143,28 +143,27 @@ Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int t
       m, threads,
       [&](int64_t s, double& volume) {
         m.for_stretch(s, [&](int64_t t) {
-          if (const Element& e = m.element[size_t(t)]; e.alive() && e.region == regions.lowest)
-            volume += tet_volume(m.point[size_t(e.v[0])], m.point[size_t(e.v[1])], m.point[size_t(e.v[2])],
-                                 m.point[size_t(e.v[3])]);
+          if (const Element& e = m.element[t]; e.alive() && e.region == regions.lowest)
+            volume += tet_volume(m.point[e.v[0]], m.point[e.v[1]], m.point[e.v[2]], m.point[e.v[3]]);
         });
       },
       [](double a, double b) { return a + b; });
   std::vector<uint8_t> in_cavity(m.point.size());
   for (const int32_t v : regions.cavity)
-    in_cavity[size_t(v)] = 1;
+    in_cavity[v] = 1;
   return add(sum, par::reduce(
                       static_cast<int64_t>(m.point.size()), threads, Fidelity{},
                       [&](int64_t v) {
                         Fidelity one;
-                        if (m.incident[size_t(v)] < 0 || !follows_target(m.vertex[size_t(v)].kind))
+                        if (m.incident[v] < 0 || !follows_target(m.vertex[v].kind))
                           return one;
                         one.points = 1;
                         double distance;
                         Vec3d normal;
-                        one.points_off = !surface.probe(m.point[size_t(v)], distance, normal) ||
+                        one.points_off = !surface.probe(m.point[v], distance, normal) ||
                                          std::abs(distance + surface.offset()) > 0.02 * surface.spacing();
-                        one.points_off_cavity = one.points_off && in_cavity[size_t(v)];
-                        one.points_off_wall = one.points_off && m.vertex[size_t(v)].kind == Kind::trace;
+                        one.points_off_cavity = one.points_off && in_cavity[v];
+                        one.points_off_wall = one.points_off && m.vertex[v].kind == Kind::trace;
                         return one;
                       },
                       add));
@@ -184,15 +183,15 @@ double mean_surface_edge(const DynamicMesh& m, int threads) {
   const auto sum = sum_of_chunks<Triangles>(
       m, threads,
       [&](int64_t s, Triangles& part) {
-        if (!m.labelled[size_t(s)])
+        if (!m.labelled[s])
           return;
         m.for_stretch(s, [&](int64_t t) {
           double area = 0;
-          const Element& e = m.element[size_t(t)];
+          const Element& e = m.element[t];
           for (size_t f = 0; f < 4 && e.alive(); ++f)
             if (m.counts_here(e, f) && m.labels[e.label[f]].curved()) {
               const auto v = outward_triangle(e.v, f);
-              area += norm(tri_normal(m.point[size_t(v[0])], m.point[size_t(v[1])], m.point[size_t(v[2])])) / 2;
+              area += norm(tri_normal(m.point[v[0]], m.point[v[1]], m.point[v[2]])) / 2;
               ++part.n;
             }
           part.area += area;

@@ -43,8 +43,8 @@ void find_flat_labels(DynamicMesh& m, const TetMesh& mesh, const std::vector<uin
     const size_t l = label[t];
     for (const int32_t v : mesh.tri[t])
       for (int a = 0; a < 3; ++a) {
-        low[l][a] = std::min(low[l][a], mesh.point[size_t(v)][a]);
-        high[l][a] = std::max(high[l][a], mesh.point[size_t(v)][a]);
+        low[l][a] = std::min(low[l][a], mesh.point[v][a]);
+        high[l][a] = std::max(high[l][a], mesh.point[v][a]);
       }
   }
   const Extent all = extent(m);
@@ -79,7 +79,7 @@ public:
 
 private:
   size_t corner(int32_t t, int32_t v) const {
-    const Tri& f = tri_[size_t(t)];
+    const Tri& f = tri_[t];
     return 3 * size_t(t) + (f[0] == v ? 0u : f[1] == v ? 1u : 2u);
   }
   const std::vector<Tri>& tri_;
@@ -95,7 +95,7 @@ public:
   /// A kept edge of n triangles.
   void note_edge(int32_t a, int32_t b, bool of_both_labels, size_t n) {
     for (const int32_t v : {a, b})
-      if (uint8_t& edges = edges_[size_t(v)]; edges != no_candidate)
+      if (uint8_t& edges = edges_[v]; edges != no_candidate)
         edges =
             !of_both_labels || (edges & 3) == 2 ? no_candidate : uint8_t((edges + 1) | (n == 3 ? one_of_three : 0));
   }
@@ -201,15 +201,15 @@ std::vector<Edge> sorted_edges(const TetMesh& mesh, const std::vector<uint8_t>& 
 void fix_kept_edges(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& way,
                     const std::vector<Edge>& edges, double sharp, Fans& fans, Traces& traces) {
   const auto normal = [&](int32_t t) {
-    const Tri& f = mesh.tri[size_t(t)];
-    const Vec3d p = mesh.point[size_t(f[0])];
-    const Vec3d n = cross(mesh.point[size_t(f[1])] - p, mesh.point[size_t(f[2])] - p);
+    const Tri& f = mesh.tri[t];
+    const Vec3d p = mesh.point[f[0]];
+    const Vec3d n = cross(mesh.point[f[1]] - p, mesh.point[f[2]] - p);
     return n / std::max(norm(n), 1e-300);
   };
   // Cosine of what the surface bends by: files may turn the triangles of one label either way.
   const auto bend = [&](int32_t t, int32_t u) {
     const double cosine = dot(normal(t), normal(u));
-    return (way[size_t(t)] ^ way[size_t(u)]) & reversed ? -cosine : cosine;
+    return (way[t] ^ way[u]) & reversed ? -cosine : cosine;
   };
   const auto curved = [&](const Edge& e) { return m.labels[e.label].curved(); };
   const double limit = std::cos(sharp * 3.14159265358979323846 / 180);
@@ -225,7 +225,7 @@ void fix_kept_edges(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8
     const auto first = edges.begin() + std::ptrdiff_t(i), last = edges.begin() + std::ptrdiff_t(j);
     const bool of_both = (j - i == 3 || two_labels) && std::count_if(first, last, curved) == 1;
     if (keep)
-      m.vertex[size_t(e.a)].kind = m.vertex[size_t(e.b)].kind = Kind::fixed;
+      m.vertex[e.a].kind = m.vertex[e.b].kind = Kind::fixed;
     if (keep || of_both)
       traces.note_edge(e.a, e.b, of_both, j - i);
   }

@@ -34,13 +34,13 @@ PartCopy copy_part(const DynamicMesh& m, const Parts& parts, const PartRoom& roo
   PartCopy c;
   c.element = slots;
   for (const int32_t t : slots)
-    for (const int32_t n : m.element[size_t(t)].n)
+    for (const int32_t n : m.element[t].n)
       if (n >= 0)
         c.element.push_back(n);
   par::sort_unique(c.element, 1);
   std::vector<int32_t> vertex = room.vertex;
   for (const int32_t t : c.element)
-    if (const Element& e = m.element[size_t(t)]; e.alive())
+    if (const Element& e = m.element[t]; e.alive())
       vertex.insert(vertex.end(), e.v.begin(), e.v.end());
   par::sort_unique(vertex, 1);
   const Numbers element_number(c.element), vertex_number(vertex);
@@ -61,12 +61,12 @@ PartCopy copy_part(const DynamicMesh& m, const Parts& parts, const PartRoom& roo
     c.mesh.incident[k] = element_number(m.incident[v]);
   }
   for (size_t k = 0; k < c.element.size(); ++k) {
-    Element e = m.element[size_t(c.element[k])];
+    Element e = m.element[c.element[k]];
     for (size_t i = 0; i < 4; ++i) {
       e.v[i] = vertex_number(e.v[i]);
       e.n[i] = element_number(e.n[i]);
-      if (e.alive() && c.mesh.incident[size_t(e.v[i])] < 0)
-        c.mesh.incident[size_t(e.v[i])] = static_cast<int32_t>(k); // of another part
+      if (e.alive() && c.mesh.incident[e.v[i]] < 0)
+        c.mesh.incident[e.v[i]] = static_cast<int32_t>(k); // of another part
     }
     c.mesh.element[k] = e;
   }

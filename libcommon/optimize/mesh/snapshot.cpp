@@ -20,7 +20,7 @@ Snapshot Editor::save(const std::vector<int32_t>& inner) {
   s.corner_of.reserve(ascending.size());
   VertexNumbers vertices;
   for (const int32_t t : ascending) {
-    const Element& e = m_.element[size_t(t)];
+    const Element& e = m_.element[t];
     s.element.emplace_back(t, e);
     auto& corner = s.corner_of.emplace_back();
     for (size_t i = 0; i < 4; ++i)
@@ -28,16 +28,15 @@ Snapshot Editor::save(const std::vector<int32_t>& inner) {
     for (const int32_t n : e.n) {
       if (n < 0)
         continue;
-      const Element& beyond = m_.element[size_t(n)];
+      const Element& beyond = m_.element[n];
       const size_t g = beyond.face_towards(t);
-      if (parts_.owner[size_t(beyond.v[g])] != room_.part) // it shares three vertices with one of ours
+      if (parts_.owner[beyond.v[g]] != room_.part) // it shares three vertices with one of ours
         s.side.push_back({n, t, static_cast<uint8_t>(g), beyond.label[g]});
     }
   }
   s.corner.reserve(vertices.met().size());
   for (const int32_t v : vertices.met())
-    s.corner.push_back({v, m_.point[size_t(v)], m_.vertex[size_t(v)], m_.incident[size_t(v)], m_.touched[size_t(v)],
-                        m_.state[size_t(v)]});
+    s.corner.push_back({v, m_.point[v], m_.vertex[v], m_.incident[v], m_.touched[v], m_.state[v]});
   return s;
 }
 
@@ -56,17 +55,17 @@ bool Editor::restore_written(const Snapshot& s) {
                                      [](const auto& e, int32_t id) { return e.first < id; });
     m_.note_change(t);
     if (at == s.element.end() || at->first != t) { // one in reserve
-      m_.element[size_t(t)] = {};
+      m_.element[t] = {};
       continue;
     }
-    m_.element[size_t(t)] = at->second;
-    for (const uint32_t c : s.corner_of[size_t(at - s.element.begin())]) {
+    m_.element[t] = at->second;
+    for (const uint32_t c : s.corner_of[at - s.element.begin()]) {
       const Snapshot::Corner& corner = s.corner[c];
-      m_.point[size_t(corner.id)] = corner.point;
-      m_.vertex[size_t(corner.id)] = corner.vertex;
-      m_.incident[size_t(corner.id)] = corner.incident;
-      m_.touched[size_t(corner.id)] = corner.touched;
-      m_.state[size_t(corner.id)] = corner.state;
+      m_.point[corner.id] = corner.point;
+      m_.vertex[corner.id] = corner.vertex;
+      m_.incident[corner.id] = corner.incident;
+      m_.touched[corner.id] = corner.touched;
+      m_.state[corner.id] = corner.state;
     }
   }
   return true;
@@ -74,30 +73,30 @@ bool Editor::restore_written(const Snapshot& s) {
 
 void Editor::restore(const Snapshot& s) {
   for (const int32_t v : s.room.vertex)
-    m_.incident[size_t(v)] = -1;
+    m_.incident[v] = -1;
   const bool some = restore_written(s);
   if (!some) {
     log.forget();
     for (const int32_t t : s.room.element) {
-      m_.element[size_t(t)] = {};
+      m_.element[t] = {};
       m_.note_change(t);
     }
     for (const auto& [t, e] : s.element) {
-      m_.element[size_t(t)] = e;
+      m_.element[t] = e;
       m_.note_change(t);
     }
     for (const Snapshot::Corner& c : s.corner) {
-      m_.point[size_t(c.id)] = c.point;
-      m_.vertex[size_t(c.id)] = c.vertex;
-      m_.incident[size_t(c.id)] = c.incident;
-      m_.touched[size_t(c.id)] = c.touched;
-      m_.state[size_t(c.id)] = c.state;
+      m_.point[c.id] = c.point;
+      m_.vertex[c.id] = c.vertex;
+      m_.incident[c.id] = c.incident;
+      m_.touched[c.id] = c.touched;
+      m_.state[c.id] = c.state;
     }
   }
   if (!some || (!written_.empty() && written_.front() == ChangeLog::beyond))
     for (const Snapshot::Side& f : s.side) {
-      m_.element[size_t(f.element)].n[f.face] = f.n;
-      m_.element[size_t(f.element)].label[f.face] = f.label;
+      m_.element[f.element].n[f.face] = f.n;
+      m_.element[f.element].label[f.face] = f.label;
     }
   restored_ = s.number;
   restored_then_ = log.now();

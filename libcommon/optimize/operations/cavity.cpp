@@ -40,12 +40,12 @@ bool Editor::match(const std::vector<int32_t>& old, const std::vector<Candidate>
   used_.clear();
   ++clock_;
   for (const int32_t e : old)
-    stamp_[size_t(e)] = clock_;
+    stamp_[e] = clock_;
   for (const int32_t t : old) {
-    const Element& e = m_.element[size_t(t)];
+    const Element& e = m_.element[t];
     for (size_t f = 0; f < 4; ++f) {
       const int32_t n = e.n[f];
-      if (n >= 0 && stamp_[size_t(n)] == clock_)
+      if (n >= 0 && stamp_[n] == clock_)
         continue;
       FaceEntry& x = entry(sorted_face(e.v, f));
       x.outer = true;
@@ -54,7 +54,7 @@ bool Editor::match(const std::vector<int32_t>& old, const std::vector<Candidate>
       x.label = e.label[f];
       if (n < 0)
         continue;
-      const Element& beyond = m_.element[size_t(n)];
+      const Element& beyond = m_.element[n];
       for (size_t g = 0; g < 4; ++g)
         if (beyond.n[g] == t)
           x.face = static_cast<uint8_t>(g);
@@ -70,7 +70,7 @@ bool Editor::match(const std::vector<int32_t>& old, const std::vector<Candidate>
     }
   int lost = 0, gained = 0;
   for (const int32_t i : used_) {
-    const FaceEntry& x = table_[size_t(i)];
+    const FaceEntry& x = table_[i];
     if (x.outer ? x.first >= 0 : x.second >= 0)
       continue;
     ++(x.outer && x.element < 0 ? lost : gained);
@@ -85,7 +85,7 @@ bool Editor::match(const std::vector<int32_t>& old, const std::vector<Candidate>
 uint8_t Editor::lost_label() const {
   uint8_t label = 0;
   for (const int32_t i : used_) {
-    const FaceEntry& x = table_[size_t(i)];
+    const FaceEntry& x = table_[i];
     if (x.outer && x.element < 0 && x.first < 0)
       label = x.label;
   }
@@ -99,9 +99,9 @@ bool Editor::rim_in_wall(const std::vector<Candidate>& now) const {
   if (lost == 0)
     return false;
   return std::any_of(used_.begin(), used_.end(), [&](int32_t i) {
-    const FaceEntry& x = table_[size_t(i)];
+    const FaceEntry& x = table_[i];
     const bool fresh = !x.outer && x.second < 0, bared = x.outer && x.element >= 0 && x.first < 0;
-    const auto p = [&](size_t k) { return m_.point[size_t(x.v[k])]; };
+    const auto p = [&](size_t k) { return m_.point[x.v[k]]; };
     return (fresh || bared) && m_.labels[fresh ? label_of(x, now, lost) : lost].curved() &&
            m_.walls.hold(p(0), p(1), p(2));
   });
@@ -109,7 +109,7 @@ bool Editor::rim_in_wall(const std::vector<Candidate>& now) const {
 
 // Of a new face: its first element's own, where that has one.
 uint8_t Editor::label_of(const FaceEntry& x, const std::vector<Candidate>& now, uint8_t otherwise) {
-  const uint8_t own = now[size_t(x.first / 4)].label[size_t(x.first & 3)];
+  const uint8_t own = now[x.first / 4].label[x.first & 3];
   return own != 0 ? own : otherwise;
 }
 
@@ -121,14 +121,14 @@ bool Editor::face_is_taken(const std::vector<int32_t>& old) {
   };
   std::vector<int32_t> around; // the first corner
   for (const int32_t i : used_) {
-    const FaceEntry& x = table_[size_t(i)];
-    const int32_t first = m_.incident[size_t(x.v[0])];
+    const FaceEntry& x = table_[i];
+    const int32_t first = m_.incident[x.v[0]];
     if (x.outer || first < 0 ||
-        std::any_of(x.v.begin(), x.v.end(), [&](int32_t v) { return !follows_target(m_.vertex[size_t(v)].kind); }))
+        std::any_of(x.v.begin(), x.v.end(), [&](int32_t v) { return !follows_target(m_.vertex[v].kind); }))
       continue;
     around.assign(1, first);
     for (size_t k = 0; k < around.size(); ++k) {
-      const Element& e = m_.element[size_t(around[k])];
+      const Element& e = m_.element[around[k]];
       if (e.find(x.v[1]) >= 0 && e.find(x.v[2]) >= 0 && !has(old, around[k])) {
         elsewhere_ = true;
         return true;
@@ -145,7 +145,7 @@ bool Editor::face_is_taken(const std::vector<int32_t>& old) {
 void Editor::list_rim(const std::vector<Candidate>& now) {
   const uint8_t outside = lost_label();
   for (const int32_t i : used_) {
-    const FaceEntry& x = table_[size_t(i)];
+    const FaceEntry& x = table_[i];
     const bool kept = x.outer && x.element < 0 && x.first >= 0, fresh = !x.outer && x.second < 0;
     const bool bared = x.outer && x.element >= 0 && x.first < 0;
     if (!(kept || fresh || bared) || !m_.crowded(x.v) ||
@@ -155,9 +155,9 @@ void Editor::list_rim(const std::vector<Candidate>& now) {
              .curved())
       continue;
     if (bared)
-      rim_.push_back(outward_triangle(m_.element[size_t(x.element)].v, x.face));
+      rim_.push_back(outward_triangle(m_.element[x.element].v, x.face));
     else
-      rim_.push_back(outward_triangle(now[size_t(x.first / 4)].v, size_t(x.first & 3)));
+      rim_.push_back(outward_triangle(now[x.first / 4].v, size_t(x.first & 3)));
   }
 }
 
@@ -174,17 +174,17 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
     return false;
   uint8_t inner = 0, outside = 0;
   for (const int32_t t : old) {
-    const Element& e = m_.element[size_t(t)];
+    const Element& e = m_.element[t];
     for (size_t f = 0; f < 4; ++f)
-      if (e.label[f] != 0 && e.n[f] >= 0 && stamp_[size_t(e.n[f])] == clock_)
+      if (e.label[f] != 0 && e.n[f] >= 0 && stamp_[e.n[f]] == clock_)
         inner = e.label[f];
   }
   for (const int32_t i : used_) {
-    const FaceEntry& x = table_[size_t(i)];
+    const FaceEntry& x = table_[i];
     for (const int32_t w : x.v) {
       if (x.outer && x.element >= 0)
-        m_.incident[size_t(w)] = x.element; // where nothing new comes
-      m_.state[size_t(w)] = clock_;
+        m_.incident[w] = x.element; // where nothing new comes
+      m_.state[w] = clock_;
     }
     if (x.outer && x.element < 0 && x.first < 0)
       outside = x.label;
@@ -199,7 +199,7 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
     else
       id = room_.element.back(), room_.element.pop_back();
     made_.push_back(id);
-    Element& e = m_.element[size_t(id)];
+    Element& e = m_.element[id];
     note_change(id);
     e = {};
     e.v = now[k].v;
@@ -207,16 +207,16 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
     e.q = now[k].q;
     e.label = now[k].label;
     for (const int32_t v : now[k].v)
-      m_.incident[size_t(v)] = id;
+      m_.incident[v] = id;
     touch(id);
   }
   for (size_t k = now.size(); k < old.size(); ++k) {
-    m_.element[size_t(old[k])] = {};
+    m_.element[old[k]] = {};
     note_change(old[k]);
     room_.element.push_back(old[k]);
   }
   const auto join = [&](int32_t a, size_t f, int32_t b, size_t g, uint8_t label) {
-    Element &x = m_.element[size_t(a)], &y = m_.element[size_t(b)];
+    Element &x = m_.element[a], &y = m_.element[b];
     x.n[f] = b;
     y.n[g] = a;
     x.label[f] = y.label[g] = x.region == y.region ? uint8_t{0} : label;
@@ -224,7 +224,7 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
       m_.note_label(a), m_.note_label(b);
   };
   const auto bare = [&](int32_t a, size_t f) {
-    Element& e = m_.element[size_t(a)];
+    Element& e = m_.element[a];
     e.n[f] = -1;
     if (e.label[f] == 0)
       e.label[f] = outside;
@@ -233,8 +233,8 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
       changed_sheets_.insert(sheet_triangle(m_.point, outward_triangle(e.v, f), 4 * int64_t(a) + int64_t(f)));
   };
   for (const int32_t i : used_) {
-    const FaceEntry& x = table_[size_t(i)];
-    const int32_t id = x.first < 0 ? -1 : made_[size_t(x.first / 4)];
+    const FaceEntry& x = table_[i];
+    const int32_t id = x.first < 0 ? -1 : made_[x.first / 4];
     const size_t face = size_t(x.first & 3);
     if (x.outer && x.element >= 0)
       note_side(x.element, x.face);
@@ -245,11 +245,11 @@ bool Editor::replace(const std::vector<int32_t>& old, const std::vector<Candidat
       if (x.element >= 0) {
         join(id, face, x.element, x.face, x.label != 0 ? x.label : inner);
       } else {
-        m_.element[size_t(id)].label[face] = x.label;
+        m_.element[id].label[face] = x.label;
         bare(id, face);
       }
     } else if (x.second >= 0) {
-      join(id, face, made_[size_t(x.second / 4)], size_t(x.second & 3), label_of(x, now, inner));
+      join(id, face, made_[x.second / 4], size_t(x.second & 3), label_of(x, now, inner));
     } else {
       bare(id, face);
     }

@@ -14,7 +14,7 @@ bool Editor::surface_link_holds(int32_t a, int32_t b, const Ring& r) {
   std::vector<int32_t> near_a, surface_a, surface_b;
   const auto surface_of = [&](const std::vector<int32_t>& elements, int32_t v, std::vector<int32_t>& out) {
     for (const int32_t t : elements) {
-      const Element& e = m_.element[size_t(t)];
+      const Element& e = m_.element[t];
       for (size_t f = 0; f < 4; ++f) {
         if (e.label[f] == 0 || e.v[f] == v)
           continue;
@@ -26,13 +26,13 @@ bool Editor::surface_link_holds(int32_t a, int32_t b, const Ring& r) {
     par::sort_unique(out, 1);
   };
   for (const int32_t t : star_)
-    for (const int32_t v : m_.element[size_t(t)].v)
+    for (const int32_t v : m_.element[t].v)
       if (v != a && v != b)
         near_a.push_back(v);
   std::sort(near_a.begin(), near_a.end());
   const auto beside_a = [&](int32_t v) { return std::binary_search(near_a.begin(), near_a.end(), v); };
   for (const int32_t t : star2_) {
-    const Element& e = m_.element[size_t(t)];
+    const Element& e = m_.element[t];
     if (e.find(a) >= 0)
       continue;
     for (size_t x = 0; x < 4; ++x) {
@@ -49,7 +49,7 @@ bool Editor::surface_link_holds(int32_t a, int32_t b, const Ring& r) {
         if (j == size || gap == 1 || (r.closed && gap == size - 1))
           continue;
         for (const int32_t u : star_)
-          if (m_.element[size_t(u)].find(e.v[x]) >= 0 && m_.element[size_t(u)].find(e.v[y]) >= 0)
+          if (m_.element[u].find(e.v[x]) >= 0 && m_.element[u].find(e.v[y]) >= 0)
             return false;
       }
     }
@@ -72,7 +72,7 @@ bool Editor::may_contract(const Vertex& a, const Vertex& b) const {
 
 // For a on a labelled face: the edge a b runs in all its labels, and its elements may go. Sets ring_.
 bool Editor::borders_allow(int32_t e, int32_t a, int32_t b) {
-  const Vertex& ka = m_.vertex[size_t(a)];
+  const Vertex& ka = m_.vertex[a];
   if (!ring(e, a, b, ring_))
     return false;
   const bool trace = ka.kind == Kind::trace;
@@ -83,12 +83,12 @@ bool Editor::borders_allow(int32_t e, int32_t a, int32_t b) {
                         : label.size() != 2 || (label[0] != label[1]) != crease)
     return false;
   if (trace && std::any_of(ring_.border.begin(), ring_.border.end(), [&](int k) { // a loop of three may lie there
-        const Kind kind = m_.vertex[size_t(ring_.vertex[size_t(k)])].kind;
+        const Kind kind = m_.vertex[ring_.vertex[k]].kind;
         return kind == Kind::trace || kind == Kind::fixed;
       }))
     return false;
   for (const int32_t t : ring_.element) { // they go: the faces beyond them take their labels
-    const Element& el = m_.element[size_t(t)];
+    const Element& el = m_.element[t];
     const size_t fa = size_t(el.find(a)), fb = size_t(el.find(b));
     if (el.label[fb] != 0 && (crease || el.label[fa] != 0 || el.n[fa] < 0))
       return false;
@@ -99,24 +99,24 @@ bool Editor::borders_allow(int32_t e, int32_t a, int32_t b) {
 }
 
 bool Editor::is_tiny(int32_t e, int i, int j) const {
-  const auto p = [&](int k) { return m_.point[size_t(m_.element[size_t(e)].v[size_t(k)])]; };
+  const auto p = [&](int k) { return m_.point[m_.element[e].v[k]]; };
   return target_ && norm(p(i) - p(j)) < 0.1 * target_->spacing();
 }
 
 bool Editor::contract(int32_t e, int i, int j) {
-  const int32_t a = m_.element[size_t(e)].v[size_t(i)], b = m_.element[size_t(e)].v[size_t(j)];
-  const Vertex& ka = m_.vertex[size_t(a)];
-  if (!may_contract(ka, m_.vertex[size_t(b)]) || !star(a, star_))
+  const int32_t a = m_.element[e].v[i], b = m_.element[e].v[j];
+  const Vertex& ka = m_.vertex[a];
+  if (!may_contract(ka, m_.vertex[b]) || !star(a, star_))
     return false;
   const bool tiny = yield < 1 && is_tiny(e, i, j);
   const float before = worst(star_), above = (tiny ? yield : 1.f) * demand(before);
   now_.clear();
   for (const int32_t t : star_) {
-    const Element& el = m_.element[size_t(t)];
+    const Element& el = m_.element[t];
     if (el.find(b) >= 0)
       continue;
     Candidate c{el.v, el.region, 0, el.label};
-    c.v[size_t(el.find(a))] = b;
+    c.v[el.find(a)] = b;
     if (!judge(c, above))
       return false;
     now_.push_back(c);
@@ -125,7 +125,7 @@ bool Editor::contract(int32_t e, int i, int j) {
     return false;
   if (ka.kind != Kind::interior) {
     const Fit fit = gather_sails(star_, a);
-    const Vec3d pb = m_.point[size_t(b)];
+    const Vec3d pb = m_.point[b];
     std::erase_if(sails_, [&](const Sail& s) { return s.p[0] == pb || s.p[1] == pb || s.p[2] == pb; });
     if (!sails_fit(pb, fit) || !borders_allow(e, a, b) || !star(b, star2_) || !surface_link_holds(a, b, ring_))
       return false;
@@ -135,21 +135,21 @@ bool Editor::contract(int32_t e, int i, int j) {
 
 // As contract(), but b moves too: both stars are judged at the best place for it.
 bool Editor::merge(int32_t e, int i, int j) {
-  const auto& v = m_.element[size_t(e)].v;
-  Failures::Attempt attempt{.operation = Failures::Operation::merge, .a = v[size_t(i)], .b = v[size_t(j)]};
+  const auto& v = m_.element[e].v;
+  Failures::Attempt attempt{.operation = Failures::Operation::merge, .a = v[i], .b = v[j]};
   return !has_failed(attempt) && (join(e, i, j) || note_failure(attempt));
 }
 
 bool Editor::join(int32_t e, int i, int j) {
-  int32_t a = m_.element[size_t(e)].v[size_t(i)], b = m_.element[size_t(e)].v[size_t(j)];
-  if (!may_contract(m_.vertex[size_t(a)], m_.vertex[size_t(b)]))
+  int32_t a = m_.element[e].v[i], b = m_.element[e].v[j];
+  if (!may_contract(m_.vertex[a], m_.vertex[b]))
     std::swap(a, b);
-  const Vertex &ka = m_.vertex[size_t(a)], &kb = m_.vertex[size_t(b)];
+  const Vertex &ka = m_.vertex[a], &kb = m_.vertex[b];
   if (!may_contract(ka, kb) || ka.kind == Kind::trace || kb.kind == Kind::trace || kb.kind == Kind::fixed ||
       !star(a, star_) || !star(b, star2_))
     return false;
   const float before = std::min(worst(star_), worst(star2_)), above = demand(before);
-  const Vec3d pa = m_.point[size_t(a)], pb = m_.point[size_t(b)];
+  const Vec3d pa = m_.point[a], pb = m_.point[b];
   const double length = mean_edge(star2_, b);
   Fit fit = gather_sails(star_, a);
   const std::vector<Sail> sails_a = sails_;
@@ -169,15 +169,15 @@ bool Editor::join(int32_t e, int i, int j) {
   now_.clear();
   const auto add = [&](const std::vector<int32_t>& elements, int32_t from, int32_t other) {
     for (const int32_t t : elements) {
-      const Element& el = m_.element[size_t(t)];
+      const Element& el = m_.element[t];
       if (el.find(other) >= 0)
         continue;
       Candidate c{el.v, el.region, 0, el.label};
       std::array<Vec3d, 4> p;
       for (size_t n = 0; n < 4; ++n)
-        p[n] = m_.point[size_t(c.v[n])];
+        p[n] = m_.point[c.v[n]];
       const int k = el.find(from);
-      c.v[size_t(k)] = b;
+      c.v[k] = b;
       spokes_.add(p, k);
       if (from == a)
         now_.push_back(c);
@@ -203,7 +203,7 @@ bool Editor::join(int32_t e, int i, int j) {
     return false;
   if (ka.kind != Kind::interior && (!borders_allow(e, a, b) || !surface_link_holds(a, b, ring_)))
     return false;
-  m_.point[size_t(b)] = x;
+  m_.point[b] = x;
   bool good = true;
   for (size_t c = 0; c < made && good; ++c)
     good = judge(now_[c], straighten ? above : before);
@@ -211,7 +211,7 @@ bool Editor::join(int32_t e, int i, int j) {
   std::vector<float> q;
   std::vector<int32_t> kept;
   for (size_t t = 0; t < star2_.size() && good; ++t) {
-    const Element& el = m_.element[size_t(star2_[t])];
+    const Element& el = m_.element[star2_[t]];
     if (el.find(a) >= 0)
       continue;
     Candidate c{el.v, el.region, 0, {}};
@@ -221,15 +221,15 @@ bool Editor::join(int32_t e, int i, int j) {
     sum += lack(c.q), allowed += lack(el.q);
   }
   if (!good || sum > allowed) {
-    m_.point[size_t(b)] = pb;
+    m_.point[b] = pb;
     return false;
   }
   if (!finish_contraction(a, b, kb.kind == Kind::surface)) {
-    m_.point[size_t(b)] = pb;
+    m_.point[b] = pb;
     return false;
   }
   for (size_t t = 0; t < kept.size(); ++t) {
-    m_.element[size_t(kept[t])].q = q[t];
+    m_.element[kept[t]].q = q[t];
     touch(kept[t]);
     note_change(kept[t]);
     changed.push_back(kept[t]);
@@ -240,18 +240,18 @@ bool Editor::join(int32_t e, int i, int j) {
 // star_ gives way to now_. moved: b has, and is on the surface; its elements are star2_, and stay but for the ring.
 bool Editor::finish_contraction(int32_t a, int32_t b, bool moved) {
   old_ = star_;
-  bool& crowded = m_.vertex[size_t(b)].crowded;
+  bool& crowded = m_.vertex[b].crowded;
   const bool was_crowded = crowded;
-  crowded |= m_.vertex[size_t(a)].crowded;
+  crowded |= m_.vertex[a].crowded;
   clear_rim();
   if (sheets_ && moved)
     list_rim(star2_, b, a);
-  if (!replace(old_, now_, m_.vertex[size_t(a)].kind != Kind::interior, moved)) {
+  if (!replace(old_, now_, m_.vertex[a].kind != Kind::interior, moved)) {
     crowded = was_crowded;
     return false;
   }
-  m_.incident[size_t(a)] = -1;
-  m_.touched[size_t(b)] = time;
+  m_.incident[a] = -1;
+  m_.touched[b] = time;
   room_.vertex.push_back(a);
   ++counts.contractions;
   if (sheets_ && !moved && crowded && !was_crowded && star(b, star2_)) { // its other triangles may be now, too

@@ -25,27 +25,27 @@ Editor::Editor(DynamicMesh& mesh, const Target* target, const Sheets* sheets, co
       stamp_(stamp), room_(room), guard_(guard), most_tilt_(guard.tilt()), clock_(clock), table_(512) {}
 
 bool Editor::owned(int32_t e) const {
-  return parts_.owns(room_.part, m_.element[size_t(e)].v);
+  return parts_.owns(room_.part, m_.element[e].v);
 }
 
 void Editor::note_side(int32_t e, size_t face) {
-  if (const int32_t v = m_.element[size_t(e)].v[face]; parts_.owner[size_t(v)] == room_.part)
-    m_.state[size_t(v)] = clock_;
+  if (const int32_t v = m_.element[e].v[face]; parts_.owner[v] == room_.part)
+    m_.state[v] = clock_;
   if (log.kept())
     log.add(owned(e) ? e : ChangeLog::beyond);
 }
 
 // No other operation writes at this reading of the clock.
 void Editor::touch(int32_t e) {
-  for (const int32_t v : m_.element[size_t(e)].v) {
-    m_.touched[size_t(v)] = time;
-    m_.state[size_t(v)] = clock_;
+  for (const int32_t v : m_.element[e].v) {
+    m_.touched[v] = time;
+    m_.state[v] = clock_;
   }
 }
 
 bool Editor::has_failed(Failures::Attempt& attempt) {
-  attempt.at_a = m_.state[size_t(attempt.a)];
-  attempt.at_b = attempt.b < 0 ? 0 : m_.state[size_t(attempt.b)];
+  attempt.at_a = m_.state[attempt.a];
+  attempt.at_b = attempt.b < 0 ? 0 : m_.state[attempt.b];
   attempt.goal = goal;
   attempt.aims = static_cast<uint8_t>(worst_first | straighten << 1 | bold << 2 | loose << 3);
   elsewhere_ = false;
@@ -62,13 +62,13 @@ bool Editor::note_failure(const Failures::Attempt& attempt) {
 // Nearly without branches: which faces lead on is not to be guessed.
 bool Editor::star(int32_t v, std::vector<int32_t>& out) {
   ++clock_;
-  const int32_t first = m_.incident[size_t(v)];
+  const int32_t first = m_.incident[v];
   if (!owned(first))
     return false;
   const Element* const element = m_.element.data();
   const int32_t *const owner = parts_.owner.data(), part = room_.part;
   uint32_t *const stamp = stamp_.data(), clock = clock_;
-  stamp[size_t(first)] = clock;
+  stamp[first] = clock;
   out.resize(std::max<size_t>(out.capacity(), 64));
   out[0] = first;
   size_t found = 1;
@@ -76,15 +76,15 @@ bool Editor::star(int32_t v, std::vector<int32_t>& out) {
     if (found + 4 > out.size())
       out.resize(2 * out.size());
     const int32_t t = out[i];
-    const Element& e = element[size_t(t)];
+    const Element& e = element[t];
     for (size_t f = 0; f < 4; ++f) {
       const int32_t next = e.v[f] != v && e.n[f] >= 0 ? e.n[f] : t;
-      const Element& beyond = element[size_t(next)];
-      const bool fresh = stamp[size_t(next)] != clock;
+      const Element& beyond = element[next];
+      const bool fresh = stamp[next] != clock;
       // It shares three vertices with one of ours.
-      if (fresh & (owner[size_t(beyond.v[beyond.face_towards(t)])] != part))
+      if (fresh & (owner[beyond.v[beyond.face_towards(t)]] != part))
         return false;
-      stamp[size_t(next)] = clock;
+      stamp[next] = clock;
       out[found] = next;
       found += fresh;
     }
@@ -112,11 +112,11 @@ bool Editor::ring(int32_t e, int32_t a, int32_t b, Ring& r) const {
     r.border.clear();
     r.label.clear();
     for (int32_t t = first;;) {
-      const Element& el = m_.element[size_t(t)];
+      const Element& el = m_.element[t];
       size_t behind, ahead;
       at_edge(el, behind, ahead);
       // It shares three vertices with the one before.
-      if (r.element.size() > longest || !(t == first ? owned(t) : parts_.owner[size_t(el.v[behind])] == room_.part))
+      if (r.element.size() > longest || !(t == first ? owned(t) : parts_.owner[el.v[behind]] == room_.part))
         return false;
       if (el.label[behind] != 0) {
         r.border.push_back(static_cast<int>(r.vertex.size()));
@@ -140,8 +140,8 @@ bool Editor::ring(int32_t e, int32_t a, int32_t b, Ring& r) const {
   r.a = a;
   r.b = b;
   size_t behind, ahead;
-  at_edge(m_.element[size_t(e)], behind, ahead);
-  const int32_t second = m_.element[size_t(e)].n[ahead];
+  at_edge(m_.element[e], behind, ahead);
+  const int32_t second = m_.element[e].n[ahead];
   if (second >= 0) {
     if (!go(second))
       return false;
@@ -152,8 +152,8 @@ bool Editor::ring(int32_t e, int32_t a, int32_t b, Ring& r) const {
   for (size_t steps = 0;; ++steps) {
     if (steps > longest || !owned(start))
       return false; // an open ring goes on beyond e
-    at_edge(m_.element[size_t(start)], behind, ahead);
-    const int32_t before = m_.element[size_t(start)].n[behind];
+    at_edge(m_.element[start], behind, ahead);
+    const int32_t before = m_.element[start].n[behind];
     if (before < 0)
       return go(start);
     start = before;
@@ -171,21 +171,21 @@ bool Editor::is_above(const Candidate& c, float above) const {
     return false;
   if (c.q > surely_positive)
     return true;
-  const auto p = [&](size_t i) { return m_.point[size_t(c.v[i])]; };
+  const auto p = [&](size_t i) { return m_.point[c.v[i]]; };
   return orient3d(p(0), p(1), p(2), p(3)) > 0;
 }
 
 float Editor::worst(const std::vector<int32_t>& elements) const {
   float w = 2;
   for (const int32_t e : elements)
-    w = std::min(w, m_.element[size_t(e)].q);
+    w = std::min(w, m_.element[e].q);
   return w;
 }
 
 float Editor::lack(const std::vector<int32_t>& elements) const {
   float sum = 0;
   for (const int32_t e : elements)
-    sum += lack(m_.element[size_t(e)].q);
+    sum += lack(m_.element[e].q);
   return sum;
 }
 

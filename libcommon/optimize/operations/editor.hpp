@@ -86,7 +86,7 @@ public:
   double spacing() const { return target_ ? target_->spacing() : 1; }
   /// Near a surface vertex off the target (Target::neck).
   bool find_neck(int32_t v, Neck& neck) const {
-    return m_.vertex[size_t(v)].kind == Kind::surface && target_ && target_->neck(m_.point[size_t(v)], neck);
+    return m_.vertex[v].kind == Kind::surface && target_ && target_->neck(m_.point[v], neck);
   }
   /// The surface near v follows the target down into a neck, in such shells.
   bool follow_neck(int32_t v, const Neck& neck, double ratio);

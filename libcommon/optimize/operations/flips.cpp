@@ -42,7 +42,7 @@ private:
     float q;
     int k;
   };
-  Cell& cell(int i, int j) { return cell_[size_t(i * longest + j)]; }
+  Cell& cell(int i, int j) { return cell_[i * longest + j]; }
   template <class F>
   void walk(int i, int j, F& f) {
     const int k = cell(i, j).k;
@@ -61,7 +61,7 @@ std::array<float, 2> qualities(const DynamicMesh& m, const std::array<std::array
   using Two = double __attribute__((vector_size(16)));
   Corners<Two> corners;
   for (size_t i = 0; i < 4; ++i) {
-    const Vec3d &p = m.point[size_t(v[0][i])], &q = m.point[size_t(v[1][i])];
+    const Vec3d &p = m.point[v[0][i]], &q = m.point[v[1][i]];
     corners.x[i] = Two{p.x, q.x}, corners.y[i] = Two{p.y, q.y}, corners.z[i] = Two{p.z, q.z};
   }
   Two q;
@@ -75,19 +75,19 @@ bool Editor::edge_is_labelled(int32_t a, int32_t b) {
   if (!star(a, star_))
     return true;
   for (const int32_t t : star_) {
-    const Element& e = m_.element[size_t(t)];
+    const Element& e = m_.element[t];
     const int i = e.find(a), j = e.find(b);
     if (j < 0)
       continue;
     for (int f = 0; f < 4; ++f)
-      if (f != i && f != j && e.label[size_t(f)] != 0)
+      if (f != i && f != j && e.label[f] != 0)
         return true;
   }
   return false;
 }
 
 bool Editor::remove_edge(int32_t e, int i, int j) {
-  const int32_t a = m_.element[size_t(e)].v[size_t(i)], b = m_.element[size_t(e)].v[size_t(j)];
+  const int32_t a = m_.element[e].v[i], b = m_.element[e].v[j];
   if (!ring(e, a, b, ring_))
     return false;
   const int m = static_cast<int>(ring_.vertex.size());
@@ -97,8 +97,8 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
   if (!surface && (m < 3 || m > longest))
     return false;
   const float above = demand(worst(ring_.element));
-  const auto vertex = [&](int k) { return ring_.vertex[size_t(k % m)]; };
-  const auto element = [&](int k) -> const Element& { return m_.element[size_t(ring_.element[size_t(k % m)])]; };
+  const auto vertex = [&](int k) { return ring_.vertex[k % m]; };
+  const auto element = [&](int k) -> const Element& { return m_.element[ring_.element[k % m]]; };
   const auto pair_of = [&](int first, int x, int y, int z) {
     return std::array<std::array<int32_t, 4>, 2>{{{vertex(first + x), vertex(first + y), vertex(first + z), b},
                                                   {vertex(first + x), vertex(first + z), vertex(first + y), a}}};
@@ -111,7 +111,7 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
   now_.clear();
   for (int side = 0; side < sides; ++side) {
     const int f = first[side];
-    if (!polygon[size_t(side)].solve(vertices[side], above, [&](int x, int y, int z, float floor) {
+    if (!polygon[side].solve(vertices[side], above, [&](int x, int y, int z, float floor) {
           const auto pair = pair_of(f, x, y, z);
           const auto q = qualities(m_, pair);
           for (size_t k = 0; k < 2; ++k)
@@ -121,7 +121,7 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
         }))
       return false;
     const int32_t region = element(f).region;
-    polygon[size_t(side)].triangles([&](int x, int y, int z) {
+    polygon[side].triangles([&](int x, int y, int z) {
       for (const auto& v : pair_of(f, x, y, z))
         now_.push_back({v, region, m_.quality(v), {}});
     });
@@ -137,7 +137,7 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
       Fit old_fit, fit;
       old_fit.add(misfit_face(after, face_s));
       old_fit.add(misfit_face(before, face_t));
-      const auto p = [&](int32_t v) { return m_.point[size_t(v)]; };
+      const auto p = [&](int32_t v) { return m_.point[v]; };
       const bool out = m_.outward(after, face_s);
       fit.add(out ? misfit(p(vs), p(b), p(vt)) : misfit(p(vt), p(b), p(vs)));
       fit.add(out ? misfit(p(vs), p(vt), p(a)) : misfit(p(vt), p(vs), p(a)));
@@ -156,7 +156,7 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
       return false;
     if (!ring_.closed && m > 2) // an edge on the outside must be new
       for (const int32_t x : star_)
-        if (m_.element[size_t(x)].find(vt) >= 0)
+        if (m_.element[x].find(vt) >= 0)
           return false;
   }
   if (!has_room(ring_.element.size(), now_.size()) || lack(now_) > lack(ring_.element))
@@ -170,12 +170,12 @@ bool Editor::remove_edge(int32_t e, int i, int j) {
 }
 
 bool Editor::swap_face(int32_t e, int i) {
-  const Element& el = m_.element[size_t(e)];
-  const int32_t n = el.n[size_t(i)];
-  if (n < 0 || el.label[size_t(i)] != 0 || !owned(e) || !owned(n))
+  const Element& el = m_.element[e];
+  const int32_t n = el.n[i];
+  if (n < 0 || el.label[i] != 0 || !owned(e) || !owned(n))
     return false;
-  const Element& other = m_.element[size_t(n)];
-  const int32_t a = el.v[size_t(i)];
+  const Element& other = m_.element[n];
+  const int32_t a = el.v[i];
   int32_t b = -1;
   for (size_t k = 0; k < 4; ++k)
     if (other.n[k] == e)

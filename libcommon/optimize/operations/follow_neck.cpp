@@ -13,23 +13,23 @@ namespace molmesh::optimize {
 bool Editor::find_ring(int32_t v, const Neck& neck, Piece& piece) {
   constexpr size_t most_reached = 100, longest = 24;
   const double far = 3 * target_->spacing();
-  const auto ahead = [&](int32_t w) { return dot(m_.point[size_t(w)] - neck.at, neck.along); };
+  const auto ahead = [&](int32_t w) { return dot(m_.point[w] - neck.at, neck.along); };
   const auto crosses = [&](int32_t w, int32_t u) { return (ahead(w) > 0) != (ahead(u) > 0); };
   int32_t t = -1, a = -1, b = -1;
   double nearest = far;
   std::vector<int32_t> reached{v};
   for (size_t i = 0; i < reached.size() && reached.size() < most_reached; ++i) {
     const int32_t w = reached[i];
-    if (m_.vertex[size_t(w)].kind != Kind::surface || !star(w, star_))
+    if (m_.vertex[w].kind != Kind::surface || !star(w, star_))
       continue;
     for (const int32_t k : star_) {
-      const Element& e = m_.element[size_t(k)];
+      const Element& e = m_.element[k];
       for (size_t f = 0; f < 4; ++f)
         for (size_t g = 0; g < 4; ++g) {
           const int32_t u = e.v[g];
           if (e.label[f] == 0 || e.v[f] == w || g == f || u == w)
             continue;
-          const Vec3d from = m_.point[size_t(w)], to = m_.point[size_t(u)];
+          const Vec3d from = m_.point[w], to = m_.point[u];
           if (norm(to - neck.at) < far && std::find(reached.begin(), reached.end(), u) == reached.end())
             reached.push_back(u);
           if (!crosses(w, u))
@@ -48,7 +48,7 @@ bool Editor::find_ring(int32_t v, const Neck& neck, Piece& piece) {
     if (!ring(t, a, b, ring_) || ring_.border.size() != 2)
       return false;
     piece.element.insert(piece.element.end(), ring_.element.begin(), ring_.element.end());
-    const bool back = ring_.vertex[size_t(ring_.border[0])] == left;
+    const bool back = ring_.vertex[ring_.border[0]] == left;
     const auto at = static_cast<size_t>(ring_.border[back ? 1 : 0]);
     const int32_t w = ring_.vertex[at]; // of the next triangle
     t = ring_.element[std::min(at, ring_.element.size() - 1)];
@@ -67,7 +67,7 @@ bool Editor::follow_neck(int32_t v, const Neck& neck, double ratio) {
   if (!target_ || !find_ring(v, neck, piece) || !find_shell(piece, neck.at))
     return false;
   for (const int32_t t : piece.element) {
-    const Element& e = m_.element[size_t(t)];
+    const Element& e = m_.element[t];
     for (size_t f = 0; f < 4; ++f)
       if (e.label[f] != 0)
         for (const int32_t w : outward_triangle(e.v, f))
@@ -78,7 +78,7 @@ bool Editor::follow_neck(int32_t v, const Neck& neck, double ratio) {
   for (double s = 0.9; s > 0.005 && least > 0.8; s *= 0.9) {
     double most = 0;
     for (const int32_t w : piece.vertex)
-      most = std::max(most, off_at(neck.at + s * (m_.point[size_t(w)] - neck.at)).value_or(1e30));
+      most = std::max(most, off_at(neck.at + s * (m_.point[w] - neck.at)).value_or(1e30));
     if (most < least)
       least = most, scale = s;
   }

@@ -65,12 +65,12 @@ bool Editor::find_shell(Piece& piece, Vec3d c) {
     piece.shell.clear();
     std::vector<int32_t> more;
     for (const int32_t t : piece.element) {
-      const Element& e = m_.element[size_t(t)];
+      const Element& e = m_.element[t];
       for (size_t f = 0; f < 4; ++f) {
         if (is_in(piece.element, e.n[f]) || ends_here(e, f))
           continue;
         const auto s = outward_triangle(e.v, f);
-        const Vec3d p = m_.point[size_t(s[0])], n = cross(m_.point[size_t(s[1])] - p, m_.point[size_t(s[2])] - p);
+        const Vec3d p = m_.point[s[0]], n = cross(m_.point[s[1]] - p, m_.point[s[2]] - p);
         const double area = norm(n), height = dot(p - c, n) / area, side = std::sqrt(area);
         const bool surface = e.label[f] != 0;
         const bool may_join = e.n[f] >= 0 && (piece.through || !surface) && owned(e.n[f]);
@@ -98,13 +98,13 @@ bool Editor::shrink(const Piece& piece, Vec3d c, double scale, double ratio) {
     outer.insert(outer.end(), s.v.begin(), s.v.end());
   par::sort_unique(outer, 1);
   for (const int32_t v : on_surface)
-    if (m_.vertex[size_t(v)].kind != Kind::surface)
+    if (m_.vertex[v].kind != Kind::surface)
       return false;
   for (const int32_t t : piece.element) {
-    const Element& e = m_.element[size_t(t)];
+    const Element& e = m_.element[t];
     for (size_t i = 0; i < 4; ++i) {
       const bool inside = !is_in(outer, e.v[i]);
-      const Kind kind = m_.vertex[size_t(e.v[i])].kind;
+      const Kind kind = m_.vertex[e.v[i]].kind;
       if (inside && kind != Kind::interior && !(kind == Kind::surface && piece.has(e.v[i])))
         return false;
       if (inside)
@@ -127,26 +127,25 @@ bool Editor::shrink(const Piece& piece, Vec3d c, double scale, double ratio) {
   };
   for (size_t layer = 1; layer <= layers; ++layer)
     for (const int32_t w : outer) {
-      m_.point[size_t(image(w, layer))] =
-          c + std::pow(scale, double(layer) / double(layers)) * (m_.point[size_t(w)] - c);
-      m_.vertex[size_t(image(w, layer))] = is_in(on_surface, w) ? m_.vertex[size_t(w)] : Vertex{};
+      m_.point[image(w, layer)] = c + std::pow(scale, double(layer) / double(layers)) * (m_.point[w] - c);
+      m_.vertex[image(w, layer)] = is_in(on_surface, w) ? m_.vertex[w] : Vertex{};
     }
   const auto leaves_walls = [&](int32_t w, Vec3d from) {
-    return m_.vertex[size_t(w)].kind == Kind::surface && !inside_walls(from, m_.point[size_t(w)]);
+    return m_.vertex[w].kind == Kind::surface && !inside_walls(from, m_.point[w]);
   };
   bool out = false;
   for (const int32_t w : on_surface)
     for (size_t layer = 1; layer <= layers; ++layer)
-      out = out || leaves_walls(image(w, layer), m_.point[size_t(w)]);
+      out = out || leaves_walls(image(w, layer), m_.point[w]);
   std::vector<Vec3d> home;
   for (const int32_t w : inner) {
-    home.push_back(m_.point[size_t(w)]);
-    m_.point[size_t(w)] = c + scale * (home.back() - c);
+    home.push_back(m_.point[w]);
+    m_.point[w] = c + scale * (home.back() - c);
     out = out || leaves_walls(w, home.back());
   }
   now_.clear();
   for (const int32_t t : piece.element) {
-    now_.push_back({m_.element[size_t(t)].v, m_.element[size_t(t)].region, 0, {}});
+    now_.push_back({m_.element[t].v, m_.element[t].region, 0, {}});
     for (int32_t& w : now_.back().v)
       w = image(w, layers);
   }
@@ -162,7 +161,7 @@ bool Editor::shrink(const Piece& piece, Vec3d c, double scale, double ratio) {
   if (out || !std::all_of(now_.begin(), now_.end(), [&](Candidate& e) { return judge(e, 0); }) ||
       !replace(old_, now_, piece.through, true)) {
     for (size_t i = 0; i < inner.size(); ++i)
-      m_.point[size_t(inner[i])] = home[i];
+      m_.point[inner[i]] = home[i];
     return false;
   }
   room_.vertex.resize(room_.vertex.size() - fresh);

@@ -14,11 +14,11 @@ bool Editor::find_piece(int32_t v, Piece& piece) {
   piece.vertex.push_back(v);
   for (size_t i = 0; i < piece.vertex.size(); ++i) {
     const int32_t w = piece.vertex[i];
-    if (piece.vertex.size() > most_vertices || m_.vertex[size_t(w)].kind != Kind::surface || !star(w, star_))
+    if (piece.vertex.size() > most_vertices || m_.vertex[w].kind != Kind::surface || !star(w, star_))
       return false;
     piece.element.insert(piece.element.end(), star_.begin(), star_.end());
     for (const int32_t t : star_) {
-      const Element& e = m_.element[size_t(t)];
+      const Element& e = m_.element[t];
       for (size_t f = 0; f < 4; ++f)
         for (size_t k = 0; k < 4; ++k)
           if (e.label[f] != 0 && e.v[f] != w && k != f && !piece.has(e.v[k]))
@@ -27,14 +27,14 @@ bool Editor::find_piece(int32_t v, Piece& piece) {
   }
   par::sort_unique(piece.element, 1);
   double volume = 0; // six times, negative where the molecule is around it
-  const Vec3d home = m_.point[size_t(v)];
+  const Vec3d home = m_.point[v];
   for (const int32_t w : piece.vertex)
-    piece.centre += m_.point[size_t(w)] / double(piece.vertex.size());
+    piece.centre += m_.point[w] / double(piece.vertex.size());
   for (const int32_t t : piece.element) {
-    const Element& e = m_.element[size_t(t)];
+    const Element& e = m_.element[t];
     for (size_t f = 0; f < 4; ++f)
       if (const auto s = outward_triangle(e.v, f); piece.has(s) && m_.counts_here(e, f)) {
-        const auto p = [&](size_t k) { return m_.point[size_t(s[k])] - home; };
+        const auto p = [&](size_t k) { return m_.point[s[k]] - home; };
         volume += (m_.outward(e, f) ? 1 : -1) * dot(p(0), cross(p(1), p(2)));
       }
   }
@@ -48,7 +48,7 @@ bool Editor::fit_piece(const Piece& piece, Vec3d& to, double& scale) const {
   const auto most_off = [&](Vec3d at, double s) {
     double most = 0;
     for (const int32_t w : piece.vertex)
-      most = std::max(most, off_at(at + s * (m_.point[size_t(w)] - piece.centre)).value_or(1e30));
+      most = std::max(most, off_at(at + s * (m_.point[w] - piece.centre)).value_or(1e30));
     return most;
   };
   double best = 1e30;

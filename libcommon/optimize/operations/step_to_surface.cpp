@@ -5,10 +5,10 @@
 namespace molmesh::optimize {
 
 bool Editor::approach(int32_t v, float floor) {
-  const Vertex& vertex = m_.vertex[size_t(v)];
+  const Vertex& vertex = m_.vertex[v];
   if (!follows_target(vertex.kind) || !target_ || !star(v, star_))
     return false;
-  const Vec3d from = m_.point[size_t(v)];
+  const Vec3d from = m_.point[v];
   const double length = mean_edge(star_, v), furthest = 1.5 * length;
   Vec3d to;
   double nearest = furthest;

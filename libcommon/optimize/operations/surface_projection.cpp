@@ -39,8 +39,8 @@ void Editor::settle_each(const std::vector<int32_t>& vertices, float floor) {
 void Editor::settle(int32_t v, float floor) {
   if (!star(v, star_))
     return;
-  Vec3d to = m_.point[size_t(v)];
-  if (!project(m_.vertex[size_t(v)], to, guard_.reach * mean_edge(star_, v)))
+  Vec3d to = m_.point[v];
+  if (!project(m_.vertex[v], to, guard_.reach * mean_edge(star_, v)))
     return;
   const float now = worst(star_), above = floor >= 1 ? 0.5f * now : std::min(floor, now) * 0.999999f;
   step_to(v, to, 0.5, 0.1, above);
@@ -55,7 +55,7 @@ bool Editor::any_crosses(Unlooked& moved) {
   has_moved.reserve(moved.face.size());
   Boxf around; // all of them
   for (const int64_t face : moved.face) {
-    const auto v = outward_triangle(m_.element[size_t(face / 4)].v, size_t(face % 4));
+    const auto v = outward_triangle(m_.element[face / 4].v, size_t(face % 4));
     has_moved[uint64_t(face)] = 1;
     settled_.push_back(sheet_triangle(m_.point, v, face));
     near_.push_back({settled_.back(), Near::Stays::yes});
@@ -82,9 +82,9 @@ bool Editor::any_crosses(Unlooked& moved) {
 // A part in which nothing else has changed, as it was.
 void Editor::put_back(const Unlooked& moved) {
   for (auto i = moved.vertex.rbegin(); i != moved.vertex.rend(); ++i)
-    m_.point[size_t(i->first)] = i->second;
+    m_.point[i->first] = i->second;
   for (auto i = moved.element.rbegin(); i != moved.element.rend(); ++i)
-    m_.element[size_t(i->first)].q = i->second;
+    m_.element[i->first].q = i->second;
   settled_.clear();
   changed.clear();
 }

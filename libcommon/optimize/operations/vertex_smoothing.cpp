@@ -93,15 +93,15 @@ bool Editor::place_on_target(const Vertex& k, Vec3d& x, double length, const Fit
     for (int i = 0; i < n; ++i) {
       const int way = (first + i) / 3;
       const Vec3d d{way / 9 - 1., way / 3 % 3 - 1., way % 3 - 1.};
-      place[size_t(i)] = from + 0.15 * (1 << (first + i) % 3) * length / std::max(norm(d), 1.) * d;
+      place[i] = from + 0.15 * (1 << (first + i) % 3) * length / std::max(norm(d), 1.) * d;
     }
     const auto there = place.begin() + put_all_on_target(k, from, place.data(), n, reach);
     const auto near = std::remove_if(place.begin(), there, [&](Vec3d y) { return !(norm(y - from) < length); });
     const auto places = static_cast<int>(near - place.begin());
     float q;
     for (int i = 0; (i = spokes_.first_above(place.data(), i, places, best, q)) < places; ++i)
-      if (accept(place[size_t(i)]))
-        best = q, x = place[size_t(i)];
+      if (accept(place[i]))
+        best = q, x = place[i];
   }
   if (!(best > above))
     return false;
@@ -114,9 +114,9 @@ bool Editor::place_on_target(const Vertex& k, Vec3d& x, double length, const Fit
 // Sails of v's star, and how they fit now.
 Fit Editor::gather_sails(const std::vector<int32_t>& star, int32_t v) {
   sails_.clear();
-  if (follows_target(m_.vertex[size_t(v)].kind))
+  if (follows_target(m_.vertex[v].kind))
     for (const int32_t t : star) {
-      const Element& e = m_.element[size_t(t)];
+      const Element& e = m_.element[t];
       for (size_t f = 0; f < 4 && e.any_labelled(); ++f)
         if (e.label[f] != 0 && e.v[f] != v)
           add_sail(e, f, v);
@@ -128,23 +128,23 @@ Fit Editor::gather_sails(const std::vector<int32_t>& star, int32_t v) {
 }
 
 double Editor::mean_edge(const std::vector<int32_t>& star, int32_t v) const {
-  const Vec3d from = m_.point[size_t(v)];
+  const Vec3d from = m_.point[v];
   double length = 0;
   for (const int32_t t : star)
-    for (const int32_t w : m_.element[size_t(t)].v)
+    for (const int32_t w : m_.element[t].v)
       if (w != v)
-        length += norm(m_.point[size_t(w)] - from);
+        length += norm(m_.point[w] - from);
   return length / (3. * double(star.size()));
 }
 
 // Spokes and sails of v's star; the mean length of its edges, and how it fits now.
 void Editor::gather(const std::vector<int32_t>& star, int32_t v, double& length, Fit& before) {
-  spokes_.clear(m_.point[size_t(v)]);
+  spokes_.clear(m_.point[v]);
   for (const int32_t t : star) {
-    const Element& e = m_.element[size_t(t)];
+    const Element& e = m_.element[t];
     std::array<Vec3d, 4> p;
     for (size_t j = 0; j < 4; ++j)
-      p[j] = m_.point[size_t(e.v[j])];
+      p[j] = m_.point[e.v[j]];
     spokes_.add(p, e.find(v));
   }
   length = mean_edge(star, v);
@@ -153,33 +153,33 @@ void Editor::gather(const std::vector<int32_t>& star, int32_t v, double& length,
 
 // v is at its new place: takes it when every element of the star is above.
 bool Editor::take(const std::vector<int32_t>& elements, int32_t v, Vec3d from, float above, float allowed) {
-  if (follows_target(m_.vertex[size_t(v)].kind) && !inside_walls(from, m_.point[size_t(v)])) {
-    m_.point[size_t(v)] = from;
+  if (follows_target(m_.vertex[v].kind) && !inside_walls(from, m_.point[v])) {
+    m_.point[v] = from;
     return false;
   }
   now_.clear();
-  const auto corner = [&](size_t k, size_t i) { return m_.point[size_t(m_.element[size_t(elements[k])].v[i])]; };
+  const auto corner = [&](size_t k, size_t i) { return m_.point[m_.element[elements[k]].v[i]]; };
   const auto keep = [&](size_t k, float q) {
-    const Element& e = m_.element[size_t(elements[k])];
+    const Element& e = m_.element[elements[k]];
     now_.push_back({e.v, e.region, q, {}});
     return is_above(now_.back(), above);
   };
   if (!judge_each(elements.size(), corner, keep)) {
-    m_.point[size_t(v)] = from;
+    m_.point[v] = from;
     return false;
   }
   clear_rim();
-  if (sheets_ && follows_target(m_.vertex[size_t(v)].kind))
+  if (sheets_ && follows_target(m_.vertex[v].kind))
     list_rim(elements, v, -1);
   if (lack(now_) > allowed || (unlooked_ ? rim_leaves() : rim_crosses(false))) {
-    m_.point[size_t(v)] = from;
+    m_.point[v] = from;
     return false;
   }
   if (unlooked_)
     unlooked_->vertex.emplace_back(v, from);
   move_rim();
   for (size_t i = 0; i < elements.size(); ++i) {
-    Element& e = m_.element[size_t(elements[i])];
+    Element& e = m_.element[elements[i]];
     if (unlooked_)
       unlooked_->element.emplace_back(elements[i], e.q);
     e.q = now_[i].q;
@@ -197,7 +197,7 @@ bool Editor::smooth(int32_t v) {
 }
 
 bool Editor::move_to_best(int32_t v) {
-  const Vertex& k = m_.vertex[size_t(v)];
+  const Vertex& k = m_.vertex[v];
   if (k.kind == Kind::fixed || !star(v, star_))
     return false;
   const float before = worst(star_), above = straighten ? demand(before) : before;
@@ -208,20 +208,20 @@ bool Editor::move_to_best(int32_t v) {
   gather(star_, v, length, fit);
   if (straighten && fit.excess == 0)
     return false;
-  const Vec3d from = m_.point[size_t(v)];
+  const Vec3d from = m_.point[v];
   Vec3d x = from;
   float best = straighten ? fit.worth() : before;
   if (straighten && off(v) > 1 ? !place_on_target(k, x, length, fit, above)
                                : !search(k, x, best, goal, length, fit, above))
     return false;
-  m_.point[size_t(v)] = x;
+  m_.point[v] = x;
   return take(star_, v, from, above, lack(star_));
 }
 
 bool Editor::step_to(int32_t v, Vec3d to, double shorter, double least, float above) {
-  const Vec3d from = m_.point[size_t(v)];
+  const Vec3d from = m_.point[v];
   for (double step = 1; step > least; step *= shorter) {
-    m_.point[size_t(v)] = step == 1 ? to : from + step * (to - from);
+    m_.point[v] = step == 1 ? to : from + step * (to - from);
     if (take(star_, v, from, above, 1e30f))
       return true;
   }

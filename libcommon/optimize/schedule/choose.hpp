@@ -18,7 +18,7 @@ std::vector<int32_t> choose(int64_t n, int threads, int64_t grain, MayHave&& may
       return;
     for (int64_t i = c * grain, end = std::min(n, i + grain); i < end; ++i)
       if (keep(i))
-        found[static_cast<size_t>(c)].push_back(static_cast<int32_t>(i));
+        found[c].push_back(static_cast<int32_t>(i));
   });
   std::vector<int32_t> all;
   for (const auto& f : found)

@@ -48,13 +48,12 @@ struct Parts {
   /// The part at p; -1: none.
   int32_t at(Vec3d p) const {
     const int32_t c = number(cell_at(p));
-    return box_of.empty() ? c : box_of[size_t(c)];
+    return box_of.empty() ? c : box_of[c];
   }
   /// One more part: the cells up to `reach` from the one at p. False where one of them is of another part.
   bool add_box(Vec3d p, int32_t reach);
   bool owns(int32_t part, const std::array<int32_t, 4>& v) const {
-    return owner[size_t(v[0])] == part && owner[size_t(v[1])] == part && owner[size_t(v[2])] == part &&
-           owner[size_t(v[3])] == part;
+    return owner[v[0]] == part && owner[v[1]] == part && owner[v[2]] == part && owner[v[3]] == part;
   }
 };
 

@@ -13,7 +13,7 @@ constexpr size_t worth_halving = 4096;       // elements
 constexpr double fewest_parts_in_effect = 4; // parts of equal shares come to as many
 
 bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass& pass) {
-  const auto element = [&]() -> const Element& { return m.element[size_t(t)]; };
+  const auto element = [&]() -> const Element& { return m.element[t]; };
   if (pass.yield < 1)
     for (const auto& [i, j] : edges)
       if (editor.is_tiny(t, i, j) && (editor.contract(t, i, j) || editor.contract(t, j, i)))
@@ -48,7 +48,7 @@ bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass
 }
 
 void straighten_element(Editor& editor, const DynamicMesh& m, int32_t t) {
-  const auto vertex = [&](int i) { return m.element[size_t(t)].v[size_t(i)]; };
+  const auto vertex = [&](int i) { return m.element[t].v[i]; };
   for (int f = 0; f < 4; ++f) {
     if (!editor.bent(t, size_t(f)))
       continue;
@@ -76,7 +76,7 @@ void straighten_element(Editor& editor, const DynamicMesh& m, int32_t t) {
 
 void sort_worst_first(const DynamicMesh& m, std::vector<int32_t>& list) {
   std::sort(list.begin(), list.end(), [&](int32_t a, int32_t b) {
-    const float qa = m.element[size_t(a)].q, qb = m.element[size_t(b)].q;
+    const float qa = m.element[a].q, qb = m.element[b].q;
     return qa != qb ? qa < qb : a < b;
   });
   list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -87,16 +87,16 @@ namespace {
 // What is near in the mesh's order is near in space, and still in the caches.
 void sort_in_mesh_order(const DynamicMesh& m, std::vector<int32_t>& list, float first_below) {
   par::sort_unique(list, 1);
-  std::stable_partition(list.begin(), list.end(), [&](int32_t t) { return m.element[size_t(t)].q < first_below; });
+  std::stable_partition(list.begin(), list.end(), [&](int32_t t) { return m.element[t].q < first_below; });
 }
 
 // The elements at a surface vertex: all of them hang together by their faces.
 void add_star(const DynamicMesh& m, int32_t v, std::vector<int32_t>& list) {
   const auto first = static_cast<std::ptrdiff_t>(list.size());
-  list.push_back(m.incident[size_t(v)]);
+  list.push_back(m.incident[v]);
   for (size_t i = size_t(first); i < list.size(); ++i)
     for (size_t f = 0; f < 4; ++f) {
-      const Element& e = m.element[size_t(list[i])];
+      const Element& e = m.element[list[i]];
       if (e.v[f] != v && e.n[f] >= 0 && std::find(list.begin() + first, list.end(), e.n[f]) == list.end())
         list.push_back(e.n[f]);
     }
@@ -105,12 +105,12 @@ void add_star(const DynamicMesh& m, int32_t v, std::vector<int32_t>& list) {
 } // namespace
 
 bool Schedule::worthwhile(int32_t t, float goal) const {
-  const Element& e = m_.element[size_t(t)];
+  const Element& e = m_.element[t];
   if (e.q >= goal || !e.alive())
     return false;
   const auto& v = e.v;
-  return e.tried <= since_ || std::max({m_.touched[size_t(v[0])], m_.touched[size_t(v[1])],
-                                        m_.touched[size_t(v[2])], m_.touched[size_t(v[3])]}) >= e.tried;
+  return e.tried <= since_ ||
+         std::max({m_.touched[v[0]], m_.touched[v[1]], m_.touched[v[2]], m_.touched[v[3]]}) >= e.tried;
 }
 
 Counts Schedule::run(const Pass& pass) {
@@ -133,9 +133,9 @@ std::vector<int32_t> Schedule::low_elements(float goal, bool tried_too) {
   find_worst();
   return choose(
       static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::stretch,
-      [&](int64_t s) { return m_.worst[size_t(s)] < goal; },
+      [&](int64_t s) { return m_.worst[s] < goal; },
       [&](int64_t e) {
-        const Element& el = m_.element[size_t(e)];
+        const Element& el = m_.element[e];
         return tried_too ? el.alive() && el.q < goal : worthwhile(static_cast<int32_t>(e), goal);
       });
 }
@@ -146,7 +146,7 @@ bool Schedule::in_few_parts(const std::vector<int32_t>& items, int shift, double
   set_lattice(shift, cell, bounds());
   std::vector<double> share(static_cast<size_t>(parts_.count()));
   for (const int32_t t : items)
-    share[size_t(parts_.at(m_.point[size_t(m_.element[size_t(t)].v[0])]))] += 1 / double(items.size());
+    share[parts_.at(m_.point[m_.element[t].v[0]])] += 1 / double(items.size());
   double squares = 0;
   for (const double s : share)
     squares += s * s;
@@ -175,7 +175,7 @@ Counts Schedule::work_off(const std::vector<int32_t>& items, const Pass& pass, i
       editor.changed.clear();
       for (const int32_t e : list)
         if (worthwhile(e, pass.goal) && !improve_element(editor, m_, e, pass))
-          m_.element[size_t(e)].tried = editor.time;
+          m_.element[e].tried = editor.time;
       list.clear();
       for (const int32_t e : editor.changed)
         if (worthwhile(e, pass.goal))
@@ -193,9 +193,9 @@ Counts Schedule::straighten(const Pass& pass) {
   const Editor look(m_, target_, nullptr, parts_, stamp_, none, pass.guard);
   std::vector<int32_t> items = choose(
       static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::stretch,
-      [&](int64_t s) { return m_.labelled[size_t(s)] != 0; },
+      [&](int64_t s) { return m_.labelled[s] != 0; },
       [&](int64_t t) {
-        const Element& e = m_.element[size_t(t)];
+        const Element& e = m_.element[t];
         bool bent = false;
         for (size_t i = 0; e.alive() && !bent && i < 4; ++i)
           bent = e.label[i] != 0 && look.bent(static_cast<int32_t>(t), i);
@@ -213,7 +213,7 @@ Counts Schedule::straighten(const Pass& pass) {
       par::sort_unique(list, 1);
       editor.changed.clear();
       for (const int32_t e : list)
-        if (m_.element[size_t(e)].alive())
+        if (m_.element[e].alive())
           straighten_element(editor, m_, e);
       list.swap(editor.changed);
     }
@@ -221,9 +221,8 @@ Counts Schedule::straighten(const Pass& pass) {
 }
 
 std::vector<int32_t> Schedule::surface_points() const {
-  return choose(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
-    return m_.incident[size_t(v)] >= 0 && follows_target(m_.vertex[size_t(v)].kind);
-  });
+  return choose(static_cast<int64_t>(m_.point.size()), threads_,
+                [&](int64_t v) { return m_.incident[v] >= 0 && follows_target(m_.vertex[v].kind); });
 }
 
 std::vector<int32_t> Schedule::points_off() const {
@@ -247,7 +246,7 @@ Counts Schedule::settle(float floor, const Guard& guard) {
   const std::vector<int32_t> items = surface_points();
   std::vector<int32_t> part;
   for (const int32_t v : items)
-    part.push_back(parts_.owner[size_t(v)]);
+    part.push_back(parts_.owner[v]);
   const int32_t time = ++time_;
   return for_parts(items, part, guard,
                    [&](Editor& editor, std::vector<int32_t>& list) {

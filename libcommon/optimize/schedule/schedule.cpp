@@ -22,8 +22,8 @@ int64_t Schedule::parts_at_surface(double cell) {
   set_lattice(0, cell * cell_, bounds());
   std::vector<uint8_t> met(static_cast<size_t>(parts_.count()));
   par::for_n(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
-    if (m_.incident[size_t(v)] >= 0 && m_.vertex[size_t(v)].kind == Kind::surface)
-      std::atomic_ref(met[size_t(parts_.at(m_.point[size_t(v)]))]).store(1, std::memory_order_relaxed);
+    if (m_.incident[v] >= 0 && m_.vertex[v].kind == Kind::surface)
+      std::atomic_ref(met[parts_.at(m_.point[v])]).store(1, std::memory_order_relaxed);
   });
   return std::count(met.begin(), met.end(), uint8_t{1});
 }
@@ -43,7 +43,7 @@ void Schedule::find_crowded(double apart) {
   for (size_t t = 0; t < triangle.size(); ++t)
     if (crowded[t])
       for (const int32_t v : triangle[t].v)
-        m_.vertex[size_t(v)].crowded = true;
+        m_.vertex[v].crowded = true;
   sheets() = Sheets(cell_for(triangle));
   std::erase_if(triangle, [&](const SheetTriangle& t) { return !m_.crowded(t.v); });
   sheets_.reserve(triangle.size(), threads_);
@@ -66,15 +66,15 @@ void Schedule::add(std::function<void()> work) {
 
 void Schedule::find_worst() {
   par::for_n(static_cast<int64_t>(m_.restless.size()), threads_, 16, [&](int64_t s) {
-    if (!m_.restless[size_t(s)])
+    if (!m_.restless[s])
       return;
-    m_.restless[size_t(s)] = 0;
+    m_.restless[s] = 0;
     float worst = 2;
     m_.for_stretch(s, [&](int64_t e) {
-      if (const Element& el = m_.element[size_t(e)]; el.alive())
+      if (const Element& el = m_.element[e]; el.alive())
         worst = std::min(worst, el.q);
     });
-    m_.worst[size_t(s)] = worst;
+    m_.worst[s] = worst;
   });
 }
 
@@ -86,7 +86,7 @@ float Schedule::worst() {
 int64_t Schedule::below(float goal) const {
   return par::reduce(
       static_cast<int64_t>(m_.element.size()), threads_, int64_t{0},
-      [&](int64_t e) { return int64_t{m_.element[size_t(e)].alive() && m_.element[size_t(e)].q < goal}; },
+      [&](int64_t e) { return int64_t{m_.element[e].alive() && m_.element[e].q < goal}; },
       [](int64_t a, int64_t b) { return a + b; });
 }
 
@@ -94,7 +94,7 @@ PointBox Schedule::bounds() const {
   return par::reduce(
       static_cast<int64_t>(m_.point.size()), threads_, PointBox{},
       [&](int64_t v) {
-        return m_.incident[size_t(v)] >= 0 ? PointBox{m_.point[size_t(v)], m_.point[size_t(v)]} : PointBox{};
+        return m_.incident[v] >= 0 ? PointBox{m_.point[v], m_.point[v]} : PointBox{};
       },
       [](PointBox a, const PointBox& b) {
         a.add(b);
@@ -111,9 +111,9 @@ double Schedule::cell_of_all(double cell) const {
   const bool any_longer = par::reduce(
       static_cast<int64_t>(m_.element.size()), threads_, false,
       [&](int64_t e) {
-        const Element& el = m_.element[size_t(e)];
+        const Element& el = m_.element[e];
         return el.alive() && std::any_of(std::begin(edges), std::end(edges), [&](const auto& ij) {
-                 return norm(m_.point[size_t(el.v[size_t(ij[0])])] - m_.point[size_t(el.v[size_t(ij[1])])]) > most;
+                 return norm(m_.point[el.v[ij[0]]] - m_.point[el.v[ij[1]]]) > most;
                });
       },
       [](bool a, bool b) { return a || b; });
@@ -132,9 +132,8 @@ void Schedule::set_parts(int shift, double cell) {
 
 void Schedule::find_owners() {
   parts_.owner.resize(m_.point.size());
-  par::for_n(static_cast<int64_t>(m_.point.size()), threads_, [&](int64_t v) {
-    parts_.owner[size_t(v)] = m_.incident[size_t(v)] >= 0 ? parts_.at(m_.point[size_t(v)]) : -1;
-  });
+  par::for_n(static_cast<int64_t>(m_.point.size()), threads_,
+             [&](int64_t v) { parts_.owner[v] = m_.incident[v] >= 0 ? parts_.at(m_.point[v]) : -1; });
 }
 
 void Schedule::set_parts_around(const std::vector<int32_t>& points, int shift, double size) {
@@ -144,7 +143,7 @@ void Schedule::set_parts_around(const std::vector<int32_t>& points, int shift, d
   if (parts_.cell > cell) { // too many for the whole mesh, as in a far box: round the points alone
     PointBox around;
     for (const int32_t v : points)
-      around.add({m_.point[size_t(v)], m_.point[size_t(v)]});
+      around.add({m_.point[v], m_.point[v]});
     for (double now = 0, next = cell; next > now; next = parts_.cell) {
       now = next;
       const double beyond = (reach + 2) * now; // so that no point beyond the outermost cells is in a box
@@ -153,18 +152,18 @@ void Schedule::set_parts_around(const std::vector<int32_t>& points, int shift, d
     }
   }
   for (size_t i = 0; i < points.size(); ++i)
-    parts_.add_box(m_.point[size_t(points[shift % 2 == 0 ? i : points.size() - 1 - i])], reach);
+    parts_.add_box(m_.point[points[shift % 2 == 0 ? i : points.size() - 1 - i]], reach);
   find_owners();
 }
 
 int32_t Schedule::part_of(const Element& e) const {
-  const int32_t p = parts_.owner[size_t(e.v[0])];
+  const int32_t p = parts_.owner[e.v[0]];
   return p >= 0 && parts_.owns(p, e.v) ? p : -1;
 }
 
 std::vector<int32_t> Schedule::elements_of_parts() const {
   return choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
-    const Element& e = m_.element[size_t(t)];
+    const Element& e = m_.element[t];
     return e.alive() && part_of(e) >= 0;
   });
 }
@@ -172,7 +171,7 @@ std::vector<int32_t> Schedule::elements_of_parts() const {
 std::vector<int32_t> Schedule::parts_of(const std::vector<int32_t>& elements) const {
   std::vector<int32_t> part(elements.size());
   par::for_n(static_cast<int64_t>(part.size()), threads_,
-             [&](int64_t i) { part[size_t(i)] = part_of(m_.element[size_t(elements[size_t(i)])]); });
+             [&](int64_t i) { part[i] = part_of(m_.element[elements[i]]); });
   return part;
 }
 
@@ -192,13 +191,13 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
   for (size_t i = 0; i < items.size(); ++i) {
     if (part_of_item[i] < 0)
       continue;
-    int32_t& j = job_of[size_t(part_of_item[i])];
+    int32_t& j = job_of[part_of_item[i]];
     if (j < 0) {
       j = static_cast<int32_t>(jobs.size());
       jobs.push_back({});
       jobs.back().room.part = part_of_item[i];
     }
-    jobs[size_t(j)].items.push_back(items[i]);
+    jobs[j].items.push_back(items[i]);
   }
   for (Job& job : jobs) {
     const auto elements = shares.slots + static_cast<size_t>(shares.slots_per_item * double(job.items.size())),
@@ -216,7 +215,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     m_.resize(element_size, vertex_size);
     parts_.owner.resize(vertex_size);
     for (const int32_t v : job.room.vertex)
-      parts_.owner[size_t(v)] = job.room.part;
+      parts_.owner[v] = job.room.part;
   }
   if (last_stamp_ > UINT32_MAX / 2) {
     stamp_.clear();
@@ -249,7 +248,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     helpers_.help();
   });
   par::for_n(static_cast<int64_t>(jobs.size()), threads_, 1,
-             [&](int64_t j) { sheets_now.move_along(jobs[size_t(j)].sheets); });
+             [&](int64_t j) { sheets_now.move_along(jobs[j].sheets); });
   Counts sum;
   std::vector<SheetChanges> changes;
   for (Job& job : jobs) {

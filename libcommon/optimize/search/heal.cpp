@@ -38,7 +38,7 @@ Counts Schedule::heal(const Pass& pass) {
     return {};
   std::vector<int32_t> points;
   for (const int32_t t : low)
-    points.push_back(m_.element[size_t(t)].v[0]);
+    points.push_back(m_.element[t].v[0]);
   par::sort_unique(points, 1);
   find_crowded(everywhere);
   set_parts_around(points, passes_++, pass.cell * cell_);

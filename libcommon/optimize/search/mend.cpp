@@ -10,7 +10,7 @@ namespace molmesh::optimize {
 std::vector<int32_t> Mending::below(float goal, const std::vector<int32_t>& of) const {
   std::vector<int32_t> list;
   for (const int32_t t : of)
-    if (m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < goal)
+    if (m_.element[t].alive() && m_.element[t].q < goal)
       list.push_back(t);
   return list;
 }
@@ -22,7 +22,7 @@ std::vector<int32_t> Mending::bad() {
 std::vector<int32_t> Mending::elements() const {
   std::vector<int32_t> all;
   for (const int32_t t : slots_)
-    if (m_.element[size_t(t)].alive())
+    if (m_.element[t].alive())
       all.push_back(t);
   return all;
 }
@@ -39,7 +39,7 @@ void Mending::flatten() {
     list.swap(editor_.changed);
     par::sort_unique(list, 1);
     for (const int32_t t : list)
-      if (m_.element[size_t(t)].alive())
+      if (m_.element[t].alive())
         straighten_element(editor_, m_, t);
   }
 }
@@ -61,7 +61,7 @@ void Mending::mend(int rounds, double hopeless) {
       sort_worst_first(m_, list);
       editor_.changed.clear();
       for (const int32_t t : list)
-        if (m_.element[size_t(t)].alive() && m_.element[size_t(t)].q < pass_.goal)
+        if (m_.element[t].alive() && m_.element[t].q < pass_.goal)
           improve_element(editor_, m_, t, pass_);
       list = below(pass_.goal, editor_.changed);
     }
@@ -77,7 +77,7 @@ void Mending::straighten() {
   editor_.changed.clear();
   for (const int32_t t : slots_)
     for (size_t f = 0; f < 4; ++f)
-      if (m_.element[size_t(t)].alive() && editor_.bent(t, f)) {
+      if (m_.element[t].alive() && editor_.bent(t, f)) {
         editor_.changed.push_back(t);
         break;
       }
@@ -87,7 +87,7 @@ void Mending::straighten() {
 double Mending::deficit() {
   double sum = 0;
   for (const int32_t t : bad())
-    sum += 1.2 - std::sqrt(m_.element[size_t(t)].q / pass_.goal);
+    sum += 1.2 - std::sqrt(m_.element[t].q / pass_.goal);
   return sum;
 }
 

@@ -30,9 +30,9 @@ constexpr Daring careful{0.01f, false, 0, false, false}, bold{1e-5f, true, 2, fa
 
 // Where the isosurface grazes a wall the mesh has no room for it: long searches there are nearly always in vain.
 bool at_wall(std::vector<int32_t> points, const DynamicMesh& m, double spacing) {
-  std::erase_if(points, [&](int32_t v) { return m.vertex[size_t(v)].kind != Kind::surface; });
-  return points.empty() || std::any_of(points.begin(), points.end(),
-                                       [&](int32_t v) { return !m.walls.clear(m.point[size_t(v)], spacing); });
+  std::erase_if(points, [&](int32_t v) { return m.vertex[v].kind != Kind::surface; });
+  return points.empty() ||
+         std::any_of(points.begin(), points.end(), [&](int32_t v) { return !m.walls.clear(m.point[v], spacing); });
 }
 
 class Recovery {
@@ -86,7 +86,7 @@ private:
     mending_.loose = daring.loose;
     mending_.bend = daring.bend;
   }
-  bool is_off(int32_t v) const { return m_.incident[size_t(v)] >= 0 && editor_.off(v) > 1; }
+  bool is_off(int32_t v) const { return m_.incident[v] >= 0 && editor_.off(v) > 1; }
 
   // True when the operation leaves the part better, once it is mended; nothing has changed otherwise.
   template <class Operation>
@@ -179,16 +179,15 @@ private:
 
   // Edges of the surface at v flip until it can leave.
   bool cut_off(int32_t v) {
-    if (m_.vertex[size_t(v)].kind != Kind::surface)
+    if (m_.vertex[v].kind != Kind::surface)
       return false;
     for (int flips = 0; flips < 8; ++flips) {
       bool flipped = false;
       for (size_t k = 0; k < slots_.size() && !flipped; ++k) {
-        const Element e = m_.element[size_t(slots_[k])];
+        const Element e = m_.element[slots_[k]];
         const int i = e.alive() ? e.find(v) : -1;
         for (int j = 0; i >= 0 && j < 4 && !flipped; ++j)
-          flipped = j != i && follows_target(m_.vertex[size_t(e.v[size_t(j)])].kind) &&
-                    editor_.remove_edge(slots_[k], i, j);
+          flipped = j != i && follows_target(m_.vertex[e.v[j]].kind) && editor_.remove_edge(slots_[k], i, j);
       }
       if (!flipped)
         return false;
@@ -244,8 +243,8 @@ private:
     for (const auto& [t, e] : snapshot.element)
       if (const int i = e.find(v); i >= 0)
         for (int j = 0; j < 4; ++j)
-          if (j != i && follows_target(m_.vertex[size_t(e.v[size_t(j)])].kind))
-            edges.push_back({e.v[size_t(j)], t, 4 * i + j});
+          if (j != i && follows_target(m_.vertex[e.v[j]].kind))
+            edges.push_back({e.v[j], t, 4 * i + j});
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a[0] == b[0]; }),
                 edges.end());

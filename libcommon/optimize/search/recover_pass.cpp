@@ -27,31 +27,29 @@ Counts Schedule::recover(const Pass& pass) {
   const std::vector<int32_t> items = elements_of_parts();
   std::vector<std::vector<int32_t>> off(static_cast<size_t>(parts_.count())); // of each part
   for (const int32_t v : points)
-    if (const int32_t part = parts_.owner[size_t(v)]; part >= 0)
-      off[size_t(part)].push_back(v);
+    if (const int32_t part = parts_.owner[v]; part >= 0)
+      off[part].push_back(v);
   std::vector<uint8_t> failed(off.size());
   vain_.begin(pass);
   Pass shaking = pass;
   shaking.effort = 2;
-  const Counts counts = for_parts(items, parts_of(items), pass.guard,
-                                  [&](Editor& editor, std::vector<int32_t>& list) {
-                                    const auto part = static_cast<size_t>(editor.part());
-                                    int32_t touched = 0;
-                                    for (const int32_t t : list)
-                                      for (const int32_t v : m_.element[size_t(t)].v)
-                                        touched = std::max(touched, m_.touched[size_t(v)]);
-                                    if (vain_.knows(off[part], pass, touched))
-                                      return;
-                                    const bool shaken =
-                                        pass.effort == 3 && vain_.knows(off[part], shaking, touched);
-                                    std::vector<int32_t> slots = list;
-                                    slots.insert(slots.end(), editor.reserve().begin(), editor.reserve().end());
-                                    recover_part(editor, m_, std::move(slots), pass, time, shaken, helpers_);
-                                    failed[part] = editor.counts.total() == 0;
-                                  },
-                                  {.slots_per_item = 0.25, .slots = room_for_shells, .weight = [&](int32_t part) {
-                                     return off[size_t(part)].size();
-                                   }});
+  const Counts counts = for_parts(
+      items, parts_of(items), pass.guard,
+      [&](Editor& editor, std::vector<int32_t>& list) {
+        const auto part = static_cast<size_t>(editor.part());
+        int32_t touched = 0;
+        for (const int32_t t : list)
+          for (const int32_t v : m_.element[t].v)
+            touched = std::max(touched, m_.touched[v]);
+        if (vain_.knows(off[part], pass, touched))
+          return;
+        const bool shaken = pass.effort == 3 && vain_.knows(off[part], shaking, touched);
+        std::vector<int32_t> slots = list;
+        slots.insert(slots.end(), editor.reserve().begin(), editor.reserve().end());
+        recover_part(editor, m_, std::move(slots), pass, time, shaken, helpers_);
+        failed[part] = editor.counts.total() == 0;
+      },
+      {.slots_per_item = 0.25, .slots = room_for_shells, .weight = [&](int32_t part) { return off[part].size(); }});
   for (size_t part = 0; part < off.size(); ++part)
     if (failed[part])
       vain_.note(off[part], pass, time);

@@ -14,7 +14,7 @@ std::vector<int32_t> Mending::worst() {
   sort_worst_first(m_, list);
   list.resize(std::min(list.size(), most));
   for (size_t i = 0, n = list.size(); i < n; ++i)
-    for (const int32_t t : m_.element[size_t(list[i])].n)
+    for (const int32_t t : m_.element[list[i]].n)
       if (t >= 0 && editor_.owned(t) && std::find(list.begin(), list.end(), t) == list.end())
         list.push_back(t);
   return list;
@@ -24,7 +24,7 @@ bool Mending::operate(int32_t t, int k) {
   set_out();
   editor_.bold = true;
   editor_.changed.clear();
-  const auto [i, j] = edges[size_t(k % 6)];
+  const auto [i, j] = edges[k % 6];
   switch (k / 6) {
   case 0:
     return editor_.remove_edge(t, i, j);

@@ -18,12 +18,12 @@ bool Vain::knows(const std::vector<int32_t>& points, const Pass& pass, int32_t t
   if (at == when_.end() || pass.effort >= efforts)
     return false;
   const auto& time = at->second[pass.worst_first];
-  return touched < std::max(time[size_t(pass.effort)], pass.effort == 2 ? time[3] : 0);
+  return touched < std::max(time[pass.effort], pass.effort == 2 ? time[3] : 0);
 }
 
 void Vain::note(const std::vector<int32_t>& points, const Pass& pass, int32_t time) {
   if (pass.effort < efforts)
-    when_[points][pass.worst_first][size_t(pass.effort)] = time;
+    when_[points][pass.worst_first][pass.effort] = time;
 }
 
 } // namespace molmesh::optimize

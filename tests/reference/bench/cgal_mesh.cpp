@@ -40,7 +40,7 @@ TetMesh cgal_mesh(const std::function<double(Vec3d)>& inside, Vec3d center, doub
       const auto [place, fresh] = number.try_emplace(vertex, static_cast<int32_t>(m.point.size()));
       if (fresh)
         m.point.push_back({vertex->point().x(), vertex->point().y(), vertex->point().z()});
-      t[static_cast<size_t>(i)] = place->second;
+      t[i] = place->second;
     }
     m.tet.push_back(t);
     m.region.push_back(Region::molecule);

@@ -55,7 +55,7 @@ TEST_CASE("MC reads .m: points, materials, boundary types, and its own check of 
     SS* simplex = Gem_SS(gem, int(t));
     CHECK(SS_type(simplex) == unsigned(m.region[t]));
     for (int c = 0; c < 4; ++c) {
-      CHECK(VV_id(SS_vertex(simplex, c)) == unsigned(m.tet[t][size_t(c)]));
+      CHECK(VV_id(SS_vertex(simplex, c)) == unsigned(m.tet[t][c]));
       if (const unsigned type = SS_faceType(simplex, c)) {
         CHECK(VDIRICHLET(type) == (type != 2));
         ++found[(type + 1) / 2];

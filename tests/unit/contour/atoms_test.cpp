@@ -30,7 +30,7 @@ double worst_surface_point(const TetMesh& mesh, F distance) {
   for (size_t t = 0; t < mesh.tri.size(); ++t)
     if (mesh.boundary[t] == surface)
       for (int32_t v : mesh.tri[t])
-        worst = std::max(worst, std::fabs(distance(mesh.point[static_cast<size_t>(v)])));
+        worst = std::max(worst, std::fabs(distance(mesh.point[v])));
   return worst;
 }
 

@@ -25,8 +25,8 @@ TEST_CASE("the trilinear sweep agrees with a fine resampling of the cell") {
     std::iota(parent.begin(), parent.end(), 0);
     const auto id = [](int x, int y, int z) { return (z * n + y) * n + x; };
     const auto find = [&](int i) {
-      while (parent[static_cast<size_t>(i)] != i)
-        i = parent[static_cast<size_t>(i)];
+      while (parent[i] != i)
+        i = parent[i];
       return i;
     };
     const auto in = [&](int x, int y, int z) {
@@ -44,7 +44,7 @@ TEST_CASE("the trilinear sweep agrees with a fine resampling of the cell") {
             if (std::min({p[0], p[1], p[2]}) < 0 || in(x, y, z) != in(p[0], p[1], p[2]))
               continue;
             const int i = find(id(x, y, z)), j = find(id(p[0], p[1], p[2]));
-            parent[static_cast<size_t>(std::max(i, j))] = std::min(i, j);
+            parent[std::max(i, j)] = std::min(i, j);
           }
     const std::array<int, 8> label = contour::trilinear_components(v);
     const auto corner = [&](int c) {
@@ -54,8 +54,7 @@ TEST_CASE("the trilinear sweep agrees with a fine resampling of the cell") {
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b < a; ++b)
         if ((v[a] > 0) == (v[b] > 0))
-          same =
-              same && (corner(a) == corner(b)) == (label[static_cast<size_t>(a)] == label[static_cast<size_t>(b)]);
+          same = same && (corner(a) == corner(b)) == (label[a] == label[b]);
     ++compared;
     different += !same;
   }

@@ -32,7 +32,7 @@ FarPatch ring_patch(bool closed) {
 }
 
 double volume6(const FarPatch& p, const Tet& t) {
-  const auto x = [&](size_t i) { return p.position[static_cast<size_t>(t[i])]; };
+  const auto x = [&](size_t i) { return p.position[t[i]]; };
   return six_volume(x(0), x(1), x(2), x(3));
 }
 
@@ -74,13 +74,13 @@ constexpr double shape = 0.01;
 constexpr int n = 5; // points on each axis
 
 float quality(const FarPatch& p, const Tet& t) {
-  const auto x = [&](size_t i) { return p.position[static_cast<size_t>(t[i])]; };
+  const auto x = [&](size_t i) { return p.position[t[i]]; };
   return tet_quality(x(0), x(1), x(2), x(3), shape);
 }
 float off(const FarPatch& p, const Tri& t) {
   Vec3d centroid;
   for (const int32_t v : t)
-    centroid += p.position[static_cast<size_t>(v)] / 3.;
+    centroid += p.position[v] / 3.;
   return contour::detail::Off::of(Bump{}, centroid);
 }
 

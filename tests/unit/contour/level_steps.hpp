@@ -18,8 +18,7 @@ inline int most_steps(const contour::Octree& tree, int axes) {
       for (int a = 0; a < 3; ++a)
         p[a] += step[a] > 0 ? tree.extent(leaf) : step[a];
       if (const int32_t other = tree.find(p); other >= 0)
-        most = std::max(most, std::abs(int(tree.level[static_cast<size_t>(other)]) -
-                                       int(tree.level[static_cast<size_t>(leaf)])));
+        most = std::max(most, std::abs(int(tree.level[other]) - int(tree.level[leaf])));
     }
   return most;
 }

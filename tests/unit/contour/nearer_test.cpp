@@ -21,7 +21,7 @@ double farthest(const TetMesh& mesh, const Isosurface& isosurface) {
       continue;
     Vec3d centroid;
     for (const int32_t v : mesh.tri[t])
-      centroid += mesh.point[static_cast<size_t>(v)] / 3.;
+      centroid += mesh.point[v] / 3.;
     Vec3d foot = centroid;
     if (isosurface.project(foot, 5 * isosurface.spacing()))
       most = std::max(most, norm(foot - centroid) / isosurface.spacing());
@@ -32,7 +32,7 @@ double farthest(const TetMesh& mesh, const Isosurface& isosurface) {
 double least_angle(const TetMesh& mesh) {
   double least = 180;
   for (const Tet& t : mesh.tet) {
-    const auto x = [&](size_t i) { return mesh.point[static_cast<size_t>(t[i])]; };
+    const auto x = [&](size_t i) { return mesh.point[t[i]]; };
     const Dihedrals d = dihedrals(x(0), x(1), x(2), x(3));
     least = std::min(least, *std::min_element(d.degree, d.degree + 6));
   }

@@ -15,8 +15,8 @@ TEST_CASE("flagged lists the places of raised flags, ascending") {
       std::vector<uint8_t> flag(static_cast<size_t>(n));
       std::vector<int32_t> expected;
       for (int i = 0; i < n; ++i) {
-        flag[static_cast<size_t>(i)] = random() % one_in == 0;
-        if (flag[static_cast<size_t>(i)])
+        flag[i] = random() % one_in == 0;
+        if (flag[i])
           expected.push_back(i);
       }
       par::Launcher launcher(2);

@@ -17,7 +17,7 @@ namespace {
 double least_angle(const contour::Elements& e) {
   double least = 180;
   for (const Tet& t : e.tet) {
-    const auto x = [&](size_t i) { return e.position[static_cast<size_t>(t[i])]; };
+    const auto x = [&](size_t i) { return e.position[t[i]]; };
     const Dihedrals d = dihedrals(x(0), x(1), x(2), x(3));
     least = std::min(least, *std::min_element(d.degree, d.degree + 6));
   }
@@ -59,12 +59,11 @@ TEST_CASE("a vertex on a wall stays in its plane") {
   contour::Elements e = fan({0.97, 0.1, -1}, surface);
   LargeArray<Tet> tets;
   for (const Tet& t : e.tet)
-    if (six_volume(e.position[static_cast<size_t>(t[0])], e.position[static_cast<size_t>(t[1])],
-                   e.position[static_cast<size_t>(t[2])], e.position[8]) > 0)
+    if (six_volume(e.position[t[0]], e.position[t[1]], e.position[t[2]], e.position[8]) > 0)
       tets.push_back(t);
   e.tet = tets;
   for (size_t i = 0; i < e.tri.size(); ++i) {
-    const auto on = [&](int32_t v) { return e.position[static_cast<size_t>(v)].z == -1; };
+    const auto on = [&](int32_t v) { return e.position[v].z == -1; };
     if (std::all_of(e.tri[i].begin(), e.tri[i].end(), on)) {
       e.tri[i] = {e.tri[i][0], e.tri[i][1], 8};
       e.boundary[i] = box_x0 + 4;
@@ -138,10 +137,10 @@ TEST_CASE("of a side that nobody asks for there is what the surface moves in, no
       size_t turned = 0, far = 0;
       double least = 180, greatest = 0, least_unasked = 180;
       for (const Tet& t : e.tet) {
-        const auto x = [&](size_t i) { return e.position[at(t[i])]; };
+        const auto x = [&](size_t i) { return e.position[t[i]]; };
         turned += orient3d(x(0), x(1), x(2), x(3)) <= 0;
         const Side side = c.inside(t[0]) ? Side::inside : Side::outside;
-        ++elements[static_cast<size_t>(side)];
+        ++elements[side];
         const Dihedrals d = dihedrals(x(0), x(1), x(2), x(3));
         const double angle = *std::min_element(d.degree, d.degree + 6);
         if (side == unasked) {

@@ -62,9 +62,7 @@ inline BlockGrid sample_grid(Vec3i lower, Vec3i points, double spacing, double i
           continue;
         }
         const bool in = value[index(p)] > 1;
-        b.value[static_cast<size_t>(slot(p))] = active[index(p)] ? value[index(p)]
-                                                : in             ? static_cast<float>(inside_value)
-                                                                 : 0.0f;
+        b.value[slot(p)] = active[index(p)] ? value[index(p)] : in ? static_cast<float>(inside_value) : 0.0f;
         b.all_inside = b.all_inside && in;
         if (!active[index(p)])
           continue;

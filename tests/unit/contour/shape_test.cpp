@@ -62,7 +62,7 @@ TEST_CASE("least sines of many elements are those of one after the other") {
         double least[18];
         least[n] = 7;
         least_sines(
-            n, [&](int i, int k) { return all[first + static_cast<size_t>(i)][static_cast<size_t>(k)]; }, least);
+            n, [&](int i, int k) { return all[first + static_cast<size_t>(i)][k]; }, least);
         CHECK(least[n] == 7);
         for (int i = 0; i < n; ++i) {
           const Element& e = all[first + static_cast<size_t>(i)];

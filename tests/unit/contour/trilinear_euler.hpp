@@ -24,11 +24,11 @@ inline int64_t trilinear_euler(const BlockGrid& grid) {
         std::array<int, 8> parent;
         std::iota(parent.begin(), parent.end(), 0);
         const auto find = [&](int i) {
-          while (parent[static_cast<size_t>(i)] != i)
-            i = parent[static_cast<size_t>(i)];
+          while (parent[i] != i)
+            i = parent[i];
           return i;
         };
-        const auto join = [&](int i, int j) { parent[static_cast<size_t>(find(i))] = find(j); };
+        const auto join = [&](int i, int j) { parent[find(i)] = find(j); };
         for (int c = 0; c < 8; ++c)
           for (int bit = 1; bit < 8; bit *= 2)
             if ((v[c] > 0) == (v[c ^ bit] > 0))
@@ -51,8 +51,7 @@ inline int64_t trilinear_euler(const BlockGrid& grid) {
         // The inside's parts in the cell, less the tunnels that the outside makes through them.
         const std::array<int, 8> label = contour::trilinear_components(v);
         for (int c = 0; c < 8; ++c)
-          chi +=
-              v[c] > 0 ? label[static_cast<size_t>(c)] == c : (label[static_cast<size_t>(c)] == c) - (find(c) == c);
+          chi += v[c] > 0 ? label[c] == c : (label[c] == c) - (find(c) == c);
       }
   return 2 * chi;
 }

@@ -113,7 +113,7 @@ TEST_CASE("device stages: the host's, one by one, on random densities with ambig
   int64_t meshes = 0, dropped = 0, filled = 0;
   for (int trial = 0; trial < 24; ++trial) {
     const BlockGrid grid = test::random_grid(random, trial);
-    const auto meshed = std::array{Options::interior, Options::exterior, Options::both}[size_t(trial / 2 % 3)];
+    const auto meshed = std::array{Options::interior, Options::exterior, Options::both}[trial / 2 % 3];
     for (double adapt : {0.0, 0.3}) {
       CAPTURE(trial, int(meshed), adapt);
       Options options;

@@ -189,7 +189,7 @@ TEST_CASE("device density: slabs are given away as they are found, each block on
         BlockValues room;
         const float* value = active_values(b, room);
         for (int s = 0; s < 512; ++s)
-          if (b.active[size_t(s >> 6)] >> (s & 63) & 1)
+          if (b.active[s >> 6] >> (s & 63) & 1)
             wrong += n >= kept.grid.corner.size() || *value++ != kept.grid.value[512 * n + size_t(s)];
       }
   };
@@ -228,7 +228,7 @@ TEST_CASE("the molecule's tree finds exactly the clusters within their cutoff, i
       const density::Box box{at, at + Vec3d{2, 1, 3}};
       std::vector<int32_t> expected, found;
       for (int32_t c = 0; c < f.clusters(); ++c)
-        if (density::distance2(box, f.box[size_t(c)]) < f.cutoff2[size_t(c)])
+        if (density::distance2(box, f.box[c]) < f.cutoff2[c])
           expected.push_back(c);
       cuda::for_near_clusters(v, box, [&](int32_t c) {
         found.push_back(c);

@@ -58,7 +58,7 @@ TEST_CASE("flow: the worst element rises, none is inverted, what is bound stays 
   for (const optimize::Element& e : m.element) {
     if (!e.alive())
       continue;
-    const auto p = [&](size_t i) { return m.point[size_t(e.v[i])]; };
+    const auto p = [&](size_t i) { return m.point[e.v[i]]; };
     wrong += orient3d(p(0), p(1), p(2), p(3)) <= 0;
     stale += e.q != m.quality(e.v);
   }

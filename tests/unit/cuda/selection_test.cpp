@@ -63,7 +63,7 @@ bool is_balanced_octree(const contour::Octree& tree, Vec3i cells) {
     const int32_t e = tree.extent(i);
     volume += int64_t{e} * e * e;
     if (corner.x + e > cells.x || corner.y + e > cells.y || corner.z + e > cells.z ||
-        (i > 0 && tree.key[static_cast<size_t>(i)] <= tree.key[static_cast<size_t>(i) - 1]))
+        (i > 0 && tree.key[i] <= tree.key[static_cast<size_t>(i) - 1]))
       return false;
     for (const Vec3i p : {corner, corner + (e - 1) * Vec3i{1, 1, 1}, corner + Vec3i{e / 2, 0, e - 1}})
       if (tree.find(p) != i)
@@ -97,7 +97,7 @@ void compare(const BlockGrid& grid, const BoxRequest& box, const contour::Refine
   seen.leaves += static_cast<int64_t>(leaves.key.size());
   for (const contour::SurfaceCell& c : surface.cells) {
     const auto after = std::upper_bound(leaves.key.begin(), leaves.key.end(), c.key);
-    seen.coarse += leaves.level[static_cast<size_t>(after - leaves.key.begin() - 1)] > 0;
+    seen.coarse += leaves.level[after - leaves.key.begin() - 1] > 0;
   }
   seen.cut += lattice.view().any_cut;
   seen.clipped += lattice.cells.x % 8 != 0;
@@ -150,7 +150,7 @@ TEST_CASE("leaf selection: a crossed cell with an inactive corner is bad input, 
   const contour::Surface surface = contour::find_surface(whole, 1);
   const Vec3i p = whole.base() + morton_point(surface.cells[surface.cells.size() / 2].key);
   const int64_t b = BlockIndex(grid).find(p);
-  grid.active[static_cast<size_t>(8 * b + (slot(p) >> 6))] &= ~(uint64_t{1} << (slot(p) & 63));
+  grid.active[8 * b + (slot(p) >> 6)] &= ~(uint64_t{1} << (slot(p) & 63));
   for (int threads : {1, 4}) {
     const contour::Lattice lattice(grid, {}, true, threads);
     CHECK_THROWS_WITH(contour::find_surface(lattice, threads), Catch::Contains("inactive corner"));

@@ -56,7 +56,7 @@ std::string exponents(const Hierarchy& h) {
   for (const Group& outer : h.level.at(0).group) {
     s << outer.name << '=' << outer.exponent << '(';
     for (int64_t i = outer.begin; i < outer.end; ++i)
-      s << (i > outer.begin ? " " : "") << h.level.at(1).group[static_cast<size_t>(i)].exponent;
+      s << (i > outer.begin ? " " : "") << h.level.at(1).group[i].exponent;
     s << ") ";
   }
   return s.str();

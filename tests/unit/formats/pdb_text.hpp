@@ -48,10 +48,9 @@ inline std::string listing(const Hierarchy& h) {
   std::string s;
   for (const Group& chain : h.level.at(0).group)
     for (int64_t r = chain.begin; r < chain.end; ++r) {
-      const Group& residue = h.level.at(1).group[static_cast<size_t>(r)];
+      const Group& residue = h.level.at(1).group[r];
       for (int64_t a = residue.begin; a < residue.end; ++a)
-        s += (s.empty() ? "" : " ") + chain.name + "/" + residue.name + "/" +
-             h.names[h.atom[static_cast<size_t>(a)].name];
+        s += (s.empty() ? "" : " ") + chain.name + "/" + residue.name + "/" + h.names[h.atom[a].name];
     }
   return s;
 }

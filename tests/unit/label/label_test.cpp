@@ -36,8 +36,8 @@ void check_place(const Hierarchy& h, const label::Labels& found, size_t place, d
     CHECK(found.share[l][place] == Approx(std::exp(ln_share)).margin(within));
     if (l == h.level.size())
       return;
-    begin = h.level[l].group[static_cast<size_t>(index)].begin;
-    end = h.level[l].group[static_cast<size_t>(index)].end;
+    begin = h.level[l].group[index].begin;
+    end = h.level[l].group[index].end;
   }
 }
 

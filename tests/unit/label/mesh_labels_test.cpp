@@ -36,10 +36,10 @@ double height(const TetMesh& m, size_t cell) {
   double z = 0;
   if (cell < m.tet.size())
     for (const int32_t p : m.tet[cell])
-      z += m.point[static_cast<size_t>(p)].z / 4;
+      z += m.point[p].z / 4;
   else
     for (const int32_t p : m.tri[cell - m.tet.size()])
-      z += m.point[static_cast<size_t>(p)].z / 3;
+      z += m.point[p].z / 3;
   return z;
 }
 

@@ -31,21 +31,21 @@ TetMesh with_hanging_node(double off) {
   TetMesh m = cubes(3, all_inside);
   const LargeArray<int32_t> across = face_neighbors(m, 1);
   const auto is_inner = [&](int32_t v) {
-    const Vec3d p = m.point[static_cast<size_t>(v)];
+    const Vec3d p = m.point[v];
     return std::min({p.x, p.y, p.z}) > 0 && std::max({p.x, p.y, p.z}) < 3;
   };
   int64_t face = 0;
   for (const auto within =
            [&](int64_t f) {
              const Tri t = face_points(m, f);
-             return across[static_cast<size_t>(f)] >= 0 && is_inner(t[0]) && is_inner(t[1]) && is_inner(t[2]);
+             return across[f] >= 0 && is_inner(t[0]) && is_inner(t[1]) && is_inner(t[2]);
            };
        !within(face);)
     ++face;
   const Tri t = face_points(m, face);
   const auto tet = static_cast<size_t>(face / 4);
-  const int32_t apex = m.tet[tet][static_cast<size_t>(face % 4)], node = static_cast<int32_t>(m.point.size());
-  const auto at = [&](int32_t v) { return m.point[static_cast<size_t>(v)]; };
+  const int32_t apex = m.tet[tet][face % 4], node = static_cast<int32_t>(m.point.size());
+  const auto at = [&](int32_t v) { return m.point[v]; };
   const Vec3d on = 0.25 * at(t[0]) + 0.25 * at(t[1]) + 0.5 * at(t[2]);
   m.point.push_back(on + off * (at(apex) - on));
   for (size_t i = 0; i < 3; ++i) {

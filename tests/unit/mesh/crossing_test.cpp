@@ -17,7 +17,7 @@ bool cross(Vec3d a, Vec3d b, Vec3d c) {
   std::array<int32_t, 3> other{3, 4, 5};
   for (int32_t& v : other) // equal places are common corners
     for (int32_t w = 0; w < 3; ++w)
-      if (point[size_t(v)] == point[size_t(w)])
+      if (point[v] == point[w])
         v = w;
   bool first = false;
   for (int turn = 0; turn < 6; ++turn) {
@@ -79,7 +79,7 @@ TEST_CASE("the tree finds the pairs that all pairs show") {
     Crossings expected;
     for (int32_t s = 0; s < n; ++s)
       for (int32_t t = s + 1; t < n; ++t)
-        if (triangles_cross(point, tri[size_t(s)], tri[size_t(t)]) && expected.pairs++ == 0)
+        if (triangles_cross(point, tri[s], tri[t]) && expected.pairs++ == 0)
           expected.first = {s, t};
     for (int threads : {1, 2, 5}) {
       const Crossings found = find_crossings(point, tri, threads);

@@ -55,13 +55,13 @@ TEST_CASE("faces and triangles come together on their points, whatever the numbe
     std::shuffle(number.begin(), number.end(), random_bits);
   for (Tet& t : m.tet) {
     for (int32_t& v : t)
-      v = number[size_t(v)];
+      v = number[v];
     if (mixed) // an even permutation
       std::rotate(t.begin() + 1, t.begin() + 1 + random_bits() % 3, t.end());
   }
   for (Tri& t : m.tri)
     for (int32_t& v : t)
-      v = number[size_t(v)];
+      v = number[v];
   const Groups expected = by_table(m);
   for (const int threads : {1, 2, 5})
     CHECK((by_groups(m, threads) == expected)); // not printed

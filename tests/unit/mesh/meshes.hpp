@@ -39,7 +39,7 @@ inline TetMesh cubes(int n, const std::function<int32_t(Vec3i)>& region, double 
         const double wall = origin[axis] + (side ? h * n : 0.0);
         bool on = true;
         for (int32_t v : m.tri[t])
-          on &= m.point[static_cast<size_t>(v)][axis] == wall;
+          on &= m.point[v][axis] == wall;
         if (on)
           m.boundary[t] = Boundary::box_x0 + 2 * axis + side;
       }
@@ -47,9 +47,8 @@ inline TetMesh cubes(int n, const std::function<int32_t(Vec3i)>& region, double 
   for (size_t t = 0; t < m.tri.size(); ++t) {
     if (m.boundary[t] == Boundary::surface)
       continue;
-    const Vec3d a = m.point[static_cast<size_t>(m.tri[t][0])];
-    const Vec3d normal =
-        tri_normal(a, m.point[static_cast<size_t>(m.tri[t][1])], m.point[static_cast<size_t>(m.tri[t][2])]);
+    const Vec3d a = m.point[m.tri[t][0]];
+    const Vec3d normal = tri_normal(a, m.point[m.tri[t][1]], m.point[m.tri[t][2]]);
     const int side = m.boundary[t] - Boundary::box_x0;
     if ((normal[side / 2] > 0) != (side % 2 == 1))
       std::swap(m.tri[t][1], m.tri[t][2]);
@@ -62,10 +61,10 @@ inline TetMesh extract(const TetMesh& m, const std::function<bool(int32_t)>& kee
   TetMesh out;
   std::vector<int32_t> number(m.point.size(), -1);
   const auto renumber = [&](int32_t v) {
-    int32_t& n = number[static_cast<size_t>(v)];
+    int32_t& n = number[v];
     if (n < 0) {
       n = static_cast<int32_t>(out.point.size());
-      out.point.push_back(m.point[static_cast<size_t>(v)]);
+      out.point.push_back(m.point[v]);
     }
     return n;
   };
@@ -82,7 +81,7 @@ inline TetMesh extract(const TetMesh& m, const std::function<bool(int32_t)>& kee
     Tri x = m.tri[t];
     bool all = true;
     for (int32_t& v : x)
-      all &= (v = number[static_cast<size_t>(v)]) >= 0;
+      all &= (v = number[v]) >= 0;
     if (!all)
       continue;
     out.tri.push_back(x);

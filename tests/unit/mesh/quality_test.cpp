@@ -46,7 +46,7 @@ TEST_CASE("quality of regions and of the whole is what a plain loop finds") {
     for (size_t i = 0; i < m.tet.size(); ++i) {
       if (k < 2 && m.region[i] != quality.region[k])
         continue;
-      const auto p = [&](size_t j) { return m.point[static_cast<size_t>(m.tet[i][j])]; };
+      const auto p = [&](size_t j) { return m.point[m.tet[i][j]]; };
       ++tets;
       bool beyond = false;
       for (double degree : dihedrals(p(0), p(1), p(2), p(3)).degree) {
@@ -55,7 +55,7 @@ TEST_CASE("quality of regions and of the whole is what a plain loop finds") {
           low = degree, low_tet = int64_t(i);
         high = std::max(high, degree);
         sum += degree;
-        ++bin[size_t(std::clamp(std::floor(degree / 5), 0.0, 35.0))];
+        ++bin[std::clamp(std::floor(degree / 5), 0.0, 35.0)];
       }
       outside += beyond;
       q_low = std::min(q_low, joe_liu_q(six_volume(p(0), p(1), p(2), p(3)), edge_sum2(p(0), p(1), p(2), p(3))));

@@ -128,7 +128,7 @@ TEST_CASE("each rule is broken by a mesh made to break it") {
     CHECK(r.count("folded_face"));
   }
   SECTION("volume: a point moved through a face") {
-    m.point[static_cast<size_t>(m.tet[200][0])] += Vec3d{1.4, 0, 0};
+    m.point[m.tet[200][0]] += Vec3d{1.4, 0, 0};
     CHECK(rules(m).count("volume"));
   }
   SECTION("volume: flat to the last bit only") {
@@ -243,12 +243,12 @@ TEST_CASE("each rule is broken by a mesh made to break it") {
   }
   SECTION("box label inside") {
     const auto t = std::find(m.boundary.begin(), m.boundary.end(), 1) - m.boundary.begin();
-    m.boundary[static_cast<size_t>(t)] = Boundary::box_y1;
+    m.boundary[t] = Boundary::box_y1;
     CHECK(rules(m).count("box_label"));
   }
   SECTION("surface label on the wall") {
     const auto t = std::find(m.boundary.begin(), m.boundary.end(), Boundary::box_z1) - m.boundary.begin();
-    m.boundary[static_cast<size_t>(t)] = Boundary::surface;
+    m.boundary[t] = Boundary::surface;
     CHECK(rules(m).count("box_label"));
   }
   SECTION("box plane") {
@@ -259,7 +259,7 @@ TEST_CASE("each rule is broken by a mesh made to break it") {
   }
   SECTION("box plane: a wrong side") {
     const auto t = std::find(m.boundary.begin(), m.boundary.end(), Boundary::box_z1) - m.boundary.begin();
-    m.boundary[static_cast<size_t>(t)] = Boundary::box_z0;
+    m.boundary[t] = Boundary::box_z0;
     CHECK(rules(m).count("box_plane"));
   }
 }

@@ -27,10 +27,10 @@ TEST_CASE("few elements below the goal are healed, many are left alone") {
     int pressed = 0;
     for (size_t v = 0; v < m.point.size() && pressed < (many ? 40 : 1); ++v)
       if (m.incident[v] >= 0 && m.vertex[v].kind == optimize::Kind::interior && norm(m.point[v] - middle) < 2) {
-        const optimize::Element& e = m.element[size_t(m.incident[v])];
+        const optimize::Element& e = m.element[m.incident[v]];
         const int32_t to = e.v[e.v[0] == static_cast<int32_t>(v) ? 1 : 0];
         const Vec3d was = m.point[v];
-        m.point[v] = was + 0.85 * (m.point[size_t(to)] - was);
+        m.point[v] = was + 0.85 * (m.point[to] - was);
         bool positive = true;
         for (optimize::Element& t : m.element)
           if (t.alive() && t.find(static_cast<int32_t>(v)) >= 0)

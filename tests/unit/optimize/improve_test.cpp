@@ -30,7 +30,7 @@ Measure measure(const TetMesh& mesh, const BlockGrid* grid) {
   for (size_t t = 0; t < mesh.tet.size(); ++t) {
     std::array<Vec3d, 4> p;
     for (size_t i = 0; i < 4; ++i)
-      p[i] = mesh.point[size_t(mesh.tet[t][i])];
+      p[i] = mesh.point[mesh.tet[t][i]];
     const double v = volume6(p[0], p[1], p[2], p[3]) / 6;
     REQUIRE(v > 0);
     m.volume[mesh.region[t]] += v;
@@ -47,8 +47,8 @@ Measure measure(const TetMesh& mesh, const BlockGrid* grid) {
   }
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
     const Tri& f = mesh.tri[t];
-    const Vec3d a = mesh.point[size_t(f[0])];
-    m.area[mesh.boundary[t]] += norm(cross(mesh.point[size_t(f[1])] - a, mesh.point[size_t(f[2])] - a)) / 2;
+    const Vec3d a = mesh.point[f[0]];
+    m.area[mesh.boundary[t]] += norm(cross(mesh.point[f[1]] - a, mesh.point[f[2]] - a)) / 2;
   }
   const SurfaceShape shape = surface_shape(mesh);
   m.euler = shape.euler();
@@ -57,7 +57,7 @@ Measure measure(const TetMesh& mesh, const BlockGrid* grid) {
     for (const int32_t v : shape.points) {
       double distance = 1e30;
       Vec3d normal;
-      REQUIRE(iso.probe(mesh.point[size_t(v)], distance, normal));
+      REQUIRE(iso.probe(mesh.point[v], distance, normal));
       m.off = std::max(m.off, std::abs(distance) / h);
     }
   }
@@ -118,7 +118,7 @@ void ruffle(optimize::DynamicMesh& m) {
   std::vector<std::vector<size_t>> star(m.point.size());
   for (size_t e = 0; e < m.element.size(); ++e)
     for (const int32_t v : m.element[e].v)
-      star[size_t(v)].push_back(e);
+      star[v].push_back(e);
   std::mt19937 generator(5);
   std::uniform_real_distribution<double> push(-0.3 * h, 0.3 * h);
   for (size_t v = 0; v < m.point.size(); ++v) {

@@ -26,7 +26,7 @@ TetMesh ball_in_a_box() {
 std::array<int64_t, 5> kinds(const optimize::DynamicMesh& m) {
   std::array<int64_t, 5> count{};
   for (const optimize::Vertex& v : m.vertex)
-    ++count[size_t(v.kind)];
+    ++count[v.kind];
   return count;
 }
 
@@ -39,7 +39,7 @@ int64_t planes(const optimize::DynamicMesh& m) {
 TEST_CASE("walls are planes far from the origin, after a turn, and in single precision") {
   const TetMesh mesh = ball_in_a_box();
   const auto expected = kinds(optimize::build(mesh, 180, 1));
-  REQUIRE(expected[size_t(optimize::Kind::sliding)] > 100);
+  REQUIRE(expected[optimize::Kind::sliding] > 100);
   const auto check = [&](const char* what, auto&& move) {
     INFO(what);
     TetMesh moved = mesh;
@@ -154,8 +154,7 @@ TEST_CASE("without a density a plate thinner than its triangles stays where it i
         ++p[axis[step]];
         t[step + 1] = at(p);
       }
-      if (volume6(mesh.point[size_t(t[0])], mesh.point[size_t(t[1])], mesh.point[size_t(t[2])],
-                  mesh.point[size_t(t[3])]) < 0)
+      if (volume6(mesh.point[t[0]], mesh.point[t[1]], mesh.point[t[2]], mesh.point[t[3]]) < 0)
         std::swap(t[2], t[3]);
       mesh.tet.push_back(t);
     } while (std::next_permutation(axis.begin(), axis.end()));
@@ -233,7 +232,7 @@ TEST_CASE("labels stay in their planes where edges of a box within the mesh cont
     for (int axis = 0; axis < 3 && mesh.boundary[t] == surface; ++axis)
       for (const int at : {from, to})
         if (std::all_of(mesh.tri[t].begin(), mesh.tri[t].end(),
-                        [&](int32_t v) { return mesh.point[size_t(v)][axis] == at; }))
+                        [&](int32_t v) { return mesh.point[v][axis] == at; }))
           mesh.boundary[t] = inner + 2 * axis + (at == to);
   for (Vec3d& p : mesh.point) // every other point of an edge goes close to the next
     for (int axis = 0; axis < 3; ++axis) {
@@ -247,12 +246,11 @@ TEST_CASE("labels stay in their planes where edges of a box within the mesh cont
   parts.owner.resize(m.point.size());
   std::vector<uint32_t> stamp(m.element.size());
   optimize::Editor editor(m, nullptr, nullptr, parts, stamp, room, {});
-  const auto on_edge = [&](int32_t v) { return std::popcount(m.vertex[size_t(v)].frozen) == 2; };
+  const auto on_edge = [&](int32_t v) { return std::popcount(m.vertex[v].frozen) == 2; };
   for (size_t e = 0; e < m.element.size(); ++e)
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j)
-        if (const optimize::Element& t = m.element[e];
-            i != j && t.alive() && on_edge(t.v[size_t(i)]) && on_edge(t.v[size_t(j)]))
+        if (const optimize::Element& t = m.element[e]; i != j && t.alive() && on_edge(t.v[i]) && on_edge(t.v[j]))
           editor.contract(static_cast<int32_t>(e), i, j);
   CHECK(editor.counts.contractions >= 12);
   mesh = optimize::extract(m);
@@ -264,7 +262,7 @@ TEST_CASE("labels stay in their planes where edges of a box within the mesh cont
       continue;
     std::array<Vec3d, 3> p;
     for (size_t i = 0; i < 3; ++i) {
-      p[i] = mesh.point[size_t(mesh.tri[t][i])];
+      p[i] = mesh.point[mesh.tri[t][i]];
       CHECK(p[i][side / 2] == (side % 2 ? to : from));
     }
     area[side] += norm(tri_normal(p[0], p[1], p[2])) / 2;
@@ -278,13 +276,13 @@ TEST_CASE("a surface that meets a plane within the mesh, or comes in alone, has 
     return norm2(to_double(c) - Vec3d{3.5, 3.5, 3.5}) < 9 && c.z >= 4 ? 2 : 1;
   });
   for (size_t t = 0; t < mesh.tri.size(); ++t)
-    if (mesh.boundary[t] == surface && std::all_of(mesh.tri[t].begin(), mesh.tri[t].end(),
-                                                   [&](int32_t v) { return mesh.point[size_t(v)].z == 4; }))
+    if (mesh.boundary[t] == surface &&
+        std::all_of(mesh.tri[t].begin(), mesh.tri[t].end(), [&](int32_t v) { return mesh.point[v].z == 4; }))
       mesh.boundary[t] = 20;
-  CHECK(kinds(optimize::build(mesh, 180, 1))[size_t(optimize::Kind::trace)] == 0);
+  CHECK(kinds(optimize::build(mesh, 180, 1))[optimize::Kind::trace] == 0);
   TetMesh half = molmesh::testing::cubes(8, [](Vec3i c) -> int32_t {
     return norm2(to_double(c) - Vec3d{3.5, 3.5, 0}) < 9 ? 2 : 1;
   });
-  CHECK(kinds(optimize::build(half, 180, 1))[size_t(optimize::Kind::trace)] > 8);
-  CHECK(kinds(optimize::build(half, 50, 1))[size_t(optimize::Kind::trace)] == 0);
+  CHECK(kinds(optimize::build(half, 180, 1))[optimize::Kind::trace] > 8);
+  CHECK(kinds(optimize::build(half, 50, 1))[optimize::Kind::trace] == 0);
 }

@@ -105,13 +105,13 @@ inline TetMesh lattice_mesh(const Field& field, Vec3d origin, double h, int n, i
     const int region = inside(owner) ? 1 : 2;
     if (keep != 0 && region != keep)
       return;
-    if (volume6(mesh.point[size_t(a)], mesh.point[size_t(b)], mesh.point[size_t(c)], mesh.point[size_t(d)]) < 0)
+    if (volume6(mesh.point[a], mesh.point[b], mesh.point[c], mesh.point[d]) < 0)
       std::swap(c, d);
     mesh.tet.push_back({a, b, c, d});
     mesh.region.push_back(region);
   };
   const auto vol = [&](int32_t a, int32_t b, int32_t c, int32_t d) {
-    return volume6(mesh.point[size_t(a)], mesh.point[size_t(b)], mesh.point[size_t(c)], mesh.point[size_t(d)]);
+    return volume6(mesh.point[a], mesh.point[b], mesh.point[c], mesh.point[d]);
   };
   for (int i = 1; i < n; ++i)
     for (int j = 1; j < n; ++j)
@@ -173,7 +173,7 @@ inline TetMesh lattice_mesh(const Field& field, Vec3d origin, double h, int n, i
   std::map<Tri, std::vector<std::pair<size_t, int>>> faces;
   for (size_t t = 0; t < mesh.tet.size(); ++t)
     for (int f = 0; f < 4; ++f) {
-      Tri key{mesh.tet[t][size_t(face[f][0])], mesh.tet[t][size_t(face[f][1])], mesh.tet[t][size_t(face[f][2])]};
+      Tri key{mesh.tet[t][face[f][0]], mesh.tet[t][face[f][1]], mesh.tet[t][face[f][2]]};
       std::sort(key.begin(), key.end());
       faces[key].push_back({t, f});
     }
@@ -186,7 +186,7 @@ inline TetMesh lattice_mesh(const Field& field, Vec3d origin, double h, int n, i
       s = 1;
     const Tet& t = mesh.tet[at[s].first];
     const int* o = face[at[s].second];
-    Tri tri{t[size_t(o[0])], t[size_t(o[1])], t[size_t(o[2])]};
+    Tri tri{t[o[0]], t[o[1]], t[o[2]]};
     int label = surface;
     if (at.size() == 1)
       for (int a = 0; a < 3; ++a)
@@ -194,7 +194,7 @@ inline TetMesh lattice_mesh(const Field& field, Vec3d origin, double h, int n, i
           const double wall = side ? high[a] : low[a];
           bool on = true;
           for (const int32_t v : tri)
-            on = on && std::abs(mesh.point[size_t(v)][a] - wall) < 1e-9;
+            on = on && std::abs(mesh.point[v][a] - wall) < 1e-9;
           if (on)
             label = 2 + 2 * a + side;
         }
@@ -208,13 +208,13 @@ inline TetMesh lattice_mesh(const Field& field, Vec3d origin, double h, int n, i
   std::vector<Vec3d> used;
   for (Tet& t : mesh.tet)
     for (int32_t& v : t) {
-      if (id[size_t(v)] < 0)
-        id[size_t(v)] = static_cast<int32_t>(used.size()), used.push_back(mesh.point[size_t(v)]);
-      v = id[size_t(v)];
+      if (id[v] < 0)
+        id[v] = static_cast<int32_t>(used.size()), used.push_back(mesh.point[v]);
+      v = id[v];
     }
   for (Tri& t : mesh.tri)
     for (int32_t& v : t)
-      v = id[size_t(v)];
+      v = id[v];
   mesh.point = used;
   return mesh;
 }

@@ -35,9 +35,7 @@ struct Case {
 double volume(const TetMesh& mesh) {
   double sum = 0;
   for (const Tet& t : mesh.tet)
-    sum += volume6(mesh.point[size_t(t[0])], mesh.point[size_t(t[1])], mesh.point[size_t(t[2])],
-                   mesh.point[size_t(t[3])]) /
-           6;
+    sum += volume6(mesh.point[t[0]], mesh.point[t[1]], mesh.point[t[2]], mesh.point[t[3]]) / 6;
   return sum;
 }
 
@@ -128,5 +126,5 @@ TEST_CASE("shells fill what they are put into, and the surface keeps its triangl
   CHECK(gained > 0);
   CHECK(volume(now) - volume(then) == Approx(keep == 0 ? 0 : gained).margin(1e-9));
   for (const int32_t v : room.vertex)
-    REQUIRE(m.incident[size_t(v)] < 0);
+    REQUIRE(m.incident[v] < 0);
 }

@@ -43,9 +43,8 @@ TEST_CASE("the improved mesh comes with its neighbours and its own extreme angle
       for (size_t i = 0; i < 4; ++i)
         for (size_t j = i + 1; j < 4; ++j) {
           const size_t k = i == 0 ? (j == 1 ? 2 : 1) : 0, l = 6 - i - j - k; // the edge k l, seen from i and j
-          const Vec3d e = m.point[size_t(t[l])] - m.point[size_t(t[k])], unit = e / norm(e);
-          const Vec3d x = m.point[size_t(t[i])] - m.point[size_t(t[k])],
-                      y = m.point[size_t(t[j])] - m.point[size_t(t[k])];
+          const Vec3d e = m.point[t[l]] - m.point[t[k]], unit = e / norm(e);
+          const Vec3d x = m.point[t[i]] - m.point[t[k]], y = m.point[t[j]] - m.point[t[k]];
           const Vec3d u = x - dot(x, unit) * unit, v = y - dot(y, unit) * unit;
           const double angle = std::atan2(norm(cross(u, v)), dot(u, v)) * 180 / 3.14159265358979323846;
           least = std::min(least, angle), most = std::max(most, angle);

@@ -50,12 +50,11 @@ TEST_CASE("a part and its copy change alike") {
   optimize::Editor like(editor, copy, stamp_of_copy);
   const auto alike = [&] {
     for (size_t k = 0; k < slots.size(); ++k) {
-      const optimize::Element &e = m.element[size_t(slots[k])], &c = copy.mesh.element[size_t(copy.slots[k])];
+      const optimize::Element &e = m.element[slots[k]], &c = copy.mesh.element[copy.slots[k]];
       if (e.alive() != c.alive() || e.q != c.q || e.label != c.label || e.region != c.region)
         return false;
       for (size_t i = 0; i < 4 && e.alive(); ++i)
-        if (m.point[size_t(e.v[i])] != copy.mesh.point[size_t(c.v[i])] ||
-            (e.n[i] < 0 ? -1 : copy.number(e.n[i])) != c.n[i])
+        if (m.point[e.v[i]] != copy.mesh.point[c.v[i]] || (e.n[i] < 0 ? -1 : copy.number(e.n[i])) != c.n[i])
           return false;
     }
     return true;
@@ -64,7 +63,7 @@ TEST_CASE("a part and its copy change alike") {
   for (optimize::Editor* e : {&editor, &like})
     e->goal = pass.goal;
   for (size_t k = 0; k < slots.size(); ++k) {
-    if (!m.element[size_t(slots[k])].alive() || m.element[size_t(slots[k])].q >= pass.goal)
+    if (!m.element[slots[k]].alive() || m.element[slots[k]].q >= pass.goal)
       continue;
     const bool done = optimize::improve_element(editor, m, slots[k], pass);
     CHECK(optimize::improve_element(like, copy.mesh, copy.slots[k], pass) == done);

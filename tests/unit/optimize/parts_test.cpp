@@ -93,12 +93,12 @@ TEST_CASE("spokes find the worst element wherever their vertex is") {
     for (const float above : {-2.f, *std::max_element(worst.begin(), worst.end()), worst[0], worst[7]}) {
       spokes.ascent(place[0], 1e-3);
       int first = from;
-      while (first < places && !(worst[size_t(first)] > above))
+      while (first < places && !(worst[first] > above))
         ++first;
       float q = -3;
       REQUIRE(spokes.first_above(place.data(), from, places, above, q) == first);
       if (first < places)
-        CHECK(q == worst[size_t(first)]);
+        CHECK(q == worst[first]);
     }
   }
 }
@@ -160,7 +160,7 @@ TEST_CASE("log G reaches a quarter of a cell beyond the known ones") {
   const Vec3i pole{9, 16, 16}, gone{8, 16, 16}; // on the isosurface, and outside
   const int64_t b = BlockIndex(grid).find(gone);
   REQUIRE(b >= 0);
-  grid.active[size_t(8 * b + (slot(gone) >> 6))] &= ~(uint64_t{1} << (slot(gone) & 63));
+  grid.active[8 * b + (slot(gone) >> 6)] &= ~(uint64_t{1} << (slot(gone) & 63));
   const Isosurface surface(grid, 1);
   const auto at = [&](double cells) { return h * (to_double(pole) + Vec3d{-cells, 0.1, 0.1}); };
   double f = 0;
@@ -183,8 +183,8 @@ TEST_CASE("the reference surface gives the closest point of all its triangles") 
     for (const Tri& t : mesh.tri) // barycentric samples of every triangle
       for (int i = 0; i <= 40; ++i)
         for (int j = 0; i + j <= 40; ++j) {
-          const Vec3d q = (double(i) * mesh.point[size_t(t[0])] + double(j) * mesh.point[size_t(t[1])] +
-                           double(40 - i - j) * mesh.point[size_t(t[2])]) /
+          const Vec3d q = (double(i) * mesh.point[t[0]] + double(j) * mesh.point[t[1]] +
+                           double(40 - i - j) * mesh.point[t[2]]) /
                           40.;
           best = std::min(best, norm(q - from));
         }
@@ -223,9 +223,9 @@ TEST_CASE("far larger triangles around a fine surface take little memory and are
     REQUIRE(surface.project(p, 0.5));
     CHECK(std::abs(dot(p - on, out)) < 1e-9);
     const Tri& t = mesh.tri[size_t(n) * fine / 50];
-    Vec3d q = mesh.point[size_t(t[0])];
+    Vec3d q = mesh.point[t[0]];
     REQUIRE(surface.project(q, 0.5));
-    CHECK(norm(q - mesh.point[size_t(t[0])]) < 1e-9);
+    CHECK(norm(q - mesh.point[t[0]]) < 1e-9);
   }
 }
 
@@ -250,7 +250,7 @@ TEST_CASE("a mesh that is built and extracted is the same mesh") {
   CHECK(sorted(back) == sorted(mesh)); // orientation included
   int64_t kinds[5] = {};
   for (const optimize::Vertex& v : m.vertex)
-    ++kinds[size_t(v.kind)];
-  CHECK(kinds[size_t(optimize::Kind::surface)] > 0);
-  CHECK(kinds[size_t(optimize::Kind::fixed)] == (keep == 1 ? 0 : 8)); // the corners of the box
+    ++kinds[v.kind];
+  CHECK(kinds[optimize::Kind::surface] > 0);
+  CHECK(kinds[optimize::Kind::fixed] == (keep == 1 ? 0 : 8)); // the corners of the box
 }

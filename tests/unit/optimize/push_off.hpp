@@ -26,7 +26,7 @@ inline int push_off(optimize::DynamicMesh& m, const Isosurface& surface,
   for (size_t e = 0; e < m.element.size(); ++e) {
     optimize::Element& element = m.element[e];
     for (const int32_t v : element.v)
-      if (element.alive() && pushed[size_t(v)]) {
+      if (element.alive() && pushed[v]) {
         element.q = m.quality(element.v);
         m.note_change(static_cast<int32_t>(e));
         break;

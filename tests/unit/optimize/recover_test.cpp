@@ -74,14 +74,14 @@ TEST_CASE("points where the isosurface is not known count as off, and come back"
     const std::vector<int32_t> star = c.star(static_cast<int32_t>(v));
     for (double step = 0.3; step < 1.5 && is_known(v); step += 0.05)
       c.m.point[v] = from + step * h * normal;
-    const bool positive = std::all_of(star.begin(), star.end(),
-                                      [&](int32_t e) { return c.m.quality(c.m.element[size_t(e)].v) > 1e-4f; });
+    const bool positive =
+        std::all_of(star.begin(), star.end(), [&](int32_t e) { return c.m.quality(c.m.element[e].v) > 1e-4f; });
     if (is_known(v) || !positive)
       c.m.point[v] = from;
     else
       ++lost;
     for (const int32_t e : star) {
-      c.m.element[size_t(e)].q = c.m.quality(c.m.element[size_t(e)].v);
+      c.m.element[e].q = c.m.quality(c.m.element[e].v);
       c.m.note_change(e);
     }
   }
@@ -107,7 +107,7 @@ TEST_CASE("one pass has room around every point, wherever the lattice of the par
       continue;
     c.m.point[v] += 0.05 * h * normal;
     for (const int32_t e : c.star(static_cast<int32_t>(v))) {
-      c.m.element[size_t(e)].q = c.m.quality(c.m.element[size_t(e)].v);
+      c.m.element[e].q = c.m.quality(c.m.element[e].v);
       c.m.note_change(e);
     }
     REQUIRE(optimize::measure_fidelity(c.m, c.surface, 1).points_off == 1);
@@ -163,7 +163,7 @@ TEST_CASE("what is restored is as it was saved") {
   for (const int32_t e : inner)
     for (int i = 0; i < 3; ++i)
       for (int j = i + 1; j < 4; ++j)
-        if (c.m.element[size_t(e)].alive())
+        if (c.m.element[e].alive())
           editor.remove_edge(e, i, j);
   REQUIRE(editor.counts.surface_flips > 10);
   editor.straighten = editor.bold = false;
@@ -171,15 +171,15 @@ TEST_CASE("what is restored is as it was saved") {
   for (const int32_t e : inner)
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j)
-        if (i != j && c.m.element[size_t(e)].alive() && !editor.split(e, i, j) && !editor.remove_edge(e, i, j) &&
+        if (i != j && c.m.element[e].alive() && !editor.split(e, i, j) && !editor.remove_edge(e, i, j) &&
             !editor.contract(e, i, j))
-          editor.smooth(c.m.element[size_t(e)].v[size_t(i)]);
+          editor.smooth(c.m.element[e].v[i]);
   REQUIRE(editor.counts.moves > 10);
   REQUIRE(editor.counts.splits + editor.counts.contractions > 10);
   const optimize::Snapshot changed = editor.save([&] {
     std::vector<int32_t> alive;
     for (int32_t e = 0; e < size + 1000; ++e)
-      if (c.m.element[size_t(e)].alive() && editor.owned(e))
+      if (c.m.element[e].alive() && editor.owned(e))
         alive.push_back(e);
     return alive;
   }());
@@ -197,18 +197,16 @@ TEST_CASE("what is restored is as it was saved") {
              c.m.element[e].label == then.element[e].label));
   const auto as_before = [&] {
     for (int32_t v = 0; v < points; ++v)
-      REQUIRE((c.m.point[size_t(v)] == before.point[size_t(v)] &&
-               c.m.incident[size_t(v)] == before.incident[size_t(v)] &&
-               c.m.touched[size_t(v)] == before.touched[size_t(v)] &&
-               c.m.state[size_t(v)] == before.state[size_t(v)] &&
-               c.m.vertex[size_t(v)].kind == before.vertex[size_t(v)].kind));
+      REQUIRE((c.m.point[v] == before.point[v] && c.m.incident[v] == before.incident[v] &&
+               c.m.touched[v] == before.touched[v] && c.m.state[v] == before.state[v] &&
+               c.m.vertex[v].kind == before.vertex[v].kind));
     for (int32_t e = 0; e < size + 1000; ++e) {
-      const optimize::Element& x = c.m.element[size_t(e)];
+      const optimize::Element& x = c.m.element[e];
       if (e >= size)
         REQUIRE_FALSE(x.alive());
       else
-        REQUIRE((x.v == before.element[size_t(e)].v && x.n == before.element[size_t(e)].n &&
-                 x.label == before.element[size_t(e)].label && x.q == before.element[size_t(e)].q));
+        REQUIRE((x.v == before.element[e].v && x.n == before.element[e].n && x.label == before.element[e].label &&
+                 x.q == before.element[e].q));
     }
   };
   editor.restore(snapshot);
@@ -235,9 +233,9 @@ TEST_CASE("what is restored is as it was saved") {
       editor.goal = bold ? 1e-4f : goal;
       for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j)
-          if (const optimize::Element& e = c.m.element[size_t(inner[k])]; i != j && e.alive())
+          if (const optimize::Element& e = c.m.element[inner[k]]; i != j && e.alive())
             editor.remove_edge(inner[k], i, j) || editor.split(inner[k], i, j) || editor.contract(inner[k], i, j) ||
-                editor.hand_over(e.v[size_t(i)]) || editor.smooth(e.v[size_t(i)]);
+                editor.hand_over(e.v[i]) || editor.smooth(e.v[i]);
       counts_as_anew();
     }
     done += editor.counts.total();

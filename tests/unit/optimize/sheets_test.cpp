@@ -50,7 +50,7 @@ TEST_CASE("sheets know the triangles that are there, and only those") {
     put(sheets, face);
   for (int64_t face = 0; face < 300; face += 3) { // a little, mostly in the same cells
     for (const int32_t v : there[face].v)
-      point[size_t(v)] += Vec3d{1e-3 * size(generator), 1e-3 * size(generator), 0};
+      point[v] += Vec3d{1e-3 * size(generator), 1e-3 * size(generator), 0};
     there[face] = optimize::sheet_triangle(point, there[face].v, face);
     sheets.insert(there[face]);
   }
@@ -121,7 +121,7 @@ TEST_CASE("triangles that run the same way and lie side by side do not cross") {
       point.push_back({u(generator), u(generator), height(generator)});
     std::array<int32_t, 3> v{0, 1, 2}, w{3, 4, 5};
     if (n % 2)
-      w[0] = v[size_t(n / 2 % 3)];
+      w[0] = v[n / 2 % 3];
     const auto a = optimize::sheet_triangle(point, v, 0), b = optimize::sheet_triangle(point, w, 1);
     if (!a.of_one_sheet(b, n % 2))
       continue;
@@ -239,8 +239,7 @@ TEST_CASE("two sheets that are drawn through each other stop before they cross")
   double volume[2] = {};
   for (const TetMesh* x : {&mesh, &moved})
     for (const Tet& t : x->tet)
-      volume[x == &moved] += tet_volume(x->point[size_t(t[0])], x->point[size_t(t[1])], x->point[size_t(t[2])],
-                                        x->point[size_t(t[3])]);
+      volume[x == &moved] += tet_volume(x->point[t[0]], x->point[t[1]], x->point[t[2]], x->point[t[3]]);
   CHECK(volume[1] > 1.2 * volume[0]);
 }
 
@@ -301,7 +300,7 @@ TEST_CASE("a hole of four triangles is not turned inside out, though none of the
   const optimize::DynamicMesh inner = optimize::build(full, 180, 1);
   const auto is_inner = [&](const Tet& t) {
     return std::all_of(t.begin(), t.end(),
-                       [&](int32_t w) { return inner.vertex[size_t(w)].kind == optimize::Kind::interior; });
+                       [&](int32_t w) { return inner.vertex[w].kind == optimize::Kind::interior; });
   };
   const auto shared = [](const Tet& a, const Tet& b) {
     return std::count_if(a.begin(), a.end(),
@@ -337,7 +336,7 @@ TEST_CASE("a hole of four triangles is not turned inside out, though none of the
       mesh.region.pop_back();
     }
     optimize::DynamicMesh m = optimize::build(mesh, 180, 1);
-    const auto p = [&](size_t k) { return m.point[size_t(v[k])]; };
+    const auto p = [&](size_t k) { return m.point[v[k]]; };
     Draw target; // a little through the face on the other side
     target.from = p(mover);
     target.to = target.from + 1.02 * 4. / 3 * ((p(0) + p(1) + p(2) + p(3)) / 4. - target.from);

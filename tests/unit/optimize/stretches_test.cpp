@@ -24,7 +24,7 @@ Seen check(const optimize::DynamicMesh& m) {
     float worst = 2;
     bool label = false;
     m.for_stretch(int64_t(s), [&](int64_t t) {
-      const optimize::Element& e = m.element[size_t(t)];
+      const optimize::Element& e = m.element[t];
       if (!e.alive())
         return;
       worst = std::min(worst, e.q);

@@ -36,7 +36,7 @@ TEST_CASE("vertices of the surface and one wall are its trace") {
     CAPTURE(int(meshed), seed);
     int traces = 0, others = 0;
     for (const auto& [v, boundary] : boundaries(mesh)) {
-      const optimize::Vertex& x = m.vertex[size_t(v)];
+      const optimize::Vertex& x = m.vertex[v];
       if (x.kind != optimize::Kind::trace) {
         others += on_trace(boundary);
         continue;
@@ -44,7 +44,7 @@ TEST_CASE("vertices of the surface and one wall are its trace") {
       ++traces;
       CHECK(on_trace(boundary));
       CHECK(m.labels[x.label].name == surface);
-      CHECK(mesh.point[size_t(v)][x.axis()] == (x.axis() == 0 ? 0.6 : -0.6));
+      CHECK(mesh.point[v][x.axis()] == (x.axis() == 0 ? 0.6 : -0.6));
     }
     CHECK(traces > 20);
     CHECK(others == 0);
@@ -68,7 +68,7 @@ TEST_CASE("the trace of a surface on a wall lies on the isosurface and in the wa
       CHECK(result.after.min >= 25);
       CHECK(result.after.max <= 140);
       for (const auto& [v, boundary] : boundaries(mesh)) {
-        const Vec3d p = mesh.point[size_t(v)];
+        const Vec3d p = mesh.point[v];
         CHECK((boundary.count(box_x1) == 0 || p.x == at));
         CHECK((boundary.count(box_y0) == 0 || p.y == -at));
         if (!on_trace(boundary))

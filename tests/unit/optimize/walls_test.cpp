@@ -90,8 +90,8 @@ TEST_CASE("the device's flow leaves sheets that face each other to the host") {
     for (size_t f = 0; f < 4; ++f)
       if (m.element[t].alive() && m.element[t].n[f] < 0) {
         const auto v = optimize::outward_triangle(m.element[t].v, f);
-        const bool changed = std::any_of(v.begin(), v.end(),
-                                         [&](int32_t w) { return m.point[size_t(w)] != before.point[size_t(w)]; });
+        const bool changed =
+            std::any_of(v.begin(), v.end(), [&](int32_t w) { return m.point[w] != before.point[w]; });
         watched += m.crowded(v);
         moved += changed;
         moved_watched += changed && m.crowded(v);

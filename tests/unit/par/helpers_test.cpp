@@ -47,7 +47,7 @@ TEST_CASE("all of a shared loop is done once, whoever has items left") {
         std::atomic<int> at{0};
         const auto work = [&] {
           for (int k; (k = at++) < 100;)
-            ++done[size_t(100 * item + k)];
+            ++done[100 * item + k];
         };
         helpers.share(work, work);
       }

@@ -19,7 +19,7 @@ TEST_CASE("reduce gives the same bits at any number of threads") {
     x = u(random);
   const auto sum = [&](int threads) {
     return par::reduce(
-        static_cast<int64_t>(v.size()), threads, 0.0, [&](int64_t i) { return v[static_cast<size_t>(i)]; },
+        static_cast<int64_t>(v.size()), threads, 0.0, [&](int64_t i) { return v[i]; },
         [](double a, double b) { return a + b; });
   };
   const double one = sum(1);
@@ -102,15 +102,13 @@ TEST_CASE("place_by is a stable sort that leaves out negative keys") {
       for (size_t i = 0; i < n; ++i)
         if (key[i] >= 0)
           expected.push_back(static_cast<int64_t>(i));
-      std::stable_sort(expected.begin(), expected.end(), [&](int64_t a, int64_t b) {
-        return key[static_cast<size_t>(a)] < key[static_cast<size_t>(b)];
-      });
+      std::stable_sort(expected.begin(), expected.end(), [&](int64_t a, int64_t b) { return key[a] < key[b]; });
       for (int threads : {1, 3}) {
         std::vector<int64_t> placed;
         par::place_by(
-            static_cast<int64_t>(n), keys, threads, [&](int64_t i) { return key[static_cast<size_t>(i)]; },
+            static_cast<int64_t>(n), keys, threads, [&](int64_t i) { return key[i]; },
             [&](int64_t slots) { placed.assign(static_cast<size_t>(slots), -1); },
-            [&](int64_t slot, int64_t i) { placed[static_cast<size_t>(slot)] = i; });
+            [&](int64_t slot, int64_t i) { placed[slot] = i; });
         CHECK(placed == expected);
       }
     }
