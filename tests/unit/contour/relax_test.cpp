@@ -140,7 +140,7 @@ TEST_CASE("of a side that nobody asks for there is what the surface moves in, no
         const auto x = [&](size_t i) { return e.position[t[i]]; };
         turned += orient3d(x(0), x(1), x(2), x(3)) <= 0;
         const Side side = c.inside(t[0]) ? Side::inside : Side::outside;
-        ++elements[side];
+        ++elements[size_t(side)];
         const Dihedrals d = dihedrals(x(0), x(1), x(2), x(3));
         const double angle = *std::min_element(d.degree, d.degree + 6);
         if (side == unasked) {
