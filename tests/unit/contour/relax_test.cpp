@@ -111,7 +111,6 @@ TEST_CASE("of a side that nobody asks for there is what the surface moves in, no
     return std::exp(-0.5 * (norm2(x - Vec3d{1.3, 0.2, 0}) - 4)) +
            std::exp(-0.5 * (norm2(x + Vec3d{1.4, 0, 0.3}) - 5));
   };
-  const auto at = [](int32_t i) { return static_cast<size_t>(i); };
   for (const BlockGrid& grid :
        {test::sample_grid({-14, -12, -12}, {29, 25, 25}, 0.5, 2, two), test::creased_grid(6)}) {
     std::array<size_t, 2> of_both{}; // elements on each Side

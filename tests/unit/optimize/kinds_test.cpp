@@ -26,7 +26,7 @@ TetMesh ball_in_a_box() {
 std::array<int64_t, 5> kinds(const optimize::DynamicMesh& m) {
   std::array<int64_t, 5> count{};
   for (const optimize::Vertex& v : m.vertex)
-    ++count[v.kind];
+    ++count[size_t(v.kind)];
   return count;
 }
 
@@ -39,7 +39,7 @@ int64_t planes(const optimize::DynamicMesh& m) {
 TEST_CASE("walls are planes far from the origin, after a turn, and in single precision") {
   const TetMesh mesh = ball_in_a_box();
   const auto expected = kinds(optimize::build(mesh, 180, 1));
-  REQUIRE(expected[optimize::Kind::sliding] > 100);
+  REQUIRE(expected[size_t(optimize::Kind::sliding)] > 100);
   const auto check = [&](const char* what, auto&& move) {
     INFO(what);
     TetMesh moved = mesh;
@@ -279,10 +279,10 @@ TEST_CASE("a surface that meets a plane within the mesh, or comes in alone, has 
     if (mesh.boundary[t] == surface &&
         std::all_of(mesh.tri[t].begin(), mesh.tri[t].end(), [&](int32_t v) { return mesh.point[v].z == 4; }))
       mesh.boundary[t] = 20;
-  CHECK(kinds(optimize::build(mesh, 180, 1))[optimize::Kind::trace] == 0);
+  CHECK(kinds(optimize::build(mesh, 180, 1))[size_t(optimize::Kind::trace)] == 0);
   TetMesh half = molmesh::testing::cubes(8, [](Vec3i c) -> int32_t {
     return norm2(to_double(c) - Vec3d{3.5, 3.5, 0}) < 9 ? 2 : 1;
   });
-  CHECK(kinds(optimize::build(half, 180, 1))[optimize::Kind::trace] > 8);
-  CHECK(kinds(optimize::build(half, 50, 1))[optimize::Kind::trace] == 0);
+  CHECK(kinds(optimize::build(half, 180, 1))[size_t(optimize::Kind::trace)] > 8);
+  CHECK(kinds(optimize::build(half, 50, 1))[size_t(optimize::Kind::trace)] == 0);
 }
