@@ -15,7 +15,7 @@
 
 namespace molmesh::cli {
 
-/// Options of every tool (design §4). A tool's Options derives from it.
+/// Options of every tool (docs/conventions.md). A tool's Options derives from it.
 struct Common {
   std::string input = "-", output = "-";
   std::string mode = "omp"; ///< seq, omp, cuda

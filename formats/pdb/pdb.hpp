@@ -12,7 +12,7 @@
 
 namespace molmesh::formats {
 
-/// The options of pdb2hier (design §4). Selections are gemmi's (MMDB syntax).
+/// The options of pdb2hier (PDB.md). Selections are gemmi's (MMDB syntax).
 struct PdbOptions {
   std::string format = "auto";                            ///< auto, pdb, mmcif, mmjson, pqr
   std::string model = "first";                            ///< first, all, or a model's number

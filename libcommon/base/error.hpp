@@ -1,4 +1,4 @@
-// error.hpp — the one exception of the library, and the exit status every tool maps it to (design §4).
+// error.hpp — the one exception of the library, and the exit status every tool maps it to (docs/conventions.md).
 #pragma once
 #include <stdexcept>
 #include <string>

@@ -1,5 +1,5 @@
 // block_grid.hpp — the density on the grid points near the surface, in blocks of 8³; everything else is a side.
-// What hier2density makes, the .vdb file holds and density2tet reads (design §2 and §3).
+// What hier2density makes, the .vdb file holds and density2tet reads (docs/conventions.md).
 #pragma once
 #include "base/large_array.hpp"
 #include "geom/vec.hpp"

@@ -1,4 +1,4 @@
-// optimize.hpp — quality improvement of a tetrahedral mesh: §5 of the paper and design §10.
+// optimize.hpp — quality improvement of a tetrahedral mesh: §5 of the paper, docs/theory/optimization.md.
 #pragma once
 #include "grid/block_grid.hpp"
 #include "mesh/tet_mesh.hpp"

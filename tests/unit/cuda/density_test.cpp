@@ -1,4 +1,4 @@
-// density_test.cpp — the device's search, run by the host: I1 to I3 and I5 of the design, slabs, determinism.
+// density_test.cpp — the device's search, run by the host: I1 to I3 and I5, slabs, determinism.
 #include "cuda/density/search.hpp"
 #include "cuda/par/host.hpp"
 #include "density/density.hpp"

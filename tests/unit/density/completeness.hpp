@@ -1,4 +1,4 @@
-// completeness.hpp — a sparse density grid against the field summed by brute force: I1 to I3 of the design.
+// completeness.hpp — a sparse density grid against the field summed by brute force: I1 to I3.
 #pragma once
 #include "density/density.hpp"
 #include "unit/density/oracle.hpp"

@@ -1,4 +1,4 @@
-// density_test.cpp — the sparse grid against the field summed by brute force: I1 to I4 of the design.
+// density_test.cpp — the sparse grid against the field summed by brute force: I1 to I4.
 #include "base/error.hpp"
 #include "density/density.hpp"
 #include "density/values/block_simd.hpp"
