@@ -1,4 +1,4 @@
-// tet_mesh.hpp — tetrahedra with their regions and boundary triangles: what the .vtu file holds (docs/conventions.md).
+// tet_mesh.hpp — tetrahedra with their regions and boundary triangles: what the .vtu file holds.
 #pragma once
 #include "base/large_array.hpp"
 #include "geom/vec.hpp"

@@ -1,4 +1,4 @@
-// components.hpp — connected parts of the inside and the outside, and the region each belongs to (docs/conventions.md).
+// components.hpp — connected parts of the inside and the outside, and the region each belongs to.
 #pragma once
 #include "contour/complex/complex.hpp"
 #include "contour/elements/elements.hpp"
