@@ -1,7 +1,7 @@
-#!/usr/bin/python3
-"""The default surface beside the solvent-excluded one: volumes and Euler numbers (design.md §4), from our own output.
+#!/usr/bin/env python3
+"""The default surface beside the solvent-excluded one: volumes and Euler numbers, from our own output.
 
-    surface_table.py BIN FILE... [--spacing H] [--setting 'P_R P_C DECAY [ISOVALUE]' | --setting default]...
+    surface_volume.py BIN FILE... [--spacing H] [--setting 'P_R P_C DECAY [ISOVALUE]' | --setting default]...
 
 BIN: folder of the tools. The solvent-excluded volume is that of what is farther than the probe's radius, 1.4 Å, from every place
 where its centre can be; summed on grids of 0.35 and 0.25 Å and extrapolated to none, since its error is proportional to the
@@ -110,4 +110,5 @@ def main():
                   f"{statistics.median(map(abs, kind)):.2f} %, from {min(kind):+.1f} to {max(kind):+.1f} %")
 
 
-main()
+if __name__ == "__main__":
+    main()
