@@ -1,41 +1,40 @@
-// arrangement.hpp — what goes into the .hier: residues in copies of chains, their domains, exponents, order.
+// arrangement.hpp — the residues of a structure file, in copies of chains, and what gemmi's selections select.
 #pragma once
 #include "formats/pdb/placement.hpp"
-#include "formats/pdb/selection.hpp"
+#include "molecule/grouping.hpp"
 
 namespace molmesh::formats {
 
-/// A residue of the output: one residue in one copy of its chain.
-struct Item {
-  int32_t placed;     ///< index into the placed chains
-  int32_t residue;    ///< index into Flat::residue
-  int32_t domain = 0; ///< index into the domains
-};
-
 struct Arrangement {
   Flat flat;
-  std::vector<Placed> placed;
-  std::vector<Item> items; ///< in the order of the file, copy after copy
-  std::vector<std::string> domains;
-  std::vector<double> residue_exponent, chain_exponent, domain_exponent; ///< by item, placed chain, domain
-  std::vector<int32_t> order;                                            ///< of the items in the output
+  std::vector<Placed> placed;  ///< the chains of `grouping`
+  std::vector<int32_t> source; ///< of each residue of `grouping`: index into Flat::residue
+  Grouping grouping;
+
+  const Flat::Residue& residue(int64_t r) const { return flat.residue[source[r]]; }
 };
 
-/// Every residue of every placed chain.
-std::vector<Item> list_items(const std::vector<Placed>& placed);
+/// Sets `source`, and the residues and chains of `grouping`: every residue of every placed chain.
+void list_residues(Arrangement& a);
 
-/// What of each item the selection touches: 0 nothing, 1 some atoms, 2 all.
-std::vector<uint8_t> touch(const Selection& selection, const Arrangement& a);
+/// The domain of each placed chain: "entity_1", of the chain's polymer or of its first residue.
+std::vector<std::string> domains_by_entity(const Arrangement& a, const gemmi::Structure& st);
+/// The domain of each placed chain: "copy_1", the operator of the assembly.
+std::vector<std::string> domains_by_copy(const Arrangement& a);
 
-/// Sets domains, Item::domain. Throws Error(bad_input) naming an atom that lies in no domain, in two, or in another
-/// than the rest of its residue (or chain, where domains hold chains); or a part that touches nothing.
-void assign_domains(Arrangement& a, const gemmi::Structure& st, const std::string& file, const PdbOptions& options);
+class ArrangementSelections final : public StructureSelections {
+public:
+  /// The arrangement must outlive this.
+  explicit ArrangementSelections(const Arrangement& arrangement) : a_(arrangement) {}
+  std::vector<Selected> select(const std::string& selection, const std::string& where, bool may_be_around,
+                               Status status) const override;
+  std::string first_atom(int64_t residue) const override;
+  std::string first_atom_outside(int64_t residue, const std::string& selection,
+                                 const std::string& where) const override;
 
-/// Sets the exponents: the defaults, then rule after rule. Throws Error(bad_input) for a rule that touches nothing
-/// or sets no level of the hierarchy.
-void assign_exponents(Arrangement& a, const PdbOptions& options, PdbReport& report);
-
-/// Sets the order in which groups of all levels are contiguous; otherwise that of the file.
-void sort_items(Arrangement& a, const std::vector<std::string>& levels);
+private:
+  std::string address(int64_t residue, int64_t atom) const;
+  const Arrangement& a_;
+};
 
 } // namespace molmesh::formats

@@ -1,8 +1,8 @@
 // hier_selection.cpp — gemmi's chains, residues and atoms made up from the names in a .hier.
 #include "formats/pdb/hier_selection.hpp"
-#include "formats/pdb/near.hpp"
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/selection.hpp"
+#include "geom/near_points.hpp"
 #include "molecule/words.hpp"
 #include <charconv>
 #include <set>
@@ -94,7 +94,7 @@ std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& text, c
   if (std::find(chosen.begin(), chosen.end(), 1) == chosen.end())
     refuse("one that some atom fits");
   if (s.around() > 0) {
-    Near near(s.around());
+    NearPoints near(s.around());
     for (size_t a = 0; a < h.atom.size(); ++a)
       if (chosen[a])
         near.add(h.atom[a].center);

@@ -22,13 +22,10 @@ struct PdbHierarchy::Parts {
   std::vector<std::string> levels;
   Parsed parsed;
   Arrangement arrangement;
+  std::vector<int32_t> order; ///< of the residues in the output
 };
 
 namespace {
-
-bool has(const std::vector<std::string>& levels, const char* name) {
-  return std::find(levels.begin(), levels.end(), name) != levels.end();
-}
 
 /// Domains by entity, and selections that say ";polymer" or ";solvent".
 bool needs_entities(const PdbOptions& o) {
@@ -38,29 +35,28 @@ bool needs_entities(const PdbOptions& o) {
          std::any_of(o.domain_parts.begin(), o.domain_parts.end(), asks);
 }
 
-void check_options(const PdbOptions& o) {
-  const auto refuse = [](const std::string& what) { fail(Status::usage, what); };
-  for (size_t l = 0; l < o.levels.size(); ++l) {
-    const std::string& level = o.levels[l];
-    if (level != "domain" && level != "chain" && level != "residue")
-      refuse("--levels: found '" + level + "', expected domain, chain or residue");
-    if (std::find(o.levels.begin(), o.levels.begin() + static_cast<std::ptrdiff_t>(l), level) !=
-        o.levels.begin() + static_cast<std::ptrdiff_t>(l))
-      refuse("--levels: found '" + level + "' twice, expected each level once");
-    if (level == "residue" && l + 1 != o.levels.size())
-      refuse("--levels: found a level within 'residue', expected it innermost");
+void set_domains(Arrangement& a, const gemmi::Structure& st, const std::string& file, const PdbOptions& options) {
+  const ArrangementSelections selections(a);
+  switch (options.domains) {
+  case PdbOptions::Domains::none:
+    return;
+  case PdbOptions::Domains::file:
+    molmesh::set_domains(a.grouping, options.domain_parts, selections);
+    break;
+  case PdbOptions::Domains::entity:
+    molmesh::set_domains(a.grouping, domains_by_entity(a, st));
+    break;
+  case PdbOptions::Domains::copy:
+    molmesh::set_domains(a.grouping, domains_by_copy(a));
   }
-  if (has(o.levels, "domain") && o.domains == PdbOptions::Domains::none)
-    refuse("--levels has 'domain', expected --domains too");
-  if (!has(o.levels, "domain") && o.domains != PdbOptions::Domains::none)
-    refuse("--domains is given, expected 'domain' in --levels");
+  check_domains(a.grouping, options.levels, file, selections);
 }
 
 } // namespace
 
 PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbOptions& options)
     : parts_(std::make_unique<Parts>()) {
-  check_options(options);
+  check_levels(options.levels, options.domains != PdbOptions::Domains::none);
   Parts& p = *parts_;
   p.levels = options.levels;
   {
@@ -81,18 +77,17 @@ PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbO
   Arrangement& a = p.arrangement;
   a.flat = flatten(p.parsed, name, options, p.report);
   a.placed = place(a.flat, st, name, options.assembly, p.report);
-  a.items = list_items(a.placed);
-  assign_domains(a, st, name, options);
-  assign_exponents(a, options, p.report);
-  sort_items(a, options.levels);
+  list_residues(a);
+  set_domains(a, st, name, options);
+  set_exponents(a.grouping, options.exponents, options.rules, options.levels, ArrangementSelections(a),
+                p.report.notes);
+  p.order = hierarchy_order(a.grouping, options.levels);
 
-  p.report.chains = static_cast<int64_t>(a.placed.size());
-  p.report.residues = static_cast<int64_t>(a.items.size());
-  p.report.domains = static_cast<int64_t>(a.domains.size());
-  for (const Item& item : a.items) {
-    const Flat::Residue& r = a.flat.residue[item.residue];
-    p.report.atoms += r.end - r.begin;
-  }
+  p.report.chains = static_cast<int64_t>(a.grouping.chain.size());
+  p.report.residues = static_cast<int64_t>(a.grouping.residue.size());
+  p.report.domains = static_cast<int64_t>(a.grouping.domain.size());
+  for (int64_t r = 0; r < p.report.residues; ++r)
+    p.report.atoms += a.residue(r).end - a.residue(r).begin;
   add_notes(p.report, p.parsed, options);
 }
 
@@ -104,29 +99,30 @@ const PdbReport& PdbHierarchy::report() const {
 
 void PdbHierarchy::write(std::ostream& out) const {
   const Arrangement& a = parts_->arrangement;
+  const Grouping& g = a.grouping;
   const std::vector<std::string>& levels = parts_->levels;
   HierWriter writer(out, parts_->source, levels);
   std::vector<int32_t> open(levels.size(), -1);
   std::string residue_name;
-  for (const int32_t i : a.order) {
-    const Item& item = a.items[i];
-    const Placed& placed = a.placed[item.placed];
-    const Flat::Residue& residue = a.flat.residue[item.residue];
+  for (const int32_t r : parts_->order) {
+    const int32_t chain = g.residue[r].chain, domain = g.residue[r].domain;
+    const Placed& placed = a.placed[chain];
+    const Flat::Residue& residue = a.residue(r);
     bool opened = false;
     for (size_t l = 0; l < levels.size(); ++l) {
       const bool is_residue = levels[l] == "residue", is_chain = levels[l] == "chain";
-      const int32_t id = is_residue ? i : is_chain ? item.placed : item.domain;
+      const int32_t id = is_residue ? r : is_chain ? chain : domain;
       if (id == open[l] && !opened)
         continue;
       opened = true;
       open[l] = id;
       if (is_residue) {
         residue_name = residue.source->name + ":" + residue.source->seqid.str();
-        writer.group(l, residue_name, a.residue_exponent[i]);
+        writer.group(l, residue_name, g.residue_exponent[r]);
       } else if (is_chain) {
-        writer.group(l, placed.name, a.chain_exponent[item.placed]);
+        writer.group(l, g.chain[chain], g.chain_exponent[chain]);
       } else {
-        writer.group(l, a.domains[item.domain], a.domain_exponent[item.domain]);
+        writer.group(l, g.domain[domain], g.domain_exponent[domain]);
       }
     }
     for (int64_t n = residue.begin; n < residue.end; ++n) {

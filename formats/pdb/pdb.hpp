@@ -1,7 +1,7 @@
 // pdb.hpp — structure files (PDB, mmCIF, mmJSON, PQR; plain or gzip) as a hierarchy of atoms (PDB.md).
 #pragma once
+#include "molecule/exponents.hpp"
 #include "molecule/radii.hpp"
-#include "molecule/resolution.hpp"
 #include <cstdint>
 #include <iosfwd>
 #include <map>

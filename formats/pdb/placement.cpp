@@ -1,4 +1,4 @@
-// placement.cpp — flat arrays; assemblies from REMARK 350 and pdbx_struct_assembly.
+// placement.cpp — fills the arrays; places the chains of an assembly.
 #include "formats/pdb/placement.hpp"
 #include "base/error.hpp"
 #include <algorithm>
@@ -9,26 +9,6 @@
 
 namespace molmesh::formats {
 namespace {
-
-/// Unique names: NAME, or NAME_1, NAME_2, … for chains that come more than once.
-void name_copies(const Flat& flat, std::vector<Placed>& placed) {
-  std::map<std::string, int> times, seen;
-  std::set<std::string> taken;
-  for (const Placed& p : placed)
-    ++times[flat.chain[p.chain].source->name];
-  for (const auto& [name, n] : times)
-    if (n == 1)
-      taken.insert(name);
-  for (Placed& p : placed) {
-    const std::string& name = flat.chain[p.chain].source->name;
-    p.name = name;
-    if (times[name] == 1)
-      continue;
-    do
-      p.name = name + "_" + std::to_string(++seen[name]);
-    while (!taken.insert(p.name).second);
-  }
-}
 
 using Numbers = std::array<double, 12>;
 
@@ -122,9 +102,8 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
       auto residues = std::make_shared<std::vector<int64_t>>();
       for (int64_t r = flat.chain[c].begin; r < flat.chain[c].end; ++r)
         residues->push_back(r);
-      placed.push_back({c, "", 1, false, {}, residues});
+      placed.push_back({c, 1, false, {}, residues});
     }
-    name_copies(flat, placed);
     return placed;
   }
   const auto found = std::find_if(st.assemblies.begin(), st.assemblies.end(),
@@ -161,7 +140,7 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
           continue;
         const auto [part, is_new] = of_chain.try_emplace({copy, c}, placed.size());
         if (is_new) {
-          placed.push_back({c, "", copy, !op.transform.is_identity(), op.transform, parts[c]});
+          placed.push_back({c, copy, !op.transform.is_identity(), op.transform, parts[c]});
           continue;
         }
         std::vector<int64_t> merged;
@@ -183,8 +162,28 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
     fail_input(file + ": found no atom in assembly " + assembly + ", expected at least one");
   std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.copy < b.copy; });
   report.copies = count;
-  name_copies(flat, placed);
   return placed;
+}
+
+std::vector<std::string> chain_names(const Flat& flat, const std::vector<Placed>& placed) {
+  std::map<std::string, int> times, seen;
+  std::set<std::string> taken;
+  for (const Placed& p : placed)
+    ++times[flat.chain[p.chain].source->name];
+  for (const auto& [name, n] : times)
+    if (n == 1)
+      taken.insert(name);
+  std::vector<std::string> names;
+  for (const Placed& p : placed) {
+    const std::string& name = flat.chain[p.chain].source->name;
+    std::string unique = name;
+    if (times[name] > 1)
+      do
+        unique = name + "_" + std::to_string(++seen[name]);
+      while (!taken.insert(unique).second);
+    names.push_back(std::move(unique));
+  }
+  return names;
 }
 
 } // namespace molmesh::formats

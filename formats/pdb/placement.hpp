@@ -26,10 +26,9 @@ struct Flat {
 
 /// One copy of one chain, whole or in part.
 struct Placed {
-  size_t chain;     ///< in Flat::chain
-  std::string name; ///< unique in the output
-  int copy;         ///< which operator of the assembly, from 1
-  bool moved;       ///< is the transform other than the identity?
+  size_t chain; ///< in Flat::chain
+  int copy;     ///< which operator of the assembly, from 1
+  bool moved;   ///< is the transform other than the identity?
   gemmi::Transform transform;
   std::shared_ptr<const std::vector<int64_t>> residues; ///< indices into Flat::residue, ascending
   Vec3d position(Vec3d p) const;
@@ -39,9 +38,12 @@ struct Placed {
 /// refused.
 Flat flatten(const Parsed& parsed, const std::string& file, const PdbOptions& options, PdbReport& report);
 
-/// Every chain once, or as the assembly says. Chains that come more than once (in copies, in models) are named
-/// NAME_1, NAME_2, …. Throws Error(bad_input) when the assembly is not there.
+/// Every chain once, or as the assembly says. Throws Error(bad_input) when the assembly is not there.
 std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const std::string& file,
                           const std::string& assembly, PdbReport& report);
+
+/// Unique names of the placed chains: NAME, or NAME_1, NAME_2, … of chains that come more than once (in copies, in
+/// models).
+std::vector<std::string> chain_names(const Flat& flat, const std::vector<Placed>& placed);
 
 } // namespace molmesh::formats

@@ -1,7 +1,7 @@
 // rules_test.cpp — the text of rules, domains and radii.
 #include "base/error.hpp"
+#include "molecule/exponents.hpp"
 #include "molecule/radii.hpp"
-#include "molecule/resolution.hpp"
 #include <catch2/catch.hpp>
 #include <sstream>
 

@@ -1,8 +1,8 @@
-// resolution.hpp — the exponents P_R, P_C, P_D and the rules that set them for parts of a structure.
-// Equations 2 to 6 of Liao et al. 2013: large exponents keep detail, small ones blur. What a selection means is the
-// business of the reader that has the structure (formats/pdb).
+// exponents.hpp — the exponents P_R, P_C, P_D of residues, chains and domains, and the rules that set them.
+// Equation 5 of Liao et al. 2013: P_R = P_R(i_C, i_R). Large exponents keep detail, small ones blur.
 #pragma once
 #include "base/error.hpp"
+#include "molecule/grouping.hpp"
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -15,25 +15,22 @@ struct Exponents {
   double residue = 0.3, chain = 1, domain = 1; ///< P_R, P_C, P_D
 };
 
-/// Sets what is given on every residue, chain and domain that the selection touches.
+/// Sets the exponents that are given on every residue, chain and domain of which the selection selects an atom.
 struct Rule {
   std::string selection;
   std::optional<double> residue, chain, domain;
   std::string where;                ///< for messages: "-r '…'" or "FILE:LINE"
-  Status blame = Status::bad_input; ///< what a rule that makes no sense is: usage where it is an option
-};
-
-/// One part of a domain; parts of the same name belong together.
-struct DomainPart {
-  std::string name, selection;
-  std::string where;
+  Status blame = Status::bad_input; ///< of an invalid rule: usage if it is an option
 };
 
 /// "SELECTION P_R=… P_C=… P_D=…", at least one of the three. Throws Error(status) naming `where`.
 Rule parse_rule(const std::string& text, const std::string& where, Status status = Status::bad_input);
 /// One rule a line; a line that begins with `#` is a comment. Throws Error(bad_input) "FILE:LINE: …".
 std::vector<Rule> read_rules(std::istream& in, const std::string& file);
-/// Lines `NAME SELECTION`; a line that begins with `#` is a comment. Throws Error(bad_input) "FILE:LINE: …".
-std::vector<DomainPart> read_domains(std::istream& in, const std::string& file);
+
+/// Sets the exponents of all groups: the defaults, then rule after rule. Adds a note for each exponent of a level
+/// that the hierarchy does not have. Throws Error(bad_input) for a rule that selects nothing or has no effect.
+void set_exponents(Grouping& g, const Exponents& defaults, const std::vector<Rule>& rules, const Levels& levels,
+                   const StructureSelections& structure, std::vector<std::string>& notes);
 
 } // namespace molmesh

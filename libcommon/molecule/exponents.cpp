@@ -1,5 +1,5 @@
-// resolution.cpp — the text of rules and domains.
-#include "molecule/resolution.hpp"
+// exponents.cpp — parses rules and applies them to the groups.
+#include "molecule/exponents.hpp"
 #include "molecule/words.hpp"
 
 namespace molmesh {
@@ -48,17 +48,41 @@ std::vector<Rule> read_rules(std::istream& in, const std::string& file) {
   return rules;
 }
 
-std::vector<DomainPart> read_domains(std::istream& in, const std::string& file) {
-  std::vector<DomainPart> parts;
-  read_lines(in, file, [&](const std::string& line, const std::string& where) {
-    const size_t blank = line.find_first_of(" \t");
-    if (blank == std::string::npos)
-      fail_input(where + ": found '" + line + "', expected NAME SELECTION");
-    parts.push_back({line.substr(0, blank), std::string(trimmed(std::string_view(line).substr(blank))), where});
-  });
-  if (parts.empty())
-    fail_input(file + ": found no domain, expected lines NAME SELECTION");
-  return parts;
+void set_exponents(Grouping& g, const Exponents& defaults, const std::vector<Rule>& rules, const Levels& levels,
+                   const StructureSelections& structure, std::vector<std::string>& notes) {
+  g.residue_exponent.assign(g.residue.size(), defaults.residue);
+  g.chain_exponent.assign(g.chain.size(), defaults.chain);
+  g.domain_exponent.assign(g.domain.size(), defaults.domain);
+  for (const Rule& rule : rules) {
+    const std::vector<Selected> selected = structure.select(rule.selection, rule.where, true, rule.blame);
+    bool any = false;
+    for (size_t r = 0; r < g.residue.size(); ++r) {
+      if (selected[r] == Selected::none)
+        continue;
+      any = true;
+      if (rule.residue)
+        g.residue_exponent[r] = *rule.residue;
+      if (rule.chain)
+        g.chain_exponent[g.residue[r].chain] = *rule.chain;
+      if (rule.domain && !g.domain.empty())
+        g.domain_exponent[g.residue[r].domain] = *rule.domain;
+    }
+    if (!any)
+      fail_input(rule.where + ": found no atom in selection '" + rule.selection + "', expected some");
+    const bool has_effect = (rule.residue && has_level(levels, "residue")) ||
+                            (rule.chain && has_level(levels, "chain")) ||
+                            (rule.domain && has_level(levels, "domain"));
+    if (!has_effect)
+      fail_input(rule.where +
+                 ": found exponents that have no effect alone, expected one of a level that --levels has");
+    const auto note_idle = [&](const std::optional<double>& exponent, const char* name, const char* level) {
+      if (exponent && !has_level(levels, level))
+        notes.push_back(rule.where + ": " + name + " has no effect, --levels has no " + level);
+    };
+    note_idle(rule.residue, "P_R", "residue");
+    note_idle(rule.chain, "P_C", "chain");
+    note_idle(rule.domain, "P_D", "domain");
+  }
 }
 
 } // namespace molmesh

@@ -1,4 +1,4 @@
-// near.hpp — is a place within a distance of one of many points?
+// near_points.hpp — is a place within a distance of one of many points?
 #pragma once
 #include "geom/vec.hpp"
 #include <algorithm>
@@ -7,12 +7,13 @@
 #include <unordered_map>
 #include <vector>
 
-namespace molmesh::formats {
+namespace molmesh {
 
-/// Atoms within a distance of a set of points: the points in cells of that size.
-class Near {
+/// Tells whether a point lies within a distance (Å) of any of a set of points. Hashes the points into cubic cells
+/// whose edge is that distance.
+class NearPoints {
 public:
-  explicit Near(double distance) : distance_(distance) {}
+  explicit NearPoints(double distance) : distance_(distance) {}
 
   void add(Vec3d p) {
     cell_[key(index(p.x), index(p.y), index(p.z))].push_back(p);
@@ -51,4 +52,4 @@ private:
   Vec3d low_{1e308, 1e308, 1e308}, high_{-1e308, -1e308, -1e308};
 };
 
-} // namespace molmesh::formats
+} // namespace molmesh

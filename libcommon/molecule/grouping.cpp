@@ -1,0 +1,144 @@
+// grouping.cpp — reads domains, assigns residues to them and sorts residues by their groups.
+#include "molecule/grouping.hpp"
+#include "molecule/words.hpp"
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace molmesh {
+namespace {
+
+class DomainIndex {
+public:
+  explicit DomainIndex(Grouping& g) : g_(g) {}
+  int32_t of(const std::string& name) {
+    const auto [domain, is_new] = index_.try_emplace(name, static_cast<int32_t>(g_.domain.size()));
+    if (is_new)
+      g_.domain.push_back(name);
+    return domain->second;
+  }
+
+private:
+  Grouping& g_;
+  std::map<std::string, int32_t> index_;
+};
+
+/// Is there a level `outer`, with `inner` within it?
+bool holds(const Levels& levels, const char* outer, const char* inner) {
+  const auto at = std::find(levels.begin(), levels.end(), outer);
+  return std::find(at, levels.end(), inner) != levels.end();
+}
+
+} // namespace
+
+bool has_level(const Levels& levels, const std::string& level) {
+  return std::find(levels.begin(), levels.end(), level) != levels.end();
+}
+
+void check_levels(const Levels& levels, bool domains_are_defined) {
+  const auto refuse = [](const std::string& what) { fail(Status::usage, what); };
+  for (auto level = levels.begin(); level != levels.end(); ++level) {
+    if (*level != "domain" && *level != "chain" && *level != "residue")
+      refuse("--levels: found '" + *level + "', expected domain, chain or residue");
+    if (std::find(levels.begin(), level, *level) != level)
+      refuse("--levels: found '" + *level + "' twice, expected each level once");
+    if (*level == "residue" && level + 1 != levels.end())
+      refuse("--levels: found a level within 'residue', expected it innermost");
+  }
+  if (has_level(levels, "domain") && !domains_are_defined)
+    refuse("--levels has 'domain', expected --domains too");
+  if (!has_level(levels, "domain") && domains_are_defined)
+    refuse("--domains is given, expected 'domain' in --levels");
+}
+
+std::vector<DomainPart> read_domains(std::istream& in, const std::string& file) {
+  std::vector<DomainPart> parts;
+  read_lines(in, file, [&](const std::string& line, const std::string& where) {
+    const size_t blank = line.find_first_of(" \t");
+    if (blank == std::string::npos)
+      fail_input(where + ": found '" + line + "', expected NAME SELECTION");
+    parts.push_back({line.substr(0, blank), std::string(trimmed(std::string_view(line).substr(blank))), where});
+  });
+  if (parts.empty())
+    fail_input(file + ": found no domain, expected lines NAME SELECTION");
+  return parts;
+}
+
+void set_domains(Grouping& g, const std::vector<DomainPart>& parts, const StructureSelections& structure) {
+  constexpr int32_t none = -1;
+  DomainIndex index(g);
+  std::vector<const DomainPart*> part_of(g.residue.size(), nullptr);
+  for (Grouping::Residue& residue : g.residue)
+    residue.domain = none;
+  for (const DomainPart& part : parts) {
+    const int32_t domain = index.of(part.name);
+    const std::vector<Selected> selected =
+        structure.select(part.selection, part.where, false, Status::bad_input);
+    bool any = false;
+    for (size_t r = 0; r < g.residue.size(); ++r) {
+      if (selected[r] == Selected::none)
+        continue;
+      any = true;
+      if (selected[r] == Selected::some)
+        fail_input(part.where + ": found atom " +
+                   structure.first_atom_outside(static_cast<int64_t>(r), part.selection, part.where) +
+                   " outside domain '" + part.name +
+                   "' that holds other atoms of its residue, expected whole residues");
+      if (g.residue[r].domain != none && g.residue[r].domain != domain)
+        fail_input(part.where + ": found atom " + structure.first_atom(static_cast<int64_t>(r)) + " in domains '" +
+                   part_of[r]->name + "' (" + part_of[r]->where + ") and '" + part.name + "', expected exactly one");
+      g.residue[r].domain = domain;
+      part_of[r] = &part;
+    }
+    if (!any)
+      fail_input(part.where + ": found no atom in '" + part.selection + "', expected some in domain '" + part.name +
+                 "'");
+  }
+  const auto left = std::find_if(g.residue.begin(), g.residue.end(),
+                                 [](const Grouping::Residue& residue) { return residue.domain == none; });
+  if (left != g.residue.end())
+    fail_input(parts.front().where.substr(0, parts.front().where.rfind(':')) + ": found atom " +
+               structure.first_atom(left - g.residue.begin()) + " in no domain, expected each in exactly one");
+}
+
+void set_domains(Grouping& g, const std::vector<std::string>& domain_of_chain) {
+  DomainIndex index(g);
+  for (Grouping::Residue& residue : g.residue)
+    residue.domain = index.of(domain_of_chain[residue.chain]);
+}
+
+void check_domains(const Grouping& g, const Levels& levels, const std::string& file,
+                   const StructureSelections& structure) {
+  if (!holds(levels, "domain", "chain"))
+    return;
+  constexpr int64_t none = -1;
+  std::vector<int64_t> first(g.chain.size(), none); // residue of each chain
+  for (size_t r = 0; r < g.residue.size(); ++r) {
+    const Grouping::Residue& residue = g.residue[r];
+    int64_t& f = first[residue.chain];
+    if (f == none)
+      f = static_cast<int64_t>(r);
+    if (g.residue[f].domain != residue.domain)
+      fail_input(file + ": found chain " + g.chain[residue.chain] + " in domains '" +
+                 g.domain[g.residue[f].domain] + "' (" + structure.first_atom(f) + ") and '" +
+                 g.domain[residue.domain] + "' (" + structure.first_atom(static_cast<int64_t>(r)) +
+                 "), expected each chain in one domain; --levels chain,domain,residue has domains within chains");
+  }
+}
+
+std::vector<int32_t> hierarchy_order(const Grouping& g, const Levels& levels) {
+  std::vector<int32_t> order(g.residue.size());
+  std::iota(order.begin(), order.end(), 0);
+  if (!has_level(levels, "domain"))
+    return order;
+  const bool within_chain = holds(levels, "chain", "domain");
+  std::stable_sort(order.begin(), order.end(), [&](int32_t i, int32_t j) {
+    const Grouping::Residue &x = g.residue[i], &y = g.residue[j];
+    if (within_chain && x.chain != y.chain)
+      return x.chain < y.chain;
+    return x.domain < y.domain;
+  });
+  return order;
+}
+
+} // namespace molmesh
