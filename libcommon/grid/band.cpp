@@ -1,6 +1,6 @@
 // band.cpp — the band unpacked.
 #include "grid/band.hpp"
-#include "density/values/values_simd.hpp"
+#include "grid/pack_simd.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 
@@ -9,7 +9,7 @@ namespace molmesh {
 const float* active_values(const BandBlock& block, BlockValues& room) {
   if (block.stored == block.active)
     return block.value;
-  density::pack_part(block.value, block.stored.data(), block.active.data(), room.data());
+  pack_part(block.value, block.stored.data(), block.active.data(), room.data());
   return room.data();
 }
 

@@ -5,20 +5,18 @@
 
 #include "base/error.hpp"
 #include "formats/pdb/pdb.hpp"
+#include "unit/test_data.hpp"
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 
 using namespace molmesh;
 namespace fs = std::filesystem;
 
 TEST_CASE("atoms, residues and chains are those that gemmi counts") {
-  const fs::path data = fs::path(MOLMESH_SOURCE_DIR) / ".." / "shared" / "data";
-  if (!fs::is_directory(data)) {
-    std::cout << "skipped: no " << data << '\n';
+  const fs::path data = test::data("");
+  if (data.empty())
     return;
-  }
   formats::PdbOptions all;
   all.waters = true;
   all.altloc = "all";

@@ -47,8 +47,8 @@ harmonic) # a harmonic polynomial to 1e-10; with one tetrahedron missing it must
   done
   ;;
 diffusion) # a rate that converges with the mesh
-  structure=$SOURCE/../shared/data/pqr/misc__mache.pqr.gz
-  [ -f "$structure" ] || { echo "SKIPPED: no $structure"; exit 77; }
+  structure=${MOLMESH_TEST_DATA:-}/pqr/misc__mache.pqr.gz
+  [ -f "$structure" ] || { echo "SKIPPED: no $structure (-DMOLMESH_TEST_DATA=DIR)"; exit 77; }
   pdb2hier -q "$structure" -o ache.hier
   site=()
   for residue in 72 74 124 286 341; do site+=(--boundary "active_site=//*/$residue"); done # the gorge's mouth

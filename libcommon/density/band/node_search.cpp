@@ -2,6 +2,7 @@
 #include "density/band/node_search.hpp"
 #include "density/culling/seek.hpp"
 #include "density/values/values_simd.hpp"
+#include "grid/pack_simd.hpp"
 #include <algorithm>
 #include <bit>
 #include <cmath>

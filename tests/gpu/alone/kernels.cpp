@@ -3,10 +3,10 @@
 #include "contour/elements/shape_simd.hpp"
 #include "contour/surface/samples_simd.hpp"
 #include "contour/surface/surface_sample.hpp"
-#include "density/values/values_simd.hpp"
 #include "geom/star_quality_simd.hpp"
 #include "geom/tet_quality.hpp"
 #include "geom/tet_quality_simd.hpp"
+#include "grid/pack_simd.hpp"
 #include "isosurface/guard.hpp"
 #include "isosurface/logs_simd.hpp"
 #include "isosurface/probe_simd.hpp"
@@ -16,7 +16,7 @@
 #include <cmath>
 #include <limits>
 
-namespace molmesh::density {
+namespace molmesh {
 
 int32_t pack_part(const float* packed, const uint64_t* stored, const uint64_t* active, float* out) {
   int32_t n = 0;
@@ -27,9 +27,6 @@ int32_t pack_part(const float* packed, const uint64_t* stored, const uint64_t* a
   return n;
 }
 
-} // namespace molmesh::density
-
-namespace molmesh {
 namespace {
 
 float judge(const SpokesView& s, int32_t k, Vec3f x) {

@@ -1,8 +1,8 @@
-// pdb_data_test.cpp — real files, usual and odd, where they lie beside the checkout (../shared/data).
+// pdb_data_test.cpp — reads real files, usual and odd, of the folder of test data.
 #include "pdb_text.hpp"
+#include "unit/test_data.hpp"
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <iostream>
 #include <map>
 
 using namespace molmesh;
@@ -10,15 +10,6 @@ using namespace molmesh::test;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Empty, after saying so, when the data is not there.
-fs::path data(const char* folder) {
-  const fs::path path = fs::path(MOLMESH_SOURCE_DIR) / ".." / "shared" / "data" / folder;
-  if (fs::is_directory(path))
-    return path;
-  std::cout << "skipped: no " << path << '\n';
-  return {};
-}
 
 struct Outcome {
   std::string status, atoms = "-", residues = "-", chains = "-", message;

@@ -1,6 +1,6 @@
-// values_test.cpp — packing the values of a block and a part of what is packed, against the same value by value.
-#include "density/values/values_simd.hpp"
+// pack_test.cpp — packing the values of a block and a part of what is packed, against the same value by value.
 #include "grid/band.hpp"
+#include "grid/pack_simd.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <hwy/targets.h>
@@ -36,12 +36,12 @@ TEST_CASE("of packed values those of a subset are taken, in order") {
         }
       }
       std::vector<float> packed(512 + 16);
-      REQUIRE(density::pack_active(value, stored, packed.data()) == static_cast<int32_t>(all.size()));
+      REQUIRE(pack_active(value, stored, packed.data()) == static_cast<int32_t>(all.size()));
       packed.resize(all.size());
       REQUIRE(packed == all);
       packed.insert(packed.end(), 16, -1.0f); // the next block's
       BlockValues part;
-      REQUIRE(density::pack_part(packed.data(), stored, active, part.data()) == static_cast<int32_t>(kept.size()));
+      REQUIRE(pack_part(packed.data(), stored, active, part.data()) == static_cast<int32_t>(kept.size()));
       CHECK(std::equal(kept.begin(), kept.end(), part.begin()));
 
       BandBlock block{{}, {}, {}, {}, packed.data()};

@@ -1,0 +1,3 @@
+// contour.hpp — a density to a tetrahedral mesh: contour::contour().
+#pragma once
+#include "contour/contour.hpp"

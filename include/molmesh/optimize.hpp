@@ -1,0 +1,3 @@
+// optimize.hpp — a tetrahedral mesh to one of better elements: optimize::improve().
+#pragma once
+#include "optimize/optimize.hpp"
