@@ -12,7 +12,7 @@ optimize::Result improve_mesh(TetMesh& mesh, const BlockGrid* density, const opt
                               const std::function<void(const std::string&)>& phase, DeviceReport& report,
                               int64_t most_bytes = 0);
 
-/// Sweeps in a round: the more there are, the longer the host's passes take after them (docs/cuda.md).
+/// Sweeps in a round: the more there are, the longer the host's passes take after them (docs/experiments.md).
 inline constexpr int flow_sweeps = 2;
 
 } // namespace molmesh::cuda
