@@ -1,6 +1,7 @@
 # install_headers.cmake — copies the headers of include/molmesh, and those of libcommon that they include, to TO/molmesh.
 # There "room/name.hpp" is "molmesh/room/name.hpp", so that no header of a user's program is taken for one of ours.
 # SOURCE: the root of the project.
+cmake_minimum_required(VERSION 3.22)
 file(GLOB open RELATIVE ${SOURCE}/include/molmesh ${SOURCE}/include/molmesh/*.hpp)
 set(from ${SOURCE}/include/molmesh)
 set(done ${open})
