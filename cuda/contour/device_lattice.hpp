@@ -5,7 +5,7 @@
 
 namespace molmesh::cuda {
 
-template <class Backend>
+template <par::Launcher Backend>
 class DeviceLattice {
   template <class T>
   using Array = typename Backend::template Array<T>;

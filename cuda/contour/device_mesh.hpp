@@ -6,8 +6,8 @@
 
 namespace molmesh::cuda {
 
-/// Where contour::detail::assemble writes.
-template <class Backend>
+/// Where contour::assemble writes.
+template <par::Launcher Backend>
 class DeviceMesh {
 public:
   /// As RunCopy has them.

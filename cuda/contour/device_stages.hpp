@@ -1,5 +1,5 @@
-// device_stages.hpp — contour::Stages on a Backend, by the host's own passes and functions: the same mesh.
-// Everything stays in the Backend's memory up to the mesh.
+// device_stages.hpp — contour::Stages on a Backend, by the host's own passes: the same mesh. Everything stays in
+// the Backend's memory up to the mesh.
 #pragma once
 #include "contour/assembly/assembly_passes.hpp"
 #include "contour/complex/complex_passes.hpp"
@@ -8,8 +8,8 @@
 #include "contour/stages.hpp"
 #include "cuda/contour/device_mesh.hpp"
 #include "cuda/contour/elements.hpp"
+#include "cuda/contour/leaves.hpp"
 #include "cuda/contour/relax.hpp"
-#include "cuda/contour/selection.hpp"
 #include <algorithm>
 #include <future>
 #include <memory>
@@ -19,11 +19,11 @@
 
 namespace molmesh::cuda {
 
-template <class Backend>
+template <par::Launcher Backend>
 class DeviceStages final : public contour::Stages {
   template <class T>
   using Array = typename Backend::template Array<T>;
-  using Complex = contour::detail::ComplexPasses<Backend>;
+  using Complex = contour::ComplexPasses<Backend>;
   using Ids = typename ElementMaker<Backend>::Ids;
 
 public:
@@ -37,24 +37,24 @@ public:
     lattice_ = &lattice;
     // The host's logarithms, beside the kernels up to the elements.
     isosurface_ = std::async(std::launch::async, [&grid = lattice.grid(), threads = threads_] {
-      return std::make_unique<const Isosurface>(grid, threads); // until let_go()
+      return std::make_unique<const Isosurface>(grid, threads); // until release_grid()
     });
     b_.plan(40 * static_cast<int64_t>(lattice.grid().value.size())); // with as many surface cells as usual
     selection_.find_surface(lattice);
   }
-  void let_go() noexcept override {
+  void release_grid() noexcept override {
     if (isosurface_.valid())
       isosurface_.wait();
   }
   void select_leaves(const contour::RefineOptions& options) override {
     selection_.select_leaves(*lattice_, options);
   }
-  void make_dual(contour::Side unasked, const std::function<void(const std::string&)>& on_phase) override {
+  void make_dual(contour::Side unmeshed, const std::function<void(const std::string&)>& on_phase) override {
     // A leaf has about twelve elements; they are there twice when runs are put together.
     const int64_t leaves = selection_.leaves.key.n, tets = 12 * leaves, tris = 2 * selection_.surface.cells.n;
     b_.plan(complex_bytes() + tets * tet_bytes + tris * 28 +
             std::max(tets * tet_bytes, most_beside(tets, 2 * leaves, tris)));
-    make_complex(unasked, on_phase);
+    make_complex(unmeshed, on_phase);
     SinkOnDevice<Backend> sink(b_);
     const auto made = maker_(complex_->view, sink);
     elements_ = sink.elements(complex_->view);
@@ -67,9 +67,9 @@ public:
     TeamMover<Backend> mover(b_, *surface, threads_);
     const int64_t known = complex_->view.vertices();
     auto lattice_class = b_.template array<uint8_t>(known);
-    b_.for_n("lattice classes", known, contour::detail::LatticeClasses{complex_->view, lattice_class.data()},
+    b_.for_n("lattice classes", known, contour::LatticeClasses{complex_->view, lattice_class.data()},
              {double(known) * 6});
-    using Passes = contour::detail::RelaxPasses<Backend, contour::ElementArrays<Backend>, TeamMover<Backend>>;
+    using Passes = contour::RelaxPasses<Backend, contour::ElementArrays<Backend>, TeamMover<Backend>>;
     relaxed_ = Passes(b_, elements_, lattice_class.data(), known, true, mover).run();
   }
   std::vector<contour::Component> find_regions(const contour::RegionOptions& options) override {
@@ -78,8 +78,8 @@ public:
   }
   TetMesh assemble(contour::Options::Meshed meshed) override {
     DeviceMesh<Backend> mesh(b_, threads_, copy_bytes_);
-    contour::detail::assemble(b_, elements_.view(), regions_->region.data(), regions_->region.size(),
-                              contour::detail::wanted(meshed), mesh);
+    contour::assemble(b_, elements_.view(), regions_->region.data(), regions_->region.size(),
+                      contour::wanted(meshed), mesh);
     return mesh.on_host();
   }
   void count(contour::Summary& summary) const override {
@@ -116,7 +116,7 @@ private:
     return std::max(relaxation, assembly);
   }
 
-  void make_complex(contour::Side unasked, const std::function<void(const std::string&)>& on_phase) {
+  void make_complex(contour::Side unmeshed, const std::function<void(const std::string&)>& on_phase) {
     on_phase("dual vertices");
     const contour::LatticeView& lattice = selection_.lattice->view;
     contour::OctreeView tree;
@@ -128,17 +128,16 @@ private:
     tree.block = leaves.block.data();
     tree.large = leaves.large.data();
     tree.large_leaves = static_cast<int32_t>(leaves.large.n);
-    slot_ = contour::detail::index_leaves(b_, leaves.block.n, tree);
+    slot_ = contour::index_leaves(b_, leaves.block.n, tree);
     const auto& surface = selection_.surface;
     complex_.emplace(b_, lattice, tree, surface.cells.data(), surface.samples.data(), surface.cells.n);
-    complex_->view.unasked = unasked;
+    complex_->view.unmeshed = unmeshed;
     if (!lattice_->cut_allowed() && complex_->meets_wall())
       contour::refuse_surface_at_wall();
     on_phase("elements");
     restored_ = complex_->restore_spoiling(
         [&](const Ids& near, const Ids* ends) { return maker_.spoiled_of(complex_->view, near, ends); });
-    split_cells_ =
-        par::gather<int32_t>(b_, "split cells", tree.leaves, contour::detail::SplitLeaves{complex_->view}).n;
+    split_cells_ = par::gather<int32_t>(b_, "split cells", tree.leaves, contour::SplitLeaves{complex_->view}).n;
   }
 
   Backend& b_;
@@ -146,12 +145,12 @@ private:
   int64_t copy_bytes_;
   const contour::Lattice* lattice_ = nullptr;
   std::future<std::unique_ptr<const Isosurface>> isosurface_;
-  Selection<Backend> selection_;
+  DeviceLeaves<Backend> selection_;
   ElementMaker<Backend> maker_;
   Array<uint32_t> slot_;
   std::optional<Complex> complex_;
   contour::ElementArrays<Backend> elements_;
-  std::optional<contour::detail::RegionPasses<Backend>> regions_;
+  std::optional<contour::RegionPasses<Backend>> regions_;
   int64_t restored_ = 0, relaxed_ = 0, split_cells_ = 0;
 };
 

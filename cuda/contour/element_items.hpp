@@ -9,7 +9,7 @@
 namespace molmesh::cuda {
 
 using contour::ComplexView;
-using contour::detail::Link;
+using contour::Link;
 using Sides = std::array<int32_t, 2>;
 
 /// Takes what a vector's push_back takes: counts, and writes where there is a place.
@@ -30,7 +30,7 @@ struct SpoiledSink {
   HD void push_back(int32_t vertex) const { par::raise(flag[vertex]); }
 };
 
-/// contour::detail::Batch for one item.
+/// contour::Batch for one item.
 template <bool check>
 struct ItemOut {
   static constexpr bool checks = check;
@@ -117,7 +117,7 @@ struct MakeFaces {
   HD int32_t leaf(int64_t i) const { return leaves ? leaves[i] : static_cast<int32_t>(i); }
   HD void operator()(int64_t i, ItemOut<check>& out) const {
     contour::NearLeaves near(c.tree);
-    contour::detail::make_faces(c, near, leaf(i), out);
+    contour::make_faces(c, near, leaf(i), out);
   }
   /// Leaves of one level, and surface cells apart: similar work (§4.2).
   HD uint32_t work(int64_t i) const {
@@ -131,11 +131,11 @@ struct MakeFaces {
 template <bool only_check>
 struct MakeRings {
   static constexpr bool check = only_check;
-  contour::detail::RingVertices vertices;
+  contour::RingVertices vertices;
   const Link* link;
   const int64_t* first;
   HD void operator()(int64_t e, ItemOut<check>& out) const {
-    contour::detail::make_ring(vertices, link + first[e], link + first[e + 1], out);
+    contour::make_ring(vertices, link + first[e], link + first[e + 1], out);
   }
   HD uint32_t work(int64_t e) const { return uint32_t(first[e + 1] - first[e]); }
 };

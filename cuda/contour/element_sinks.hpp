@@ -9,7 +9,7 @@
 namespace molmesh::cuda {
 
 /// What a run of leaves or edges makes.
-template <class Backend>
+template <par::Launcher Backend>
 struct ElementRun {
   template <class T>
   using Array = typename Backend::template Array<T>;
@@ -21,7 +21,7 @@ struct ElementRun {
 };
 
 /// The parts one after the other; they go as they are copied.
-template <class T, class Backend>
+template <class T, par::Launcher Backend>
 typename Backend::template Array<T> joined(Backend& b, std::vector<typename Backend::template Array<T>>& part,
                                            const std::vector<int64_t>& count) {
   if (part.size() == 1)
@@ -41,7 +41,7 @@ typename Backend::template Array<T> joined(Backend& b, std::vector<typename Back
 }
 
 /// All in the Backend's memory.
-template <class Backend>
+template <par::Launcher Backend>
 class SinkOnDevice {
 public:
   explicit SinkOnDevice(Backend& b) : b_(b) {}

@@ -1,5 +1,5 @@
 // elements.hpp — contour::make_elements on a Backend: the same functions for faces and rings, so the same elements
-// in the same order. Runs of leaves, one after the other, where the device's memory asks for it.
+// in the same order. Leaves are taken in several runs where the device's memory is short.
 #pragma once
 #include "contour/elements/elements.hpp"
 #include "cuda/contour/element_items.hpp"
@@ -10,7 +10,7 @@
 
 namespace molmesh::cuda {
 
-template <class Backend>
+template <par::Launcher Backend>
 class ElementMaker {
   template <class T>
   using Array = typename Backend::template Array<T>;
@@ -69,7 +69,7 @@ private:
     Array<int64_t> first;
     int64_t edges = 0;
   };
-  static contour::detail::RingVertices vertices(const ComplexView& view, const Rings& r) {
+  static contour::RingVertices vertices(const ComplexView& view, const Rings& r) {
     return {view, view.vertices(), r.point.data(), r.wall.data()};
   }
   Rings join(MoreVertices& more, const Ids* ends = nullptr, int32_t grid_vertices = 0) {

@@ -1,5 +1,5 @@
-// quick_division.hpp — quotients rounded as IEEE 754 has them, without a branch at each for those that lie next to
-// underflow and overflow: whether there were such is asked once, after all.
+// quick_division.hpp — quotients rounded as IEEE 754 demands, with one test for underflow and overflow after many
+// divisions instead of a branch at each.
 #pragma once
 #include "base/hd.hpp"
 

@@ -12,8 +12,8 @@
 
 namespace molmesh::cuda {
 
-using contour::detail::Fate;
-using contour::detail::RelaxView;
+using contour::Fate;
+using contour::RelaxView;
 
 /// What the threads of a star's team tell each other.
 struct StarShared {
@@ -23,7 +23,7 @@ struct StarShared {
   bool allowed[most_places];
 };
 
-/// Of contour::detail::move_vertex: all threads of the team ask the same and get the same answer. What they share
+/// Of contour::move_vertex: all threads of the team ask the same and get the same answer. What they share
 /// comes by Team::least, or lies in memory; each write is followed by a sync before it is read, each read before
 /// the next write. A star of 32 elements at most lies in the threads' registers while places are judged.
 /// Waiting is most of the time: what can be asked at once is, several places for each element, a probe each thread.
@@ -39,19 +39,19 @@ public:
         shared_(shared), origin_(r.e.position[vertex_]) {
     int32_t first[2] = {n_, n_};
     for (int32_t k = team_.rank(); k < n_; k += Team::size)
-      if (int32_t& f = first[is_asked(k)]; k < f)
+      if (int32_t& f = first[is_meshed(k)]; k < f)
         f = k;
-    for (const int asked : {0, 1})
-      if (const int32_t k = team_.least(first[asked]); k < n_) {
+    for (const int meshed : {0, 1})
+      if (const int32_t k = team_.least(first[meshed]); k < n_) {
         const double length = norm(corner(k, 1) - corner(k, 2));
-        inverse_[asked] = 1 / (length < 1e-300 ? 1e-300 : length);
+        inverse_[meshed] = 1 / (length < 1e-300 ? 1e-300 : length);
       }
     for (int32_t k = team_.rank(); k < n_; k += Team::size) {
-      const bool asked = is_asked(k);
+      const bool meshed = is_meshed(k);
       const Spoke<float> made =
-          make_spoke(local(corner(k, 1), asked), local(corner(k, 2), asked), local(corner(k, 3), asked));
+          make_spoke(local(corner(k, 1), meshed), local(corner(k, 2), meshed), local(corner(k, 3), meshed));
       if (k == team_.rank())
-        mine_ = made, mine_asked_ = asked;
+        mine_ = made, mine_meshed_ = meshed;
       spoke_[k] = made;
     }
     team_.sync();
@@ -70,8 +70,8 @@ public:
 
   HD float worst(Vec3d x, float) const {
     float least = 3e38f;
-    for_each_spoke([&](int32_t, bool asked, const Spoke<float>& s) {
-      const float q = evaluate(s, asked, x);
+    for_each_spoke([&](int32_t, bool meshed, const Spoke<float>& s) {
+      const float q = evaluate(s, meshed, x);
       least = q < least ? q : least;
     });
     return team_.least(least);
@@ -85,15 +85,15 @@ public:
       for (float& l : least)
         l = 3e38f;
       const auto at = [&](int i) { return place[first + i < end ? first + i : end - 1]; };
-      for_each_spoke([&](int32_t, bool asked, const Spoke<float>& s) {
+      for_each_spoke([&](int32_t, bool meshed, const Spoke<float>& s) {
         QuickDivision by; // no branches: the places are in flight together
         float here[at_once];
         for (int i = 0; i < at_once; ++i)
-          here[i] = quality(s, local(at(i), asked), by);
+          here[i] = quality(s, local(at(i), meshed), by);
         for (int i = 0; i < at_once && !by.holds(); ++i)
-          here[i] = quality(s, local(at(i), asked));
+          here[i] = quality(s, local(at(i), meshed));
         for (int i = 0; i < at_once; ++i) {
-          const float weighed = (asked ? 1 : contour::detail::unasked_weight) * here[i];
+          const float weighed = (meshed ? 1 : contour::unmeshed_weight) * here[i];
           least[i] = weighed < least[i] ? weighed : least[i];
         }
       });
@@ -130,17 +130,17 @@ public:
   HD Vec3d ascent(Vec3d x, double step) {
     // Of equals the first, and one that is asked for before others.
     uint64_t least = ~uint64_t{0};
-    for_each_spoke([&](int32_t k, bool asked, const Spoke<float>& s) {
-      uint32_t bits = std::bit_cast<uint32_t>(evaluate(s, asked, x) + 0.0f); // in the numbers' order
+    for_each_spoke([&](int32_t k, bool meshed, const Spoke<float>& s) {
+      uint32_t bits = std::bit_cast<uint32_t>(evaluate(s, meshed, x) + 0.0f); // in the numbers' order
       bits ^= bits >> 31 ? ~uint32_t{0} : uint32_t{1} << 31;
-      const uint64_t key = uint64_t{bits} << 32 | uint32_t{!asked} << 31 | static_cast<uint32_t>(k);
+      const uint64_t key = uint64_t{bits} << 32 | uint32_t{!meshed} << 31 | static_cast<uint32_t>(k);
       least = key < least ? key : least;
     });
     const auto worst = static_cast<int32_t>(team_.least(least) & 0x7FFFFFFF);
-    const bool asked = is_asked(worst);
-    const auto d = static_cast<float>(step * inverse_[asked]);
+    const bool meshed = is_meshed(worst);
+    const auto d = static_cast<float>(step * inverse_[meshed]);
     for (int s = team_.rank(); s < 6; s += Team::size) {
-      Vec3f y = local(x, asked);
+      Vec3f y = local(x, meshed);
       y[s / 2] = s % 2 ? y[s / 2] - d : y[s / 2] + d;
       shared_.side[s] = quality(spoke_[worst], y);
     }
@@ -179,16 +179,16 @@ public:
   }
 
 private:
-  HD bool is_asked(int32_t k) const { return r_.classes.is_asked(r_.e.tet[element_[k]]); }
-  HD float weight(int32_t k) const { return is_asked(k) ? 1 : contour::detail::unasked_weight; }
+  HD bool is_meshed(int32_t k) const { return r_.classes.is_meshed(r_.e.tet[element_[k]]); }
+  HD float weight(int32_t k) const { return is_meshed(k) ? 1 : contour::unmeshed_weight; }
   /// Of element k, the vertex in front.
   HD Vec3d corner(int32_t k, int i) const {
     const Tet& t = r_.e.tet[element_[k]];
     const int moving = t[0] == vertex_ ? 0 : t[1] == vertex_ ? 1 : t[2] == vertex_ ? 2 : 3;
     return r_.e.position[t[spoke_corner(moving, i)]];
   }
-  HD Vec3f local(Vec3d x, bool asked) const {
-    const Vec3d u = (x - origin_) * inverse_[asked];
+  HD Vec3f local(Vec3d x, bool meshed) const {
+    const Vec3d u = (x - origin_) * inverse_[meshed];
     return {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z)};
   }
   template <class By = const Division>
@@ -198,16 +198,16 @@ private:
     return q;
   }
   /// With the vertex at x.
-  HD float evaluate(const Spoke<float>& s, bool asked, Vec3d x) const {
-    return (asked ? 1 : contour::detail::unasked_weight) * quality(s, local(x, asked));
+  HD float evaluate(const Spoke<float>& s, bool meshed, Vec3d x) const {
+    return (meshed ? 1 : contour::unmeshed_weight) * quality(s, local(x, meshed));
   }
   /// see(k, asked, spoke) of this thread's elements.
   template <class See>
   HD void for_each_spoke(const See& see) const {
     if (team_.rank() < n_)
-      see(team_.rank(), mine_asked_, mine_);
+      see(team_.rank(), mine_meshed_, mine_);
     for (int32_t k = team_.rank() + Team::size; k < n_; k += Team::size)
-      see(k, is_asked(k), Spoke<float>(spoke_[k]));
+      see(k, is_meshed(k), Spoke<float>(spoke_[k]));
   }
 
   const RelaxView& r_;
@@ -219,7 +219,7 @@ private:
   StarShared& shared_;
   Vec3d origin_;
   Spoke<float> mine_{}; ///< of the thread's first element
-  bool mine_asked_ = false;
+  bool mine_meshed_ = false;
   double inverse_[2] = {0, 0}; ///< of the unit of length, of either
 };
 
@@ -238,14 +238,14 @@ struct MoveTeams {
     if (fate[i] != Fate::stays)
       return;
     TeamStar<Team> star(r, active[i], team, spoke, quality, shared);
-    if (contour::detail::move_vertex(r, surface, most_distance, active[i], star) && team.rank() == 0)
+    if (contour::move_vertex(r, surface, most_distance, active[i], star) && team.rank() == 0)
       fate[i] = Fate::moves;
   }
 };
 
 /// Those who have the turn; what a vertex's triangles are off all threads of its team write alike.
 struct MoveNearerTeams {
-  contour::detail::NearerView v;
+  contour::NearerView v;
   IsosurfaceView surface;
   const int32_t* active;
   Fate* fate;
@@ -257,18 +257,18 @@ struct MoveNearerTeams {
     if (fate[i] != Fate::stays)
       return;
     TeamStar<Team> star(v.r, active[i], team, spoke, quality, shared);
-    if (contour::detail::move_nearer_or_make_room(v, surface, active[i], star) && team.rank() == 0)
+    if (contour::move_nearer_or_make_room(v, surface, active[i], star) && team.rank() == 0)
       fate[i] = Fate::moves;
   }
 };
 
-template <class Backend>
+template <par::Launcher Backend>
 class TeamMover {
 public:
   /// threads: of the host.
   TeamMover(Backend& b, const Isosurface& surface, int threads)
       : b_(b), on_host_(surface.view()), surface_(b, surface), threads_(threads) {}
-  void judge(const contour::detail::Qualities& all) {
+  void judge(const contour::Qualities& all) {
     const auto tets = double(all.e.tets);
     b_.for_n("element qualities", all.e.tets, all, {tets * 20 + double(all.e.positions) * 25, 180. * tets, true});
   }
@@ -283,16 +283,16 @@ public:
                  {double(n) * entries_ * 112});
   }
   void measure(const contour::ElementsView& e, float* off) {
-    b_.for_n("measure triangles", e.tris,
-             contour::detail::MeasureTriangles<IsosurfaceView>{e, surface_.view(), off}, {double(e.tris) * 140});
+    b_.for_n("measure triangles", e.tris, contour::MeasureTriangles<IsosurfaceView>{e, surface_.view(), off},
+             {double(e.tris) * 140});
   }
-  void move_nearer(const contour::detail::NearerView& v, const int32_t* active, int64_t n, Fate* fate) {
+  void move_nearer(const contour::NearerView& v, const int32_t* active, int64_t n, Fate* fate) {
     b_.for_teams("move nearer", n,
                  MoveNearerTeams{v, surface_.view(), active, fate, spoke_.data(), quality_.data()},
                  {double(n) * entries_ * 112});
   }
-  int64_t divide(std::vector<contour::detail::FarPatch>& patches, const RelaxView& r) {
-    return contour::detail::divide_far(patches, on_host_, r.goal, r.shape, threads_);
+  int64_t divide(std::vector<contour::FarPatch>& patches, const RelaxView& r) {
+    return contour::divide_far(patches, on_host_, r.goal, r.shape, threads_);
   }
 
 private:

@@ -1,28 +1,21 @@
 // backend.hpp — what an algorithm asks of the machine it runs on, and how its time is told.
 //
 // An algorithm of this folder is a template over a Backend: par/host.hpp (threads of the host, in every build and
-// in the tests) or par/device.cuh (one GPU). Both offer, for trivially copyable T:
-//   Array<T> array<T>(n)               n uninitialized elements: data(), size(); freed in order with the work
-//   Array<T> filled<T>(n, value)
-//   Array<T> upload(pointer, n)
-//   void download(array, n, pointer)   returns when the elements are there
+// in the tests) or par/device.cuh (one GPU). Both are a par::Launcher (par/launcher.hpp), whose arrays are freed in
+// order with the work, and offer besides:
 //   Pending<T> fetch(pointer, n)       starts a download beside the work that follows; get() waits for it, and
 //                                      until then the array stays
-//   void settle()                      returns when all that was started is over
 //   Pending<T> fetch(pointer, n, true) of what was there then: by one other thread, beside what follows
-//   for_n(name, n, item, work)         item(i) for i in [0, n), each call independent of the others
+//   void settle()                      returns when all that was started is over
 //   for_teams(name, n, item, work)     item(i, team, shared): Team::size threads work on i together
-//   T scan(name, pointer, n)           count[i] → sum of count[0..i), in place; slot n, one more, gets the total
-//   sort_pairs(name, keys, values, n)  ascending keys, unsigned integers; equal keys stay in their order
 //   int64_t room()                     bytes of the device's memory that may still be taken
 //   void plan(bytes)                   what follows takes so many at once: says what is to be paged (Ledger)
 // Where the device's memory does not suffice, array() throws OutOfRoom, or, as the backend was made, takes memory
-// of the host that the device pages: slower, and else the same. An item is a struct of plain views with a const
-// operator() marked HD, in a header that compiles without CUDA.
+// of the host that the device pages: slower, and else the same.
 #pragma once
 #include "base/hd.hpp"
 #include "cuda/par/ledger.hpp"
-#include "par/work.hpp"
+#include "par/launcher.hpp"
 #include <cstdint>
 #include <string>
 #include <utility>

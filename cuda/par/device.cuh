@@ -290,4 +290,6 @@ private:
   std::vector<KernelTime> times_;
 };
 
+static_assert(par::Launcher<DeviceBackend>);
+
 } // namespace molmesh::cuda

@@ -131,4 +131,6 @@ private:
   std::vector<KernelTime> times_;
 };
 
+static_assert(par::Launcher<HostBackend>);
+
 } // namespace molmesh::cuda

@@ -1,4 +1,4 @@
-// contour.cpp — the stages in order.
+// contour.cpp — the stages of contour() in order.
 #include "contour/contour.hpp"
 #include "base/error.hpp"
 #include "contour/small_bodies/finer_grid.hpp"
@@ -12,9 +12,9 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   const FinerGrid finer = finer_grid(grid, options);
   summary.halvings = finer.halvings;
   const Lattice lattice(finer.grid ? *finer.grid : grid, options.box, with_outside, options.threads);
-  const struct LetGo {
+  const struct ReleaseGrid {
     Stages& stages;
-    ~LetGo() { stages.let_go(); }
+    ~ReleaseGrid() { stages.release_grid(); }
   } before_the_grid_is_gone{stages};
   stages.find_surface(lattice);
   on_phase("octree");
@@ -24,7 +24,7 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   refine_options.inside = options.meshed != Options::exterior;
   refine_options.outside = with_outside;
   stages.select_leaves(refine_options);
-  stages.make_dual(options.unasked_side(), on_phase);
+  stages.make_dual(options.unmeshed_side(), on_phase);
   on_phase("relaxation");
   stages.relax();
   on_phase("regions");

@@ -10,7 +10,7 @@
 namespace molmesh::contour {
 
 /// on_phase is called with the name of each phase as it starts. Throws Error(failed) when the grid has no surface,
-/// the surface meets a wall that was not asked to cut it, the region asked for is empty, or leaves or elements are
+/// the surface meets a wall that may not cut it, the region to mesh is empty, or leaves or elements are
 /// more than can be numbered; Error(usage) for a box that cannot be had; Error(bad_input) for a grid whose band
 /// leaves out corners of crossed cells.
 TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,

@@ -1,4 +1,4 @@
-// options.hpp — what contour() is asked for, and what it tells besides the mesh.
+// options.hpp — the options and the summary of contour().
 #pragma once
 #include "contour/octree/lattice.hpp"
 #include "contour/surface/split_cell.hpp"
@@ -9,7 +9,7 @@
 
 namespace molmesh::contour {
 
-/// The tolerance of a grid of `spacing` Å, in spacings, where none is asked for: a tenth of a spacing, or 0.2 Å,
+/// The tolerance of a grid of `spacing` Å, in spacings, where none is given: a tenth of a spacing, or 0.2 Å,
 /// since triangles are off by half of what a cell's surface is off its mean plane, and no atom's place is known to
 /// less than 0.1 Å; at most 0.85, of which corners that move nearer make half a spacing.
 inline double default_adapt(double spacing) {
@@ -25,8 +25,8 @@ struct Options {
   double drop_below = 0; ///< Å³, 0: nothing
   int threads = 1;
 
-  /// The side of the surface that the mesh has no element of, whatever parts there are; crossed: there is none.
-  Side unasked_side() const {
+  /// The side of the surface without elements in the mesh, whatever components there are; crossed: there is none.
+  Side unmeshed_side() const {
     return meshed == interior && !fill_cavities    ? Side::outside
            : meshed == exterior && drop_below == 0 ? Side::inside
                                                    : Side::crossed;
@@ -34,11 +34,12 @@ struct Options {
 };
 
 struct Summary {
-  double adapt = 0; ///< as it was asked for, or by default
+  double adapt = 0; ///< as given, or by default
   int halvings = 0; ///< of the spacing: finer_grid.hpp
   int64_t leaves = 0, surface_cells = 0, split_cells = 0, restored_points = 0, relaxed_points = 0, face_points = 0,
           edge_points = 0, divided_edges = 0;
-  std::vector<double> molecule_volumes, cavity_volumes; ///< Å³ of each part, in the order of the octree's curve
+  std::vector<double> molecule_volumes,
+      cavity_volumes; ///< Å³ of each component, in the order of the octree's curve
   int64_t dropped_parts = 0, filled_cavities = 0;
 };
 

@@ -1,6 +1,5 @@
 // stages.cpp — the stages on the host's threads.
 #include "contour/stages.hpp"
-#include "base/at.hpp"
 #include "contour/assembly/assembly.hpp"
 #include "contour/relaxation/relax.hpp"
 #include "isosurface/isosurface.hpp"
@@ -17,9 +16,9 @@ void HostStages::select_leaves(const RefineOptions& options) {
   tree_.emplace(lattice_->cells, contour::select_leaves(*lattice_, surface_, options, threads_), threads_);
 }
 
-void HostStages::make_dual(Side unasked, const std::function<void(const std::string&)>& on_phase) {
-  dual_ = contour::make_dual({*lattice_, *tree_, surface_, unasked, threads_}, on_phase);
-  // Nothing asks for these any more: relaxation's arrays take their memory.
+void HostStages::make_dual(Side unmeshed, const std::function<void(const std::string&)>& on_phase) {
+  dual_ = contour::make_dual({*lattice_, *tree_, surface_, unmeshed, threads_}, on_phase);
+  // Nothing needs these any more: relaxation's arrays take their memory.
   surface_.samples = LargeArray<SurfaceSample>();
   dual_.complex.position = LargeArray<Vec3d>();
   dual_.complex.beside = LargeArray<int32_t>();

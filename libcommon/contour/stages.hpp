@@ -1,6 +1,6 @@
 // stages.hpp — the stages of contour(), by the host's threads or by a device.
 #pragma once
-#include "contour/complex/dual.hpp"
+#include "contour/complex/dual_contouring.hpp"
 #include "contour/octree/lattice.hpp"
 #include "contour/octree/leaves.hpp"
 #include "contour/options.hpp"
@@ -17,18 +17,18 @@ namespace molmesh::contour {
 class Stages {
 public:
   virtual ~Stages() = default;
-  /// The lattice and its grid stay the caller's until let_go().
+  /// The lattice and its grid stay the caller's until release_grid().
   virtual void find_surface(const Lattice& lattice) = 0;
   virtual void select_leaves(const RefineOptions& options) = 0;
-  /// Complex and elements; unasked: Options::unasked_side; on_phase as in contour().
-  virtual void make_dual(Side unasked, const std::function<void(const std::string&)>& on_phase) = 0;
+  /// Complex and elements; unmeshed: Options::unmeshed_side; on_phase as in contour().
+  virtual void make_dual(Side unmeshed, const std::function<void(const std::string&)>& on_phase) = 0;
   virtual void relax() = 0;
   virtual std::vector<Component> find_regions(const RegionOptions& options) = 0;
   virtual TetMesh assemble(Options::Meshed meshed) = 0;
-  /// What they know: not volumes and parts, nor what was asked for and done to the grid.
+  /// Fills the counters of Summary; contour() sets volumes, components and halvings.
   virtual void count(Summary& summary) const = 0;
   /// From here on nothing reads the lattice or its grid; also after a stage has thrown.
-  virtual void let_go() noexcept {}
+  virtual void release_grid() noexcept {}
 };
 
 class HostStages final : public Stages {
@@ -37,7 +37,7 @@ public:
 
   void find_surface(const Lattice& lattice) override;
   void select_leaves(const RefineOptions& options) override;
-  void make_dual(Side unasked, const std::function<void(const std::string&)>& on_phase) override;
+  void make_dual(Side unmeshed, const std::function<void(const std::string&)>& on_phase) override;
   void relax() override;
   std::vector<Component> find_regions(const RegionOptions& options) override;
   TetMesh assemble(Options::Meshed meshed) override;

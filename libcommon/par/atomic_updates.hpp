@@ -1,5 +1,4 @@
-// atomic_updates.hpp — what several threads may do to one place at once, with a result that does not know their
-// order. Host and device.
+// atomic_updates.hpp — order-independent atomic updates: flag, minimum. Host and device.
 #pragma once
 #include "base/hd.hpp"
 #include <atomic>

@@ -1,9 +1,12 @@
-// launcher.hpp — passes over arrays on the host's threads, for algorithms that host and device share.
+// launcher.hpp — what an algorithm that host and device share asks of the machine it runs on, and the host's
+// threads.
 #pragma once
+#include "base/hd.hpp"
 #include "base/large_array.hpp"
 #include "par/pages.hpp"
 #include "par/par.hpp"
-#include "par/work.hpp"
+#include <algorithm>
+#include <concepts>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -11,10 +14,44 @@
 
 namespace molmesh::par {
 
-/// The part of cuda/par/backend.hpp that such an algorithm, a template over its launcher, may ask for.
-class Launcher {
+/// The least work of a pass, for its share of the machine's peak: bytes of memory moved at least once,
+/// multiply-adds in single or double precision.
+struct Work {
+  double bytes = 0, multiply_adds = 0;
+  bool in_double = false;
+};
+
+/// An item that does nothing: Launcher asks for for_n by it.
+struct NoItem {
+  HD void operator()(int64_t) const {}
+};
+
+/// A launcher runs passes over arrays in its own memory. HostLauncher is one, and so are the backends of cuda/par.
+/// T is trivially copyable. A kernel is an `item`: a struct of plain views with HD operator()(int64_t) const, so
+/// that one text serves host and device; par/passes.hpp makes count, scan, fill and union of these.
+template <class L>
+concept Launcher = requires(L& launcher, const char* name, int64_t n, const Work& work, const NoItem& item,
+                            const int32_t* from, int32_t* to, uint64_t* keys, uint32_t* values,
+                            const typename L::template Array<int32_t>& array) {
+  /// n uninitialized elements; n copies of a value; a copy of n elements of the host's.
+  { launcher.template array<int32_t>(n) } -> std::same_as<typename L::template Array<int32_t>>;
+  { launcher.template filled<int32_t>(n, int32_t{}) } -> std::same_as<typename L::template Array<int32_t>>;
+  { launcher.upload(from, n) } -> std::same_as<typename L::template Array<int32_t>>;
+  /// The first n elements to the host; returns when they are there.
+  launcher.download(array, n, to);
+  { array.data() } -> std::convertible_to<const int32_t*>;
+  /// item(i) for i in [0, n), each call independent of the others.
+  launcher.for_n(name, n, item, work);
+  /// count[i] → sum of count[0..i), in place; slot n, one more, gets the total, which is returned.
+  { launcher.scan(name, to, n) } -> std::same_as<int32_t>;
+  /// Ascending unsigned keys; equal keys keep their order, or are ordered by their values where these ascended.
+  launcher.sort_pairs(name, keys, values, n);
+};
+
+/// The host's threads.
+class HostLauncher {
 public:
-  explicit Launcher(int threads) : threads_(threads) {}
+  explicit HostLauncher(int threads) : threads_(threads) {}
 
   template <class T>
   using Array = LargeArray<T>;
@@ -62,12 +99,10 @@ public:
     else
       par::for_n(n, threads_for(n, grain), grain, item);
   }
-  /// count[i] → sum of count[0..i), in place; slot n, one more, gets the total.
   template <class T>
   T scan(const char*, T* count, int64_t n) {
     return count[n] = exclusive_scan(count, n);
   }
-  /// Ascending keys, those of one key by their values: as Backend where these come in ascending.
   template <class K, class V>
   void sort_pairs(const char*, K* keys, V* values, int64_t n) {
     std::vector<std::pair<K, V>> pair(static_cast<size_t>(n));
@@ -79,9 +114,8 @@ public:
     });
   }
 
-  // What contour/detail/passes.hpp makes of the above for other launchers, here by chunks that stay in the caches:
+  // gather and place_by as par/passes.hpp has them, by chunks that stay in the caches.
 
-  /// The elements of all items, in their order.
   template <class T, class Item>
   Array<T> gather(int64_t n, const Item& item) {
     constexpr int64_t grain = 4096;
@@ -143,5 +177,7 @@ private:
 
   int threads_;
 };
+
+static_assert(Launcher<HostLauncher>);
 
 } // namespace molmesh::par

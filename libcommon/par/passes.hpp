@@ -1,7 +1,8 @@
-// passes.hpp — count, scan, fill, and words by key, over a launcher (par/launcher.hpp or a Backend of cuda/par).
+// passes.hpp — count, scan, fill, and words by key, over a launcher.
 #pragma once
 #include "base/hd.hpp"
 #include "par/items.hpp"
+#include "par/launcher.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -30,25 +31,25 @@ struct FillElements {
 };
 
 /// An array of a launcher with its length.
-template <class Launcher, class T>
+template <Launcher L, class T>
 struct List {
-  typename Launcher::template Array<T> array;
+  typename L::template Array<T> array;
   int64_t n = 0;
   T* data() { return array.data(); }
   const T* data() const { return array.data(); }
 };
 
 /// The first n, in the host's memory.
-template <class T, class Launcher>
-std::vector<T> downloaded(Launcher& m, const typename Launcher::template Array<T>& from, int64_t n) {
+template <class T, Launcher L>
+std::vector<T> downloaded(L& m, const typename L::template Array<T>& from, int64_t n) {
   std::vector<T> to(static_cast<size_t>(n));
   m.download(from, n, to.data());
   return to;
 }
 
 /// More elements, uninitialized, behind those that an array of a launcher has; in place where it has the room.
-template <class Launcher, class Array>
-void grow(Launcher& m, Array& array, int64_t n) {
+template <Launcher L, class Array>
+void grow(L& m, Array& array, int64_t n) {
   if constexpr (requires { array.resize(static_cast<size_t>(n)); }) {
     array.resize(static_cast<size_t>(n));
   } else {
@@ -61,8 +62,8 @@ void grow(Launcher& m, Array& array, int64_t n) {
 }
 
 /// The elements of all items, in their order.
-template <class T, class Launcher, class Item>
-List<Launcher, T> gather(Launcher& m, const char* name, int64_t n, const Item& item) {
+template <class T, Launcher L, class Item>
+List<L, T> gather(L& m, const char* name, int64_t n, const Item& item) {
   if constexpr (requires { m.template gather<T>(n, item); }) {
     auto all = m.template gather<T>(n, item);
     const auto total = static_cast<int64_t>(all.size());
@@ -71,7 +72,7 @@ List<Launcher, T> gather(Launcher& m, const char* name, int64_t n, const Item& i
   auto count = m.template array<int64_t>(n + 1);
   m.for_n(name, n, CountElements<Item, T>{item, count.data()});
   const int64_t total = m.scan("scan", count.data(), n);
-  List<Launcher, T> out{m.template array<T>(total), total};
+  List<L, T> out{m.template array<T>(total), total};
   m.for_n(name, n, FillElements<Item, T>{item, count.data(), out.data()});
   return out;
 }
@@ -103,8 +104,8 @@ private:
     return word == 0;
   }
 };
-template <class Launcher>
-List<Launcher, int32_t> flagged(Launcher& m, const char* name, int64_t n, const uint8_t* flag) {
+template <Launcher L>
+List<L, int32_t> flagged(L& m, const char* name, int64_t n, const uint8_t* flag) {
   return gather<int32_t>(m, name, (n + Flagged::run - 1) / Flagged::run, Flagged{flag, n});
 }
 
@@ -135,8 +136,8 @@ struct PlaceIndexed {
 
 /// place(slot, i) for each i in [0, n) with key(i) ≥ 0, slots counting from 0 by ascending key, then ascending i.
 /// place: what sized(slots) makes. key(i) < keys ≤ 2^32, n < 2^32.
-template <class Launcher, class Key, class Sized>
-void place_by(Launcher& m, const char* name, int64_t n, int64_t keys, const Key& key, Sized sized) {
+template <Launcher L, class Key, class Sized>
+void place_by(L& m, const char* name, int64_t n, int64_t keys, const Key& key, Sized sized) {
   if constexpr (requires { m.place_by(n, keys, key, sized); }) {
     m.place_by(n, keys, key, sized);
   } else {
@@ -182,8 +183,8 @@ struct UniteWords {
 };
 
 /// All of them by ascending key, each key once.
-template <class Launcher>
-List<Launcher, KeyedWord> unite(Launcher& m, const std::vector<const List<Launcher, KeyedWord>*>& parts) {
+template <Launcher L>
+List<L, KeyedWord> unite(L& m, const std::vector<const List<L, KeyedWord>*>& parts) {
   int64_t n = 0;
   for (const auto* p : parts)
     n += p->n;

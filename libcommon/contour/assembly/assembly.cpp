@@ -1,6 +1,6 @@
-// assembly.cpp — count, scan, fill: elements by their first vertex, points by their first use.
+// assembly.cpp — the mesh on the host: elements in the order of their first vertex, points in that of their first
+// use.
 #include "contour/assembly/assembly.hpp"
-#include "base/at.hpp"
 #include "contour/assembly/assembly_passes.hpp"
 #include "par/launcher.hpp"
 #include <algorithm>
@@ -11,23 +11,23 @@ namespace molmesh::contour {
 namespace {
 
 /// The mesh's own arrays.
-class MeshRoom {
+class MeshArrays {
 public:
-  MeshRoom(TetMesh& mesh, int threads) : mesh_(mesh), threads_(threads) {}
+  MeshArrays(TetMesh& mesh, int threads) : mesh_(mesh), threads_(threads) {}
   Tet* tets(int64_t n) { return room(mesh_.tet, n); }
   int32_t* regions(int64_t n) { return room(mesh_.region, n); }
   Vec3d* points(int64_t n) { return room(mesh_.point, n); }
   Tri* tris(int64_t n) { return room(mesh_.tri, n); }
   int32_t* boundaries(int64_t n) { return room(mesh_.boundary, n); }
 
-  /// As detail::number_points, in one pass over the elements. Runs of elements side by side: a point belongs to the
+  /// As number_points, in one pass over the elements. Runs of elements side by side: a point belongs to the
   /// first run that uses it.
   LargeArray<int32_t> number_points(const Tet* tet, int64_t tets, const ElementsView& e) {
     const int64_t runs = std::max(1, threads_), words = (e.positions + 63) / 64;
-    std::vector<LargeArray<uint64_t>> used(at(runs)); // [points] bits
-    std::vector<LargeArray<int32_t>> own(at(runs));   // points of each run, as first used
+    std::vector<LargeArray<uint64_t>> used(static_cast<size_t>(runs)); // [points] bits
+    std::vector<LargeArray<int32_t>> own(static_cast<size_t>(runs));   // points of each run, as first used
     par::for_n(runs, threads_, 1, [&](int64_t r) {
-      LargeArray<uint64_t> bits(at(words), 0);
+      LargeArray<uint64_t> bits(static_cast<size_t>(words), 0);
       LargeArray<int32_t> list;
       for (int64_t t = tets * r / runs; t < tets * (r + 1) / runs; ++t)
         for (int32_t v : tet[t])
@@ -52,7 +52,7 @@ public:
       start.push_back(static_cast<int64_t>(list.size()));
     Vec3d* const point = points(par::exclusive_scan(start));
     LargeArray<int32_t> number;
-    par::resize_pages(number, at(e.positions), threads_);
+    par::resize_pages(number, static_cast<size_t>(e.positions), threads_);
     for (int64_t r = 0; r < runs; ++r)
       par::for_n(static_cast<int64_t>(own[r].size()), threads_, [&](int64_t i) {
         const int32_t v = own[r][i];
@@ -65,7 +65,7 @@ public:
 private:
   template <class Array>
   auto room(Array& array, int64_t n) -> decltype(array.data()) {
-    par::resize_pages(array, at(n), threads_);
+    par::resize_pages(array, static_cast<size_t>(n), threads_);
     return array.data();
   }
   TetMesh& mesh_;
@@ -75,11 +75,11 @@ private:
 } // namespace
 
 TetMesh assemble(const Elements& elements, const Components& parts, Options::Meshed meshed, int threads) {
-  par::Launcher launcher(threads);
+  par::HostLauncher launcher(threads);
   TetMesh mesh;
-  MeshRoom room(mesh, threads);
-  detail::assemble(launcher, elements.view(), parts.region_of_vertex.data(),
-                   static_cast<int64_t>(parts.region_of_vertex.size()), detail::wanted(meshed), room);
+  MeshArrays room(mesh, threads);
+  assemble(launcher, elements.view(), parts.region_of_vertex.data(),
+           static_cast<int64_t>(parts.region_of_vertex.size()), wanted(meshed), room);
   return mesh;
 }
 

@@ -1,4 +1,4 @@
-// assembly.hpp — the mesh of the wanted regions from the elements of all.
+// assembly.hpp — the mesh of the wanted regions, from the elements of all regions.
 #pragma once
 #include "contour/elements/elements.hpp"
 #include "contour/options.hpp"

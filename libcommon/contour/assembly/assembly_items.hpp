@@ -1,9 +1,9 @@
 // assembly_items.hpp — which elements are kept, where they go, and the numbers of their points. Host and device.
 #pragma once
-#include "contour/elements/elements_view.hpp"
+#include "contour/elements/elements.hpp"
 #include "par/atomic_updates.hpp"
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// Bit r: elements of Region r are wanted.
 struct Wanted {
@@ -103,4 +103,4 @@ struct PlaceTriangles {
   }
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,10 +1,10 @@
-// assembly_passes.hpp — the mesh of the wanted regions, pass by pass, over a launcher: one text, one result.
+// assembly_passes.hpp — the mesh of the wanted regions, pass by pass, over a launcher.
 #pragma once
 #include "contour/assembly/assembly_items.hpp"
 #include "contour/options.hpp"
 #include "par/passes.hpp"
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 inline Wanted wanted(Options::Meshed meshed) {
   return {meshed == Options::interior   ? uint8_t{1 << molecule}
@@ -13,7 +13,7 @@ inline Wanted wanted(Options::Meshed meshed) {
 }
 
 /// Numbers points in the order of their first use; returns the numbers.
-template <class Launcher, class Mesh>
+template <par::Launcher Launcher, class Mesh>
 auto number_points(Launcher& m, const Tet* tet, int64_t tets, const ElementsView& e, Mesh& mesh) {
   auto first = m.filled(e.positions, ~uint32_t{0});
   m.for_n("first elements", tets, FirstElements{tet, first.data()}, {double(tets) * 16 + double(e.positions) * 4});
@@ -27,7 +27,7 @@ auto number_points(Launcher& m, const Tet* tet, int64_t tets, const ElementsView
 
 /// Mesh: makes room and says where: tets(n), regions(n), points(n), tris(n), boundaries(n); it may have a faster
 /// number_points(tet, tets, elements), and a renumber_tets(renumber) that calls renumber(begin, end) run by run.
-template <class Launcher, class Mesh>
+template <par::Launcher Launcher, class Mesh>
 void assemble(Launcher& m, const ElementsView& e, const uint8_t* region, int64_t complex_vertices, Wanted wanted,
               Mesh& mesh) {
   Tet* tet = nullptr;
@@ -56,4 +56,4 @@ void assemble(Launcher& m, const ElementsView& e, const uint8_t* region, int64_t
           {double(kept.n) * 40});
 }
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

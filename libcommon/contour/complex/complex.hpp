@@ -1,11 +1,92 @@
 // complex.hpp — the octree's leaves as a face-to-face complex of convex cells, with a dual vertex in each.
-// Section 4.1 of Liao et al. 2013. Every mesh is the dual of this complex; see elements.hpp.
+// Section 4.1 of Liao et al. 2013. Every mesh is the dual of this complex; see elements.hpp. Host and device.
+//
+// The life of a grid point:
+//  1. numbered: one id for each corner of leaves, in the order of the octree's curve (numbering_items.hpp);
+//  2. measured: its value, its nearest sample, its distance to the surface (KeepDistance in distance_items.hpp);
+//  3. kept at distance: moved along the gradient where it is too near the surface (KeepDistance);
+//  4. restored: put back where an element hangs on it that would have no positive volume (ComplexPasses);
+//  5. relaxed: moved, as all vertices may be, to where its worst element is best (relaxation/), and, on the
+//  surface,
+//     nearer to the isosurface (surface_distance/). From here on ElementArrays::position has its place;
+//  6. renumbered: points of the mesh are those in use, in the order of their first use (assembly/).
 #pragma once
 #include "base/large_array.hpp"
-#include "contour/complex/complex_view.hpp"
+#include "contour/octree/lattice.hpp"
+#include "contour/octree/octree.hpp"
+#include "contour/surface/ambiguous_cell.hpp"
+#include "contour/surface/split_cell.hpp"
+#include "contour/surface/surface_cell.hpp"
 #include <cstdint>
 
 namespace molmesh::contour {
+
+/// The complex as plain arrays: what its passes read and write. Members as in ComplexArrays.
+struct ComplexView {
+  LatticeView lattice;
+  OctreeView tree;
+  const SurfaceCell* cells = nullptr;
+  const SurfaceSample* samples = nullptr;
+  int32_t surface_cells = 0;
+  int32_t grid_vertices = 0, dual0 = 0;
+  int32_t pieces = 0; ///< vertices after the leaves' duals
+  /// Its elements are made at the surface alone, which is to move, and may be flat (unmeshed_weight); crossed:
+  /// neither's.
+  Side unmeshed = Side::crossed;
+
+  Side* side = nullptr;
+  int32_t *first_cell = nullptr, *grid_vertex = nullptr, *beside = nullptr, *split = nullptr, *split_leaf = nullptr;
+  Vec3d* position = nullptr;
+  float* value = nullptr;
+  Vec3i* point = nullptr;
+  float *distance = nullptr, *estimate = nullptr;
+  uint8_t* has_moved = nullptr;
+  int32_t* nearest = nullptr;
+  uint8_t* least_level = nullptr;
+  uint16_t* face_points = nullptr;
+
+  HD int32_t vertices() const { return dual0 + tree.leaves + pieces; }
+  HD bool inside(int32_t vertex) const { return value[vertex] > lattice.isovalue; }
+  /// Of a grid point: whether it lies on a wall of the lattice.
+  HD bool at_wall(int32_t vertex) const {
+    const Vec3i p = point[vertex], end = lattice.cells;
+    return p.x == 0 || p.y == 0 || p.z == 0 || p.x == end.x || p.y == end.y || p.z == end.z;
+  }
+  HD bool is_split(int32_t leaf) const { return split[leaf] >= 0; }
+  HD int32_t dual(int32_t leaf) const { return dual0 + leaf; }
+  HD bool moved(int32_t vertex) const { return vertex < grid_vertices && has_moved[vertex]; }
+  HD int32_t corner_vertex(int32_t leaf, int corner) const { return grid_vertex[int64_t{8} * leaf + corner]; }
+  HD int32_t neighbour(int32_t leaf, int face) const { return beside[int64_t{6} * leaf + face]; }
+  HD int32_t leaf_of(int32_t vertex) const {
+    const int32_t leaf = vertex - dual0, piece = leaf - tree.leaves;
+    return leaf < 0 || piece >= pieces ? -1 : piece < 0 ? leaf : split_leaf[piece];
+  }
+  /// Surface cells within a leaf: first_cell[leaf] up to here.
+  HD int32_t end_cell(int32_t leaf) const {
+    const uint64_t end = tree.key[leaf] + (uint64_t{1} << 3 * tree.level[leaf]);
+    int32_t c = first_cell[leaf];
+    while (c < surface_cells && cells[c].key < end)
+      ++c;
+    return c;
+  }
+  HD CellTopology topology(int32_t leaf) const {
+    const SurfaceCell& cell = cells[first_cell[leaf]];
+    double v[8];
+    for (int c = 0; c < 8; ++c)
+      v[c] = over_isovalue(cell.value[c], lattice.isovalue);
+    return cell_topology(v);
+  }
+  HD int32_t piece_dual(int32_t leaf, const SplitCell& s, const Patch& p) const {
+    return split[leaf] + 1 + (p.piece < 0 ? s.pieces : p.piece);
+  }
+  /// Of the piece of a split leaf behind face f; off: the triangle's corner off the diagonal, -1 for a square.
+  HD int32_t piece_dual(int32_t leaf, const SplitCell& s, int f, int off) const {
+    for (const Patch& p : s.patch)
+      if (p.face == f && (off < 0 || p.corner[1] == off))
+        return piece_dual(leaf, s, p);
+    return -1; // every face has its patches
+  }
+};
 
 /// Everything known per leaf and per vertex of the complex, in the arrays of a Memory: HostMemory, or a device's.
 /// Vertex ids: grid points first, then one dual vertex per leaf (dual0 + leaf), then for each split cell its centre
@@ -41,8 +122,5 @@ struct HostMemory {
   using Array = LargeArray<T>;
 };
 using Complex = ComplexArrays<HostMemory>;
-
-/// As detail::LatticeClasses says.
-LargeArray<uint8_t> lattice_classes(const Complex& complex, int threads);
 
 } // namespace molmesh::contour

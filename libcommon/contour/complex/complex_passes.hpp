@@ -1,5 +1,5 @@
-// complex_passes.hpp — the complex made and mended, pass by pass, over a launcher (par/launcher.hpp on the host's
-// threads, a Backend of cuda/par): one text, one result.
+// complex_passes.hpp — builds the complex, and puts grid points back where an element would have no volume; pass by
+// pass, over a launcher.
 #pragma once
 #include "base/error.hpp"
 #include "contour/complex/complex.hpp"
@@ -10,9 +10,9 @@
 #include "par/passes.hpp"
 #include <utility>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
-struct GatherMoved {
+struct GatherMovedPoints {
   ComplexView c;
   HD int64_t operator()(int64_t v, int32_t* out) const {
     if (!c.has_moved[v])
@@ -43,7 +43,7 @@ struct SplitLeaves {
   }
 };
 /// Leaves with a corner near the surface.
-struct GatherNear {
+struct GatherLeavesNearSurface {
   ComplexView c;
   HD int64_t operator()(int64_t leaf, int32_t* out) const {
     bool near = false;
@@ -105,7 +105,7 @@ struct PlaceDuals {
   HD void operator()(int64_t i) const { place(leaf[i]); }
 };
 /// The passes on a complex in a launcher's memory.
-template <class Launcher, class Memory = Launcher>
+template <par::Launcher Launcher, class Memory = Launcher>
 class ComplexPasses : public ComplexArrays<Memory> {
 public:
   using Ids = par::List<Launcher, int32_t>;
@@ -151,10 +151,10 @@ public:
       v.has_moved = take(this->has_moved, points);
       v.nearest = take(this->nearest, points);
       v.least_level = take(this->least_level, points);
-      m.for_n("name corners", leaves, NameCorners{v, owned.data(), first.data()},
+      m.for_n("number corners", leaves, NumberCorners{v, owned.data(), first.data()},
               {double(leaves) * 45 + double(points) * 44});
       m.for_n("share corners", leaves, ShareCorners{v, owned.data()}, {double(leaves) * 70});
-      m.for_n("name pieces", leaves, NamePieces{v, extra.data()}, {double(leaves) * 12});
+      m.for_n("number pieces", leaves, NumberPieces{v, extra.data()}, {double(leaves) * 12});
     }
     {
       auto sample = m.filled(v.grid_vertices, LookFromLeaf::none);
@@ -178,10 +178,10 @@ public:
   /// leaves' faces and of rings with both ends among `ends` or not grid points (null: all).
   template <class SpoiledOf>
   int64_t restore_spoiling(SpoiledOf spoiled_of) {
-    // Every face that a surface cell has part in belongs to a leaf with a corner in common.
-    Ids spoiled =
-        spoiled_of(par::gather<int32_t>(m_, "leaves near surface", this->view.tree.leaves, GatherNear{this->view}),
-                   static_cast<const Ids*>(nullptr));
+    // Every face of a surface cell belongs to a leaf with a corner in common.
+    Ids spoiled = spoiled_of(par::gather<int32_t>(m_, "leaves near surface", this->view.tree.leaves,
+                                                  GatherLeavesNearSurface{this->view}),
+                             static_cast<const Ids*>(nullptr));
     constexpr int most_rounds = 8; // then all go back: time must be bounded
     int64_t restored = 0;
     for (int round = 0; spoiled.n > 0; ++round) {
@@ -220,7 +220,7 @@ private:
   Ids spoiling_vertices(const Ids& spoiled, bool all) {
     Ids spoiling = raised<RaiseSpoiling>("spoiling", spoiled, this->view.grid_vertices);
     if (all || spoiling.n == 0)
-      spoiling = par::gather<int32_t>(m_, "moved", this->view.grid_vertices, GatherMoved{this->view});
+      spoiling = par::gather<int32_t>(m_, "moved", this->view.grid_vertices, GatherMovedPoints{this->view});
     if (spoiling.n == 0)
       fail(Status::failed, "contour: an element of unmoved boxes has no volume");
     return spoiling;
@@ -228,4 +228,4 @@ private:
   Launcher& m_;
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

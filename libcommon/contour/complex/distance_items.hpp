@@ -1,12 +1,13 @@
-// distance_items.hpp — how far grid points are from the surface, and those too near moved away. Host and device.
+// distance_items.hpp — kernels that estimate how far grid points are from the surface and move those too near away.
+// Host and device.
 #pragma once
 #include "base/log.hpp"
-#include "contour/complex/complex_view.hpp"
+#include "contour/complex/complex.hpp"
 #include "par/atomic_updates.hpp"
 #include <bit>
 #include <cmath>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// Grid points nearer than this (in the edges of the smallest leaf round them) are moved away from the surface
 /// along the gradient: slivers come from grid points next to it (Liang & Zhang, Engineering with Computers 2014).
@@ -16,7 +17,7 @@ inline constexpr double least_distance = 0.3;
 /// sample does.
 inline constexpr double gradient_reach = 0.7;
 
-/// Square of the gradient's part within a wall below which a grid point on it does not move.
+/// Square of the gradient's component within a wall below which a grid point on it does not move.
 inline constexpr double least_along = 0.5;
 
 /// Of the leaves round each grid point, from the leaves' side: the nearest of their samples, of two as near the
@@ -106,7 +107,7 @@ private:
     BlockIndexView::Last home;
     if (here > 0 && c.lattice.active(p, there, home)) {
 #ifndef __CUDA_ARCH__
-      for (const int step : {-64, -8, 8, 64}) // they are on their way while the index is asked for the first
+      for (const int step : {-64, -8, 8, 64}) // they are fetched while the index is searched for the first
         if (const int64_t near = 512 * home.block + slot(c.lattice.base + p) + step; near >= 0)
           __builtin_prefetch(c.lattice.grid + near);
 #endif
@@ -163,4 +164,4 @@ struct Restore {
   }
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,9 +1,12 @@
-// dual_vertex.hpp — dual vertices from where the surface crosses the complex's edges. Host and device.
+// dual_vertex.hpp — the dual vertex of each cell of the complex. Section 4.1 of Liao et al. 2013: the mass centre
+// of the surface's crossings with the cell's edges, or the cell's centre off the surface. In place of the minimizer
+// of reference 50's error function, mass centres are moved onto the surface's tangent plane, and those of merged
+// cells off the cell's faces. Host and device.
 #pragma once
-#include "contour/surface/edge_crossing.hpp"
+#include "contour/complex/edge_crossing.hpp"
 #include <bit>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// The next float towards +∞ or -∞; x positive and finite.
 HD inline float next_float(float x, bool up) {
@@ -28,7 +31,8 @@ public:
   HD Vec3d foot(int32_t k) const {
     return k < kept ? Vec3d{x_[k], y_[k], z_[k]} : c_.lattice.between(sample(k).point);
   }
-  /// x moved onto the tangent plane of the nearest: the mean of a curved sheet's crossings lies on its hollow side.
+  /// x moved onto the tangent plane of the nearest: the mean of a curved surface's crossings lies on its concave
+  /// side.
   HD Vec3d onto_surface(Vec3d x) const {
     int32_t which = 0;
     uint64_t least = ~uint64_t{0};
@@ -61,7 +65,7 @@ struct PlaceDual {
         place_split(leaf);
       return;
     }
-    // The lattice's own middle plane: seen from a smaller neighbour it is the rim of that neighbour's face.
+    // The middle lies in a lattice plane, which holds an edge of the smaller neighbours' faces.
     const int32_t extent = c.tree.extent(leaf), half = extent / 2;
     const Vec3i corner = c.tree.corner(leaf);
     dual = extent > 1 ? c.lattice.position(corner + Vec3i{half, half, half})
@@ -189,4 +193,4 @@ private:
   }
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,10 +1,10 @@
-// numbering_items.hpp — which leaves the surface crosses, who owns which grid point, and the numbers that follow.
-// Items in the order of their passes. Host and device.
+// numbering_items.hpp — kernels that find the leaves at the surface and number grid points and the vertices of
+// split cells, in the order of their passes. Host and device.
 #pragma once
-#include "contour/complex/complex_view.hpp"
+#include "contour/complex/complex.hpp"
 #include "geom/morton.hpp"
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// The leaf with grid point p as a corner whose fine cell there is p - step of the octant; -1: none.
 HD inline int32_t leaf_with_corner(NearLeaves& near, Vec3i p, int octant) {
@@ -84,7 +84,7 @@ private:
 };
 
 /// first: scanned.
-struct NameCorners {
+struct NumberCorners {
   ComplexView c;
   const int32_t *owned, *first;
   HD void operator()(int64_t i) const {
@@ -129,7 +129,7 @@ struct CountPieces {
   }
 };
 /// extra: scanned, [leaves] + 1.
-struct NamePieces {
+struct NumberPieces {
   ComplexView c;
   const int32_t* extra;
   HD void operator()(int64_t i) const {
@@ -143,4 +143,4 @@ struct NamePieces {
   }
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

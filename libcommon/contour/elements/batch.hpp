@@ -1,4 +1,4 @@
-// batch.hpp — what one run of leaves, or of edges, makes before all runs are joined.
+// batch.hpp — the elements of one run of leaves, or of edges, before all runs are joined.
 #pragma once
 #include "base/error.hpp"
 #include "geom/vec.hpp"
@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 inline constexpr int32_t no_vertex = std::numeric_limits<int32_t>::min();
 
@@ -65,4 +65,4 @@ struct Batch : BatchData {
   static constexpr bool checks = check;
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -4,7 +4,7 @@
 #include "geom/vec.hpp"
 #include <cmath>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 HD inline double lesser(double a, double b) {
   return b < a ? b : a;
@@ -45,4 +45,4 @@ HD void least_sines(int n, const Corner& corner, double* least) {
     least[i] = least_sine(corner(i, 0), corner(i, 1), corner(i, 2), corner(i, 3));
 }
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,6 +1,5 @@
 // elements.cpp — faces, then rings, joined in the order of the octree's curve.
 #include "contour/elements/elements.hpp"
-#include "base/at.hpp"
 #include "contour/elements/interior_edges.hpp"
 #include "contour/elements/sign_change_edges.hpp"
 #include "par/pages.hpp"
@@ -10,8 +9,6 @@
 namespace molmesh::contour {
 
 namespace {
-
-using detail::Link;
 
 /// What faces and rings leave, joined: points and links beside the elements.
 struct Joined {
@@ -59,7 +56,7 @@ void join(const std::vector<Batch>& batches, int32_t first, Joined& out, int thr
     const Batch& b = batches[i];
     const Start& to = start[i];
     const int32_t zero = first + static_cast<int32_t>(to.point) - 1;
-    const auto number = [&](int32_t v) { return v >= 0 || v == detail::no_vertex ? v : zero - v; };
+    const auto number = [&](int32_t v) { return v >= 0 || v == no_vertex ? v : zero - v; };
     for (size_t k = 0; k < b.tet.size(); ++k)
       for (size_t c = 0; c < 4; ++c)
         e.tet[to.tet + k][c] = number(b.tet[k][c]);
@@ -85,9 +82,9 @@ template <bool check, class Make>
 void run(int64_t n, int32_t first, Joined& out, int threads, Make make) {
   constexpr int64_t batch_size = 256; // leaves or edges
   const int64_t all = (n + batch_size - 1) / batch_size, most = int64_t{64} * threads;
-  std::vector<detail::Batch<check>> batches;
+  std::vector<Batch<check>> batches;
   for (int64_t begin = 0; begin < all; begin += most) {
-    batches.resize(at(std::min(most, all - begin)));
+    batches.resize(static_cast<size_t>(std::min(most, all - begin)));
     par::for_n(static_cast<int64_t>(batches.size()), threads, 1, [&](int64_t b) {
       batches[b].clear();
       const int64_t first_item = (begin + b) * batch_size;
@@ -113,7 +110,7 @@ LargeArray<int64_t> sort_by_edge(LargeArray<Link>& links, int32_t vertices, int 
   LargeArray<Link> sorted;
   par::place_by(
       n, vertices, threads, [&](int64_t i) { return links[i].inside; },
-      [&](int64_t slots) { par::resize_pages(sorted, at(slots), threads); },
+      [&](int64_t slots) { par::resize_pages(sorted, static_cast<size_t>(slots), threads); },
       [&](int64_t slot, int64_t i) { sorted[slot] = links[i]; });
   links.swap(sorted);
   const LargeArray<int64_t> run =
@@ -128,10 +125,10 @@ template <bool check, class Leaf, class Stay>
 Joined make_all(const ComplexView& view, int64_t n, Leaf leaf, int threads, Stay stay) {
   Joined out;
   // About what a uniform mesh has: memory is taken when it is written.
-  out.link.reserve(6 * at(view.surface_cells));
+  out.link.reserve(6 * static_cast<size_t>(view.surface_cells));
   if (!check) {
-    const size_t triangles = 3 * at(view.surface_cells);
-    out.elements.tet.reserve(at(12 * n) + 8 * at(view.surface_cells));
+    const size_t triangles = 3 * static_cast<size_t>(view.surface_cells);
+    out.elements.tet.reserve(static_cast<size_t>(12 * n) + 8 * static_cast<size_t>(view.surface_cells));
     out.elements.tri.reserve(triangles);
     out.elements.tri_sides.reserve(triangles);
     out.elements.boundary.reserve(triangles);
@@ -139,7 +136,7 @@ Joined make_all(const ComplexView& view, int64_t n, Leaf leaf, int threads, Stay
   run<check>(n, view.vertices(), out, threads, [&](int64_t begin, int64_t end, auto& to) {
     NearLeaves near(view.tree);
     for (int64_t i = begin; i < end; ++i)
-      detail::make_faces(view, near, leaf(i), to);
+      make_faces(view, near, leaf(i), to);
   });
   out.elements.face_points = static_cast<int64_t>(out.wall.size());
   if (check)
@@ -148,11 +145,11 @@ Joined make_all(const ComplexView& view, int64_t n, Leaf leaf, int threads, Stay
   const LargeArray<int64_t> first = sort_by_edge(out.link, view.vertices(), threads);
   const LargeArray<Vec3d> point = out.elements.position; // the rings' are appended
   const LargeArray<int32_t> wall = out.wall;
-  const detail::RingVertices vertices{view, view.vertices(), point.data(), wall.data()};
+  const RingVertices vertices{view, view.vertices(), point.data(), wall.data()};
   run<check>(static_cast<int64_t>(first.size()) - 1, view.vertices(), out, threads,
              [&](int64_t begin, int64_t end, auto& to) {
                for (int64_t e = begin; e < end; ++e)
-                 detail::make_ring(vertices, &out.link[first[e]], out.link.data() + first[e + 1], to);
+                 make_ring(vertices, &out.link[first[e]], out.link.data() + first[e + 1], to);
              });
   return out;
 }
@@ -179,8 +176,8 @@ Elements make_elements(const ComplexView& view, int threads) {
   out.edge_points = static_cast<int64_t>(out.position.size()) - out.face_points;
   const LargeArray<Vec3d> more = std::move(out.position);
   const int64_t own = view.vertices(), points = own + static_cast<int64_t>(more.size());
-  par::reserve_pages(out.position, at(points), par::a_few(at(points)), threads);
-  out.position.resize(at(points));
+  par::reserve_pages(out.position, static_cast<size_t>(points), par::a_few(static_cast<size_t>(points)), threads);
+  out.position.resize(static_cast<size_t>(points));
   par::for_n(points, threads, [&](int64_t i) { out.position[i] = i < own ? view.position[i] : more[i - own]; });
   return std::move(out);
 }

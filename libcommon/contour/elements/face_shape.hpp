@@ -1,12 +1,12 @@
 // face_shape.hpp — whether a dual edge pierces its face, how flat the face's elements are, and so whether it gets a
 // point. Host and device.
 #pragma once
+#include "contour/complex/edge_crossing.hpp"
 #include "contour/elements/element_shape.hpp"
-#include "contour/surface/edge_crossing.hpp"
 #include "geom/tet_measures.hpp"
 #include <cmath>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// A convex polygon of vertices of the complex, counter-clockwise seen from the cell in front.
 struct Polygon {
@@ -101,4 +101,4 @@ HD inline bool wants_point(const ComplexView& c, const Polygon& p, int32_t behin
   return !direct || via_shape(c, p, behind, point, front) > shape;
 }
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -5,13 +5,13 @@
 #include "geom/predicates.hpp"
 #include <cmath>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// Out: Batch, Checks, or what counts or writes on a device.
 template <class Out>
-class FacePass {
+class LeafFaces {
 public:
-  HD FacePass(const ComplexView& c, NearLeaves& near, Out& out) : c_(c), near_(near), out_(out) {}
+  HD LeafFaces(const ComplexView& c, NearLeaves& near, Out& out) : c_(c), near_(near), out_(out) {}
 
   HD void leaf(int32_t leaf) {
     const int level = c_.tree.level[leaf];
@@ -77,7 +77,7 @@ private:
     const bool both_crossed = mine == Side::crossed && its == Side::crossed;
     if (Out::checks && mine != Side::crossed && its != Side::crossed)
       return;
-    if (other >= 0 && mine == c_.unasked && its == mine && mine != Side::crossed)
+    if (other >= 0 && mine == c_.unmeshed && its == mine && mine != Side::crossed)
       return;
     const int corner[4] = {face_corner_of(f, 0), face_corner_of(f, 1), face_corner_of(f, 2), face_corner_of(f, 3)};
     const auto vertex = [&](int k) { return c_.corner_vertex(leaf, k); };
@@ -247,7 +247,7 @@ private:
 /// smaller cell, of two equal ones to the lower. near: the complex's tree.
 template <class Out>
 HD void make_faces(const ComplexView& complex, NearLeaves& near, int32_t leaf, Out& out) {
-  FacePass<Out>(complex, near, out).leaf(leaf);
+  LeafFaces<Out>(complex, near, out).leaf(leaf);
 }
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -54,7 +54,7 @@ HD __attribute__((always_inline)) inline void least_of(const Sines<V>& s, V& lea
   least = s.six_volume > 0 ? least : V{} - 1;
 }
 
-/// detail::least_sine of each, to the last bit.
+/// least_sine of each, to the last bit.
 void eight_least_sines(const EightElements& e, double (&least)[8]);
 
 } // namespace molmesh::contour

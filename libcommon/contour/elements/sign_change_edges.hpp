@@ -1,13 +1,13 @@
 // sign_change_edges.hpp — the elements round one sign-change edge: pyramids over the ring of dual vertices, split
 // by the better diagonal or round a crossing point. Host and device.
 #pragma once
+#include "contour/complex/edge_crossing.hpp"
 #include "contour/elements/batch.hpp"
 #include "contour/elements/interior_edges.hpp"
-#include "contour/surface/edge_crossing.hpp"
 #include "geom/predicates.hpp"
 #include "geom/tet_measures.hpp"
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// What a ring needs to know of vertices: those of the complex and the face and wall points after them.
 struct RingVertices {
@@ -198,4 +198,4 @@ HD void make_ring(const RingVertices& v, const Link* begin, const Link* end, Out
   }
 }
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

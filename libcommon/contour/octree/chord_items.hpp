@@ -1,13 +1,13 @@
-// chord_items.hpp — the volume that the chords of a selection of leaves cut off, estimated from the surface's
-// samples.
+// chord_items.hpp — kernels that estimate, from the surface's samples, the volume that the chords of leaves cut
+// off. It limits the error function's tolerance for small bodies. Host and device.
 #pragma once
 #include "contour/octree/error_function.hpp"
-#include "contour/surface/surface_cells.hpp"
+#include "contour/surface/surface_cell.hpp"
 #include "geom/morton.hpp"
 #include <cmath>
 #include <cstdint>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// Of the surface in the sample's cell, in squared fine spacings: a surface of area A crosses A (|nx| + |ny| +
 /// |nz|) cells of a lattice on average.
@@ -136,9 +136,9 @@ HD inline SurfaceSums sums_of_cell(const SurfaceCell& cell, const SurfaceSample&
   return sums;
 }
 
-/// In stretches, so that sums keep their order.
+/// Item i sums `run` cells, so that sums keep their order.
 struct SumCells {
-  static constexpr int64_t stretch = 1024, grain = 1;
+  static constexpr int64_t run = 1024, grain = 1;
   const SurfaceCell* cell;
   const SurfaceSample* sample;
   int64_t cells;
@@ -146,10 +146,10 @@ struct SumCells {
   SurfaceSums* out;
   HD void operator()(int64_t i) const {
     SurfaceSums sums;
-    for (int64_t c = stretch * i; c < stretch * (i + 1) && c < cells; ++c)
+    for (int64_t c = run * i; c < run * (i + 1) && c < cells; ++c)
       sums += sums_of_cell(cell[c], sample[c], isovalue);
     out[i] = sums;
   }
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,21 +1,28 @@
-// error_function.hpp — the octree's nodes that hold surface cells: which of them may be one cell.
+// error_function.hpp — decides which octree nodes at the surface may be one cell. Section 4.1 of Liao et al. 2013.
+//
+// The feature-sensitive error function of their reference 50 compares a node's trilinear interpolant with the field
+// at the node's finer points. It is replaced, since the grid holds constants at most corners of coarse nodes, which
+// lie outside the band. The error is measured on what the band knows: the mass centres and normals of the fine
+// cells that the surface crosses (SurfaceSample). It is their largest distance from their mean plane, in fine
+// spacings (MergeNodes), and normals may turn by 72.5° at most. Merged cells keep the topology: OneDisc and
+// middles_agree. Host and device.
 #pragma once
 #include "contour/octree/node_mask.hpp"
-#include "contour/surface/cube.hpp"
-#include "contour/surface/surface_sample.hpp"
+#include "contour/surface/ambiguous_cell.hpp"
+#include "contour/surface/surface_cell.hpp"
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
-/// A node is one plain sheet and may be one cell; else it has children.
-inline constexpr uint8_t whole = 1 << 6;
-// Bit f of a whole node: the middle of its surface is near face f.
+/// A node whose surface is one nearly plane disc may be one cell; else it has children.
+inline constexpr uint8_t one_cell = 1 << 6;
+// Bit f of such a node: the middle of its surface is near face f.
 
 /// Nodes of one level with surface cells, ascending. Level 0: the cells themselves, each its own node.
 struct SurfaceNodes {
   const uint64_t* key = nullptr;  ///< Morton code / 8^level
   const int32_t* child = nullptr; ///< first node of the level below; its nodes follow each other. Level 0: null
   const int32_t* cell = nullptr;  ///< first surface cell. Level 0: null
-  uint8_t* flags = nullptr;       ///< `whole` and near faces
+  uint8_t* flags = nullptr;       ///< `one_cell` and near faces
   uint8_t* corners = nullptr;     ///< bit c: corner c is inside; of nodes within the domain
   int64_t n = 0, below = 0, cells = 0; ///< nodes here, of the level below, surface cells
 
@@ -90,7 +97,7 @@ struct StartFromCells {
     const uint32_t inside = inside_corners(from[i], isovalue);
     key[i] = from[i].key;
     corners[i] = static_cast<uint8_t>(inside);
-    flags[i] = one_disc(inside) ? whole : uint8_t{0};
+    flags[i] = one_disc(inside) ? one_cell : uint8_t{0};
   }
 };
 
@@ -123,11 +130,11 @@ struct MakeParents {
   }
 };
 
-/// The mean of samples.
-struct Sheet {
+/// The mean plane of samples.
+struct MeanPlane {
   Vec3d normal, middle; ///< unit vector, zero where normals cancel
 
-  HD Sheet(const SurfaceSample* begin, const SurfaceSample* end) {
+  HD MeanPlane(const SurfaceSample* begin, const SurfaceSample* end) {
     for (const SurfaceSample* s = begin; s < end; ++s) {
       normal += s->normal;
       middle += s->point;
@@ -137,7 +144,7 @@ struct Sheet {
     if (length > 0)
       normal = normal / length;
   }
-  /// Normals within 72.5° of their mean: one sheet, no sharp crease.
+  /// Normals within 72.5° of their mean: one surface, no sharp crease.
   HD bool has(const SurfaceSample& s) const { return dot(s.normal, normal) >= 0.3; }
 };
 
@@ -154,7 +161,7 @@ HD inline bool middles_agree(uint32_t in) {
   return (in & ~any) == 0 && (all & ~in) == 0;
 }
 
-/// Sets the flags of node i: whole when its children are, its surface is nearly plane, and merging keeps the
+/// Sets the flags of node i: one_cell when its children are, its surface is nearly plane, and merging keeps the
 /// topology.
 struct MergeNodes {
   /// Of the surface's middle from a face with smaller cells behind, in the node's edge length: seen from nearer,
@@ -177,20 +184,20 @@ struct MergeNodes {
     if (corner.x + extent > cells.x || corner.y + extent > cells.y || corner.z + extent > cells.z)
       return;
     for (int64_t c = nodes.child_begin(i); c < nodes.child_begin(i + 1); ++c)
-      if (!(children.flags[c] & whole))
+      if (!(children.flags[c] & one_cell))
         return;
     if (!keeps_topology(i))
       return;
     const SurfaceSample *const begin = sample + nodes.cell_begin(i), *const end = sample + nodes.cell_begin(i + 1);
-    const Sheet sheet(begin, end);
-    if (nearly_plane(begin, end, sheet))
-      flags = static_cast<uint8_t>(whole | near_faces(sheet.middle, corner, extent));
+    const MeanPlane plane(begin, end);
+    if (nearly_plane(begin, end, plane))
+      flags = static_cast<uint8_t>(one_cell | near_faces(plane.middle, corner, extent));
   }
 
 private:
-  HD bool nearly_plane(const SurfaceSample* begin, const SurfaceSample* end, const Sheet& sheet) const {
+  HD bool nearly_plane(const SurfaceSample* begin, const SurfaceSample* end, const MeanPlane& plane) const {
     for (const SurfaceSample* s = begin; s < end; ++s)
-      if (!(sheet.has(*s) && std::fabs(dot(s->point - sheet.middle, sheet.normal)) <= tolerance))
+      if (!(plane.has(*s) && std::fabs(dot(s->point - plane.middle, plane.normal)) <= tolerance))
         return false;
     return true;
   }
@@ -221,7 +228,7 @@ struct SurfaceBlocks {
     for (int64_t k = begin; k < end; ++k) {
       const uint64_t bit = uint64_t{1} << (nodes.key[k] & 63);
       const uint8_t flags = nodes.flags[k];
-      children |= flags & whole ? 0 : bit;
+      children |= flags & one_cell ? 0 : bit;
       for (int f = 0; f < 6; ++f)
         near_face[f] |= flags >> f & 1 ? bit : 0;
     }
@@ -231,4 +238,4 @@ struct SurfaceBlocks {
   }
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int32_t most_cells = 1 << 20; // a Morton key holds 21 bits an axis
 
-/// How much spacings beyond the grid may stretch or shrink, as a share, for the walls to lie where asked.
-constexpr double most_stretch = 0.3;
+/// How much spacings beyond the grid may change, as a share, for the walls to lie where asked.
+constexpr double most_change = 0.3;
 
 /// Where the middle of the grid should lie, in lattice points from the lower wall; `middle`: where it does. A third
 /// or two thirds into an octree cell of `half` is as far into its cells of every smaller level. On a corner of
@@ -174,7 +174,7 @@ bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
     cut.share = wall - cut.plane;
   }
   // A whole number of the largest cells, so that no layer of small ones lines the walls: spacings beyond the grid
-  // stretch or shrink for it. Between two walls that cut the grid nothing can give way.
+  // change for it. Between two walls that cut the grid nothing can give way.
   const int32_t rest = (end - begin) % unit;
   const int32_t below = std::max(0, first - begin), beyond = below + std::max(0, end - last);
   bool whole = true;
@@ -183,7 +183,7 @@ bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
     end += (unit - rest) - (unit - rest) / 2;
   } else if (rest != 0 && beyond > 0) {
     const int32_t change = 2 * rest < unit ? -rest : unit - rest;
-    whole = std::abs(change) <= most_stretch * beyond;
+    whole = std::abs(change) <= most_change * beyond;
     const auto low_change = static_cast<int32_t>(std::lround(double(change) * below / beyond));
     begin -= low_change;
     end += change - low_change;
@@ -192,8 +192,8 @@ bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
     const int32_t middle = (first + last) / 2 - begin;
     constexpr int32_t largest_surface_cell = 1 << most_merges; // in steps of these all surface cells stay the same
     const int32_t shift = (off_centre(middle, unit / 2) - middle) / largest_surface_cell * largest_surface_cell;
-    const auto gives_way = [](int32_t spacings, double asked) {
-      return std::abs(spacings - asked) <= most_stretch * asked;
+    const auto gives_way = [](int32_t spacings, double meshed) {
+      return std::abs(spacings - meshed) <= most_change * meshed;
     };
     if (gives_way(first - begin + shift, first - low) && gives_way(end - last - shift, high - last)) {
       begin -= shift;

@@ -10,7 +10,7 @@ namespace molmesh::contour {
 /// Levels that surface cells may merge over: 32 fine spacings at most.
 inline constexpr int most_merges = 5;
 
-/// What --box asks for.
+/// The outer box to mesh in.
 struct BoxRequest {
   enum Kind { automatic, tight, factor, corners } kind = automatic;
   double scale = 0;   ///< factor: times the surface's own extents, about its centre
@@ -119,7 +119,7 @@ struct SetInsideWords {
 };
 
 /// A box of fine cells. Lattice point p (0 … cells, per axis) is grid index base + p. Within the grid its position
-/// is the grid's own; beyond it spacings stretch evenly so that the walls lie where they were asked to. A wall that
+/// is the grid's own; beyond it spacings change evenly so that the walls lie where they were asked to. A wall that
 /// cuts through the grid lies between grid planes: its points take the density interpolated there.
 class Lattice {
 public:
@@ -141,7 +141,7 @@ public:
   const BlockGrid& grid() const { return grid_; }
   const BlockIndex& index() const { return index_; }
   Vec3i base() const { return base_; }
-  /// The walls were asked for as coordinates: a surface that meets them is meant to.
+  /// The walls were given as coordinates: a surface may meet them.
   bool cut_allowed() const { return cut_allowed_; }
 
 private:
@@ -159,7 +159,7 @@ private:
   LatticeView view_;
 };
 
-/// What a surface at a wall that was not asked to cut it is refused with.
+/// What a surface at a wall that may not cut it is refused with.
 [[noreturn]] void refuse_surface_at_wall();
 
 } // namespace molmesh::contour

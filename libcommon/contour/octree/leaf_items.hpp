@@ -1,9 +1,10 @@
-// leaf_items.hpp — leaves from the nodes that have children: large ones, and those in blocks of 8³ fine cells.
+// leaf_items.hpp — kernels that make leaves of the nodes that have children: large ones, and blocks of 8³ fine
+// cells. Host and device.
 #pragma once
 #include "contour/octree/node_mask.hpp"
 #include "contour/octree/octree.hpp"
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// Leaves and blocks by the Morton key of their lower corner; word: the leaf's level, or this.
 inline constexpr uint64_t is_block = 0;
@@ -134,4 +135,4 @@ struct FillBlocks {
   }
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,6 +1,6 @@
-// leaves.cpp — the passes of detail/leaf_selection.hpp on the host's threads.
+// leaves.cpp — surface cells, their samples and the octree's leaves on the host's threads.
 #include "contour/octree/leaves.hpp"
-#include "contour/octree/leaf_selection.hpp"
+#include "contour/octree/leaf_passes.hpp"
 #include "contour/surface/samples_simd.hpp"
 #include "par/launcher.hpp"
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace molmesh::contour {
 namespace {
 
-/// detail::MakeSamples of eight cells.
+/// As MakeSamples, eight cells at a time.
 struct MakeEightSamples {
   const SurfaceCell* cell;
   int64_t cells;
@@ -22,30 +22,30 @@ struct MakeEightSamples {
     EightSamples of;
     make_samples(eight, isovalue, of);
     for (int64_t k = 0; k < n; ++k)
-      sample[first + k] = detail::sample_of(eight[k], {of.point[0][k], of.point[1][k], of.point[2][k]},
-                                            {of.gradient[0][k], of.gradient[1][k], of.gradient[2][k]});
+      sample[first + k] = sample_of(eight[k], {of.point[0][k], of.point[1][k], of.point[2][k]},
+                                    {of.gradient[0][k], of.gradient[1][k], of.gradient[2][k]});
   }
 };
 
 } // namespace
 
 Surface find_surface(const Lattice& lattice, int threads) {
-  par::Launcher launcher(threads);
+  par::HostLauncher launcher(threads);
   const BlockGrid& grid = lattice.grid();
-  auto found = detail::find_surface(
-      launcher, lattice.view(),
-      {grid.corner.data(), static_cast<int64_t>(grid.corner.size()), grid.inside.data(),
-       static_cast<int64_t>(grid.inside.size())},
-      [&](const SurfaceCell* cells, int64_t n, double isovalue, SurfaceSample* samples) {
-        launcher.for_n("make samples", (n + 7) / 8, MakeEightSamples{cells, n, isovalue, samples});
-      });
+  auto found =
+      find_surface(launcher, lattice.view(),
+                   {grid.corner.data(), static_cast<int64_t>(grid.corner.size()), grid.inside.data(),
+                    static_cast<int64_t>(grid.inside.size())},
+                   [&](const SurfaceCell* cells, int64_t n, double isovalue, SurfaceSample* samples) {
+                     launcher.for_n("make samples", (n + 7) / 8, MakeEightSamples{cells, n, isovalue, samples});
+                   });
   return {std::move(found.cells.array), std::move(found.samples.array)};
 }
 
 LeafList select_leaves(const Lattice& lattice, const Surface& surface, const RefineOptions& options, int threads) {
-  par::Launcher launcher(threads);
+  par::HostLauncher launcher(threads);
   auto found =
-      detail::LeafSelection<par::Launcher>(
+      LeafPasses<par::HostLauncher>(
           launcher, lattice.view(), lattice.top_level,
           {surface.cells.data(), surface.samples.data(), static_cast<int64_t>(surface.cells.size())}, options)
           .run();

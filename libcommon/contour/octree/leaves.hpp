@@ -1,9 +1,9 @@
-// leaves.hpp — the fine cells that the surface crosses, and the leaves that the octree has for them.
+// leaves.hpp — the fine cells that the surface crosses, and the leaves of the strongly balanced octree over them.
 #pragma once
 #include "base/large_array.hpp"
 #include "contour/octree/lattice.hpp"
 #include "contour/octree/octree.hpp"
-#include "contour/surface/surface_sample.hpp"
+#include "contour/surface/surface_cell.hpp"
 
 namespace molmesh::contour {
 
@@ -20,14 +20,14 @@ Surface find_surface(const Lattice& lattice, int threads);
 struct RefineOptions {
   /// Allowed distance of a cell's fine surface from its mean plane, in fine spacings; 0: every surface cell stays
   /// fine and so does every cell of the grid in the regions below. Halved until the chords of all cells cut off
-  /// little of the volume (detail/chord_items.hpp).
+  /// little of the volume (chord_items.hpp).
   double adapt = 0;
   bool inside = true, outside = true; ///< regions to mesh
 };
 
-/// A node of the octree has children where its surface cells may not be one (more than one sheet, further than
-/// `adapt` from the mean plane, or of another topology), where the surface passes close to a face with children
-/// behind, where it reaches beyond the lattice, and for balance: see octree.hpp.
+/// A node of the octree has children where its surface cells may not be one (more than one component of the
+/// surface, further than `adapt` from the mean plane, or of another topology), where the surface passes close to a
+/// face with children behind, where it reaches beyond the lattice, and for balance: see octree.hpp.
 LeafList select_leaves(const Lattice& lattice, const Surface& surface, const RefineOptions& options, int threads);
 
 } // namespace molmesh::contour

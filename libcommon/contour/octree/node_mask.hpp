@@ -4,7 +4,7 @@
 #include "geom/morton.hpp"
 #include "par/passes.hpp"
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 // Bit m of a word is the block's node at place m of the Z-order curve: node key = 64·block key + m.
 
@@ -87,4 +87,4 @@ struct BlockBox {
   }
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

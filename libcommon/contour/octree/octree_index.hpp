@@ -3,9 +3,10 @@
 #pragma once
 #include "contour/octree/octree.hpp"
 #include "par/atomic_updates.hpp"
+#include "par/launcher.hpp"
 #include <bit>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// Block i, or large leaf i - blocks. Where two want one slot the lower number has it, as if they had come one by
 /// one in ascending order.
@@ -25,7 +26,7 @@ struct IndexEntries {
 
 /// Slots for the tree's blocks and large leaves, in the launcher's memory; the tree gets to know them,
 /// and its ends.
-template <class Launcher>
+template <par::Launcher Launcher>
 auto index_leaves(Launcher& m, int64_t blocks, OctreeView& tree) {
   const int64_t n = blocks + tree.large_leaves;
   const auto capacity = static_cast<int64_t>(std::bit_ceil(static_cast<uint64_t>(n < 8 ? 16 : 2 * n)));
@@ -38,4 +39,4 @@ auto index_leaves(Launcher& m, int64_t blocks, OctreeView& tree) {
   return slot;
 }
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,9 +1,11 @@
-// strong_balance.hpp — which nodes have children: asked for, spread by surfaces near faces, and for balance.
+// strong_balance.hpp — kernels that find the nodes with children: for the strong balance of the octree, where the
+// surface passes near a face of smaller cells, and in a uniform region. Section 4.1 of Liao et al. 2013. Neighbours
+// across faces differ by one level at most; elements need no balance across edges and corners. Host and device.
 #pragma once
 #include "contour/octree/node_mask.hpp"
 #include "contour/surface/block_window.hpp"
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// Of a uniform mesh: nodes of level 1 in the grid that touch a wanted region. Block i of a box.
 struct UniformNodes {
@@ -130,7 +132,8 @@ struct FindNeighbours {
     }
   }
 };
-/// One wave: whole nodes that the surface passes near a face of, with children behind it, get children too.
+/// One wave: nodes that may be one cell, that the surface passes near a face of, with children behind it, get
+/// children too.
 struct SpreadWave {
   const int64_t *candidate, *position;
   const uint64_t* near;
@@ -162,4 +165,4 @@ struct ApplyWave {
   HD void operator()(int64_t i) const { refined[position[7 * i + 6]].word = grown[i]; }
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,6 +1,5 @@
-// components.cpp — the passes on the host's threads, and what the few parts are.
+// components.cpp — connected components on the host's threads; their volumes and regions.
 #include "contour/regions/components.hpp"
-#include "base/at.hpp"
 #include "contour/regions/region_passes.hpp"
 #include "par/launcher.hpp"
 #include <algorithm>
@@ -25,7 +24,7 @@ void join_touching(std::vector<Component>& part, const std::vector<std::array<in
       }
   }
   for (size_t i = 0; i < part.size(); ++i)
-    if (at(first[i]) != i && part[i].region != outside) {
+    if (static_cast<size_t>(first[i]) != i && part[i].region != outside) {
       part[first[i]].volume += std::exchange(part[i].volume, 0);
       part[i].joined = true;
     }
@@ -33,10 +32,10 @@ void join_touching(std::vector<Component>& part, const std::vector<std::array<in
 
 } // namespace
 
-void assign_regions(std::vector<Component>& part, const std::vector<detail::PartSurface>& surfaces,
+void assign_regions(std::vector<Component>& part, const std::vector<ComponentSurface>& surfaces,
                     const RegionOptions& options) {
-  std::vector<std::array<int32_t, 2>> next_to; // (inside part, outside part)
-  for (const detail::PartSurface& s : surfaces) {
+  std::vector<std::array<int32_t, 2>> next_to; // (inside, outside component)
+  for (const ComponentSurface& s : surfaces) {
     part[s.behind].volume += s.volume;
     if (s.behind == s.front)
       continue;
@@ -48,7 +47,7 @@ void assign_regions(std::vector<Component>& part, const std::vector<detail::Part
       c.volume = 0;
     c.region = c.inside ? molecule : c.at_wall ? outside : cavity;
   }
-  // A dropped part takes the region round it; where parts nest, the outermost decides first.
+  // A dropped component takes the region round it; of components within each other the outermost decides first.
   std::vector<uint8_t> dropped(part.size(), 0);
   for (size_t i = 0; i < part.size(); ++i)
     if (Component& c = part[i]; c.inside && !c.at_wall && options.drop_below > 0 && c.volume < options.drop_below) {
@@ -76,8 +75,8 @@ void assign_regions(std::vector<Component>& part, const std::vector<detail::Part
 
 Components find_components(const ComplexView& c, const Elements& elements, const RegionOptions& options,
                            int threads) {
-  par::Launcher launcher(threads);
-  detail::RegionPasses<par::Launcher> passes(launcher, c, elements.view(), options);
+  par::HostLauncher launcher(threads);
+  RegionPasses<par::HostLauncher> passes(launcher, c, elements.view(), options);
   return {std::move(passes.component), std::move(passes.region)};
 }
 

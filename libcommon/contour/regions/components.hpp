@@ -1,4 +1,4 @@
-// components.hpp — connected parts of the inside and the outside, and the region each belongs to.
+// components.hpp — connected components of the inside and the outside, and the region each belongs to.
 #pragma once
 #include "contour/complex/complex.hpp"
 #include "contour/elements/elements.hpp"
@@ -11,7 +11,7 @@ namespace molmesh::contour {
 struct Component {
   bool inside = false;
   bool at_wall = false;
-  double volume = 0;   ///< Å³, without what is in it; 0 for an outside part that reaches the wall
+  double volume = 0;   ///< Å³, without what is in it; 0 for an outside one that reaches the wall
   int32_t region = 0;  ///< Region
   bool joined = false; ///< to one before it, of the same region now, which has its volume
 };
@@ -23,15 +23,16 @@ struct Components {
 
 struct RegionOptions {
   bool fill_cavities = false;
-  double drop_below = 0; ///< Å³: smaller inside parts become what surrounds them
+  double drop_below = 0; ///< Å³: smaller inside components become what surrounds them
 };
 
-/// Parts of one side are joined by edges of the complex. Outside parts that do not reach a wall are cavities.
+/// Vertices of one side are joined by edges of the complex. Outside components that do not reach a wall are
+/// cavities.
 Components find_components(const ComplexView& c, const Elements& elements, const RegionOptions& options,
                            int threads);
 
-/// Volumes and regions of parts whose surfaces these are. A filled cavity and what is round it are one part.
-void assign_regions(std::vector<Component>& part, const std::vector<detail::PartSurface>& surfaces,
+/// Volumes and regions of components with these surfaces. A filled cavity and what is round it are one component.
+void assign_regions(std::vector<Component>& part, const std::vector<ComponentSurface>& surfaces,
                     const RegionOptions& options);
 
 } // namespace molmesh::contour

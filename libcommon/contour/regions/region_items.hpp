@@ -1,12 +1,12 @@
-// region_items.hpp — sets of vertices united, named by their lowest, and what their surfaces enclose. Host and
-// device.
+// region_items.hpp — kernels that join vertices into connected components and sum the volumes these enclose. Host
+// and device.
 #pragma once
-#include "contour/complex/complex_view.hpp"
-#include "contour/elements/elements_view.hpp"
+#include "contour/complex/complex.hpp"
+#include "contour/elements/elements.hpp"
 #include "geom/tet_measures.hpp"
 #include "par/atomic_updates.hpp"
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// Union-find for any number of threads at once: higher vertices hang under lower ones, so the lowest of a set
 /// names it in the end, in whatever order the sets were joined.
@@ -37,7 +37,7 @@ struct StartSets {
   HD void operator()(int64_t v) const { parent[v] = static_cast<uint32_t>(v); }
 };
 
-/// Joins the leaf's vertices that lie in one part.
+/// Joins the leaf's vertices that lie in one component.
 struct JoinLeaves {
   ComplexView c;
   Sets sets;
@@ -76,16 +76,16 @@ private:
   }
 };
 
-/// What is known of a part before its surface is looked at.
-struct PartStart {
+/// What is known of a component before its surface is looked at.
+struct ComponentStart {
   int32_t vertex; ///< its lowest
   int32_t inside; ///< 1 or 0: no byte of it is left unwritten
 };
-/// Of grid points: every part has one, and the lowest vertex of a part names it.
-struct GatherParts {
+/// Of grid points: every component has one, and its lowest vertex names it.
+struct GatherComponents {
   ComplexView c;
   const uint32_t* parent;
-  HD int64_t operator()(int64_t v, PartStart* out) const {
+  HD int64_t operator()(int64_t v, ComponentStart* out) const {
     if (parent[v] != v)
       return 0;
     if (out)
@@ -93,13 +93,13 @@ struct GatherParts {
     return 1;
   }
 };
-struct NumberParts {
-  const PartStart* start;
+struct NumberComponents {
+  const ComponentStart* start;
   int32_t* part;
   HD void operator()(int64_t i) const { par::put(part[start[i].vertex], static_cast<int32_t>(i)); }
 };
-/// part: [vertices] those that name a part have its number; -1 for dual vertices. at_wall: [parts]
-struct NameParts {
+/// part: [vertices] those that name a component have its number; -1 for dual vertices. at_wall: [components]
+struct LabelComponents {
   ComplexView c;
   Sets sets;
   int32_t* part;
@@ -116,18 +116,18 @@ struct NameParts {
   }
 };
 
-/// A stretch of triangles between two parts, or of one part's at the wall: behind == front.
-struct PartSurface {
+/// A run of triangles between two components, or of one component's at the wall: behind == front.
+struct ComponentSurface {
   int32_t behind, front;
   double volume; ///< Å³ between them and the origin
 };
-/// Volume by the divergence theorem, in stretches of so many triangles at most: sums that keep their order.
-struct PartSurfaces {
-  static constexpr int64_t stretch = 64;
+/// Volume by the divergence theorem, in runs of so many triangles at most: sums keep their order.
+struct ComponentSurfaces {
+  static constexpr int64_t run = 64;
   ElementsView e;
   const int32_t* part;
   LatticeView lattice;
-  /// The grid's first point: a far wall's corner would leave a small part's volume to rounding.
+  /// The grid's first point: a far wall's corner would leave a small component's volume to rounding.
   HD Vec3d origin() const {
     Vec3i p;
     for (int a = 0; a < 3; ++a)
@@ -136,11 +136,11 @@ struct PartSurfaces {
                                                         : lattice.grid_first[a];
     return lattice.position(p);
   }
-  HD int64_t operator()(int64_t i, PartSurface* out) const {
+  HD int64_t operator()(int64_t i, ComponentSurface* out) const {
     const Vec3d from = origin();
-    PartSurface now{-1, -1, 0};
+    ComponentSurface now{-1, -1, 0};
     int64_t n = 0;
-    for (int64_t t = stretch * i; t < stretch * (i + 1) && t < e.tris; ++t) {
+    for (int64_t t = run * i; t < run * (i + 1) && t < e.tris; ++t) {
       const int32_t behind = part[e.tri_sides[t][0]], front = part[e.tri_sides[t][1]];
       if (n == 0 || behind != now.behind || front != now.front) {
         if (n > 0 && out)
@@ -157,7 +157,7 @@ struct PartSurfaces {
   }
 };
 
-/// The Region of a part, for its vertices; 0 for dual vertices.
+/// The Region of a component, for its vertices; 0 for dual vertices.
 struct SetRegions {
   const int32_t* part;
   const uint8_t* region_of;
@@ -165,4 +165,4 @@ struct SetRegions {
   HD void operator()(int64_t v) const { region[v] = part[v] < 0 ? uint8_t{0} : region_of[part[v]]; }
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,5 +1,4 @@
-// region_passes.hpp — connected parts and the region of each vertex, pass by pass, over a launcher: one text, one
-// result.
+// region_passes.hpp — connected components and the region of each vertex, pass by pass, over a launcher.
 #pragma once
 #include "contour/regions/components.hpp"
 #include "contour/regions/region_items.hpp"
@@ -7,9 +6,9 @@
 #include <algorithm>
 #include <vector>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
-template <class Launcher>
+template <par::Launcher Launcher>
 class RegionPasses {
   template <class T>
   using Array = typename Launcher::template Array<T>;
@@ -19,11 +18,11 @@ public:
   RegionPasses(Launcher& m, const ComplexView& c, const ElementsView& e, const RegionOptions& options) {
     const int64_t vertices = c.vertices();
     part_ = m.template array<int32_t>(vertices);
-    name_parts(m, c);
-    const auto surfaces =
-        par::gather<PartSurface>(m, "part surfaces", (e.tris + PartSurfaces::stretch - 1) / PartSurfaces::stretch,
-                                 PartSurfaces{e, part_.data(), c.lattice});
-    assign_regions(component, par::downloaded<PartSurface>(m, surfaces.array, surfaces.n), options);
+    label_components(m, c);
+    const auto surfaces = par::gather<ComponentSurface>(
+        m, "component surfaces", (e.tris + ComponentSurfaces::run - 1) / ComponentSurfaces::run,
+        ComponentSurfaces{e, part_.data(), c.lattice});
+    assign_regions(component, par::downloaded<ComponentSurface>(m, surfaces.array, surfaces.n), options);
     std::vector<uint8_t> of_part;
     for (const Component& part : component)
       of_part.push_back(static_cast<uint8_t>(part.region));
@@ -38,23 +37,24 @@ public:
 
 private:
   /// component without volumes and regions.
-  void name_parts(Launcher& m, const ComplexView& c) {
+  void label_components(Launcher& m, const ComplexView& c) {
     const int64_t vertices = c.vertices();
     auto parent = m.template array<uint32_t>(vertices);
     const Sets sets{parent.data()};
     m.for_n("start sets", vertices, StartSets{parent.data()}, {double(vertices) * 4});
     m.for_n("join leaves", c.tree.leaves, JoinLeaves{c, sets}, {double(c.tree.leaves) * 37});
-    const auto start = par::gather<PartStart>(m, "parts", c.grid_vertices, GatherParts{c, parent.data()});
+    const auto start =
+        par::gather<ComponentStart>(m, "components", c.grid_vertices, GatherComponents{c, parent.data()});
     auto at_wall = m.filled(start.n, uint8_t{0});
-    m.for_n("number parts", start.n, NumberParts{start.data(), part_.data()});
-    m.for_n("name parts", vertices, NameParts{c, sets, part_.data(), at_wall.data()},
+    m.for_n("number components", start.n, NumberComponents{start.data(), part_.data()});
+    m.for_n("label components", vertices, LabelComponents{c, sets, part_.data(), at_wall.data()},
             {double(vertices) * 12 + double(c.grid_vertices) * 12});
     const std::vector<uint8_t> walls = par::downloaded<uint8_t>(m, at_wall, start.n);
     size_t i = 0;
-    for (const PartStart& s : par::downloaded<PartStart>(m, start.array, start.n))
+    for (const ComponentStart& s : par::downloaded<ComponentStart>(m, start.array, start.n))
       component.push_back({s.inside != 0, walls[i++] != 0, 0, 0});
   }
   Array<int32_t> part_; ///< [vertices of the complex] -1 for dual vertices
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

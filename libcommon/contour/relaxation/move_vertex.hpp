@@ -1,14 +1,14 @@
-// move_vertex.hpp — one vertex looks for the place where its worst element is best. Host and device.
+// move_vertex.hpp — moves one vertex to the place where its worst element is best. Host and device.
 #pragma once
 #include "contour/relaxation/relax_items.hpp"
 #include "geom/pattern_search.hpp"
 #include "isosurface/probe_simd.hpp"
 #include <cmath>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// What a vertex of the surface is bound to: y moves towards the surface, within the walls that the vertex lies on,
-/// until it is no farther than `most` (Å). As pattern_search asks.
+/// until it is no farther than `most` (Å). As pattern_search needs it.
 template <class Surface>
 struct NearSurface {
   const Surface& surface;
@@ -42,7 +42,7 @@ struct NearSurface {
 
 private:
   HD bool pull(double distance, Vec3d normal, Vec3d& y) const {
-    constexpr double least_normal = 0.25; // square of the normal's part within a wall
+    constexpr double least_normal = 0.25; // square of the normal's component within a wall
     if (std::fabs(distance) <= most)
       return true;
     for (int a = 0; a < 3; ++a)
@@ -54,7 +54,7 @@ private:
   }
 };
 
-/// NearSurface where a star's team asks for many places at once.
+/// NearSurface where a star's team tests many places at once.
 template <class Surface, class Star>
 struct NearSurfaceByTeam {
   const NearSurface<Surface>& one;
@@ -64,7 +64,7 @@ struct NearSurfaceByTeam {
 };
 
 /// most_distance: of a surface vertex from the surface, in its spacings, if it was nearer. Star, of candidate c:
-/// spokes(), what pattern_search asks; length(), the mean of its edges at the vertex; and take(x, worst),
+/// spokes(), which pattern_search needs; length(), the mean of its edges at the vertex; and take(x, worst),
 /// which puts the vertex there unless an element is no better than `worst`, in double precision, or not positive by
 /// the exact predicate; it may have constrain_all(constrain, y, n), as pattern_search's constrain.all.
 template <class Surface, class Star>
@@ -99,4 +99,4 @@ HD bool move_vertex(const RelaxView& r, const Surface& surface, double most_dist
   return moves && star.take(x, r.worst[c]);
 }
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

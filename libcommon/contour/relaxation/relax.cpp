@@ -1,4 +1,4 @@
-// relax.cpp — the passes on the host's threads, many elements or places at a time.
+// relax.cpp — relaxation on the host's threads, many elements or places at a time.
 #include "contour/relaxation/relax.hpp"
 #include "base/error.hpp"
 #include "contour/relaxation/host_star.hpp"
@@ -15,13 +15,12 @@
 
 namespace molmesh::contour {
 
-using detail::Fate;
 namespace {
 
 /// A chunk of elements: those of the lattice apart, the others eight at a time.
 struct JudgeChunk {
   static constexpr int64_t grain = 1, chunk = 4096;
-  detail::Qualities all;
+  Qualities all;
   void operator()(int64_t c) const {
     const ElementsView& e = all.e;
     std::array<int64_t, size_t(chunk)> others;
@@ -43,7 +42,7 @@ struct JudgeChunk {
   }
 };
 
-/// As it is best asked for one vertex.
+/// The view that is fastest for one vertex.
 NearIsosurface near(const IsosurfaceView& surface) {
   return NearIsosurface(surface);
 }
@@ -56,7 +55,7 @@ const Surface& near(const Surface& surface) {
 template <class TryOne>
 struct MoveFirst {
   static constexpr int64_t grain = 16;
-  detail::RelaxView r;
+  RelaxView r;
   const int32_t* active;
   Fate* fate;
   TryOne try_one;
@@ -74,7 +73,7 @@ struct MoveFirst {
 template <class Surface>
 struct MeasureChunk {
   static constexpr int64_t grain = 256;
-  detail::MeasureTriangles<const Surface&> all;
+  MeasureTriangles<const Surface&> all;
   void run(int64_t begin, int64_t end) const {
     for (int64_t t = begin; t < end; ++t)
       for (const int32_t v : all.e.tri[t])
@@ -86,12 +85,13 @@ struct MeasureChunk {
       EightProbes probes;
       near(all.isosurface).probe_eight(c, static_cast<int>(n), probes);
       for (size_t i = 0; i < n; ++i)
-        all.off[which[i]] = probes.is_known(i) ? detail::Off::measured(all.isosurface, c[i], probes.distance[i])
-                                               : detail::Off::beyond;
+        all.off[which[i]] = probes.is_known(i)
+                                ? CentroidDistance::measured(all.isosurface, c[i], probes.distance[i])
+                                : CentroidDistance::beyond;
       n = 0;
     };
     for (int64_t t = begin; t < end; ++t) {
-      all.off[t] = detail::Off::of_a_wall;
+      all.off[t] = CentroidDistance::of_a_wall;
       if (!all.is_surface(t))
         continue;
       c.set(n, all.centroid(t));
@@ -106,34 +106,34 @@ struct MeasureChunk {
 template <class Surface>
 class Mover {
 public:
-  Mover(par::Launcher& m, const Surface& surface, int threads) : m_(m), surface_(surface), threads_(threads) {}
-  void judge(const detail::Qualities& all) {
+  Mover(par::HostLauncher& m, const Surface& surface, int threads) : m_(m), surface_(surface), threads_(threads) {}
+  void judge(const Qualities& all) {
     m_.for_n("element qualities", (all.e.tets + JudgeChunk::chunk - 1) / JudgeChunk::chunk, JudgeChunk{all});
   }
-  void begin(const detail::RelaxView&, int64_t, int64_t) {}
-  void move(const detail::RelaxView& r, const int32_t* active, int64_t n, Fate* fate, double most_distance) {
+  void begin(const RelaxView&, int64_t, int64_t) {}
+  void move(const RelaxView& r, const int32_t* active, int64_t n, Fate* fate, double most_distance) {
     const auto try_one = [&](int32_t c, HostStar& star) {
       const auto& here = near(surface_);
-      return detail::move_vertex(r, here, most_distance, c, star);
+      return move_vertex(r, here, most_distance, c, star);
     };
     m_.for_n("move vertices", n, MoveFirst<decltype(try_one)>{r, active, fate, try_one});
   }
   void measure(const ElementsView& e, float* off) {
     m_.for_n("measure triangles", e.tris, MeasureChunk<Surface>{{e, surface_, off}});
   }
-  void move_nearer(const detail::NearerView& v, const int32_t* active, int64_t n, Fate* fate) {
+  void move_nearer(const NearerView& v, const int32_t* active, int64_t n, Fate* fate) {
     const auto try_one = [&](int32_t c, HostStar& star) {
       const auto& here = near(surface_);
-      return detail::move_nearer_or_make_room(v, here, c, star);
+      return move_nearer_or_make_room(v, here, c, star);
     };
     m_.for_n("move nearer", n, MoveFirst<decltype(try_one)>{v.r, active, fate, try_one});
   }
-  int64_t divide(std::vector<detail::FarPatch>& patches, const detail::RelaxView& r) {
-    return detail::divide_far(patches, surface_, r.goal, r.shape, threads_);
+  int64_t divide(std::vector<FarPatch>& patches, const RelaxView& r) {
+    return divide_far(patches, surface_, r.goal, r.shape, threads_);
   }
 
 private:
-  par::Launcher& m_;
+  par::HostLauncher& m_;
   const Surface& surface_;
   int threads_;
 };
@@ -149,15 +149,22 @@ struct NoSurface {
 template <class Surface>
 int64_t relax_on(const Surface& surface, bool surface_moves, Elements& elements,
                  const LargeArray<uint8_t>& lattice_class, int threads) {
-  par::Launcher launcher(threads);
+  par::HostLauncher launcher(threads);
   Mover<Surface> mover(launcher, surface, threads);
-  return detail::RelaxPasses<par::Launcher, Elements, Mover<Surface>>(launcher, elements, lattice_class.data(),
-                                                                      static_cast<int64_t>(lattice_class.size()),
-                                                                      surface_moves, mover)
+  return RelaxPasses<par::HostLauncher, Elements, Mover<Surface>>(launcher, elements, lattice_class.data(),
+                                                                  static_cast<int64_t>(lattice_class.size()),
+                                                                  surface_moves, mover)
       .run();
 }
 
 } // namespace
+
+LargeArray<uint8_t> lattice_classes(const Complex& complex, int threads) {
+  par::HostLauncher launcher(threads);
+  LargeArray<uint8_t> of(static_cast<size_t>(complex.view.vertices()));
+  launcher.for_n("lattice classes", complex.view.vertices(), LatticeClasses{complex.view, of.data()});
+  return of;
+}
 
 int64_t relax(Elements& elements, const LargeArray<uint8_t>& lattice_class, const Target* surface, int threads) {
   if (!surface)

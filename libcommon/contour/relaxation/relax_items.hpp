@@ -1,29 +1,29 @@
-// relax_items.hpp — relaxation's passes: what is bad, who may move, whose turn it is, and who looks again. Host and
-// device.
+// relax_items.hpp — kernels of relaxation: which elements are bad, which vertices may move, in this round and in
+// the next. Host and device.
 #pragma once
-#include "contour/complex/complex_view.hpp"
-#include "contour/elements/elements_view.hpp"
+#include "contour/complex/complex.hpp"
+#include "contour/elements/elements.hpp"
 #include "geom/tet_quality.hpp"
 #include "par/atomic_updates.hpp"
 #include <array>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// [vertices of the complex] 1: a grid point that has not moved; 2 + level: a dual vertex of no surface cell; 0:
-/// any other. With the flag `unasked`: a grid point or split cell's centre on the side that nobody asks for.
+/// any other. With the flag `unmeshed`: a grid point or split cell's centre on the side that is not meshed.
 struct LatticeClasses {
-  static constexpr uint8_t unasked = 0x80;
+  static constexpr uint8_t unmeshed = 0x80;
   ComplexView c;
   uint8_t* of;
   HD void operator()(int64_t i) const {
     const auto v = static_cast<int32_t>(i), leaf = c.leaf_of(v);
-    const bool is_unasked = c.unasked == (c.inside(v) ? Side::inside : Side::outside);
+    const bool is_unmeshed = c.unmeshed == (c.inside(v) ? Side::inside : Side::outside);
     uint8_t is = 0;
     if (leaf < 0)
       is = !c.has_moved[v];
     else if (v == c.dual(leaf) && c.side[leaf] != Side::crossed)
       is = static_cast<uint8_t>(2 + c.tree.level[leaf]);
-    of[v] = is_unasked && (leaf < 0 || v == c.split[leaf]) ? is | unasked : is;
+    of[v] = is_unmeshed && (leaf < 0 || v == c.split[leaf]) ? is | unmeshed : is;
   }
 };
 
@@ -32,7 +32,7 @@ struct ElementClasses {
   const uint8_t* lattice_class; ///< LatticeClasses
   int64_t known;                ///< of the vertices
 
-  HD bool is_asked(const Tet& t) const { return !(class_of(t[0]) & LatticeClasses::unasked); }
+  HD bool is_meshed(const Tet& t) const { return !(class_of(t[0]) & LatticeClasses::unmeshed); }
   /// The lattice's own elements need no look: an edge of it with the middles of two boxes of one size.
   HD bool of_lattice(const Tet& t) const {
     const uint8_t dual = class_of(t[2]); // near the surface this one says it
@@ -43,9 +43,9 @@ private:
   HD uint8_t class_of(int32_t vertex) const { return vertex < known ? lattice_class[vertex] : uint8_t{0}; }
 };
 
-/// An element that nobody asks for has to stay positive, and is left alone where its sines are a quarter of what
-/// others should have: flatter ones would hold vertices where they are. A power of two: no rounding.
-inline constexpr float unasked_weight = 16;
+/// An element on the side that is not meshed has to stay positive, and is left alone where its sines are a quarter
+/// of what others should have: flatter ones would hold vertices where they are. A power of two: no rounding.
+inline constexpr float unmeshed_weight = 16;
 
 struct Qualities {
   ElementsView e;
@@ -58,7 +58,7 @@ struct Qualities {
                                        : weighted(v, tet_quality(e.position[v[0]], e.position[v[1]],
                                                                  e.position[v[2]], e.position[v[3]], shape));
   }
-  HD float weighted(const Tet& t, float q) const { return classes.is_asked(t) ? q : unasked_weight * q; }
+  HD float weighted(const Tet& t, float q) const { return classes.is_meshed(t) ? q : unmeshed_weight * q; }
 };
 
 /// What a vertex is bound to, by 4 flags: a wall across x, y, z, and the surface.
@@ -84,7 +84,7 @@ struct RelaxView {
   ElementsView e;
   Bounds bound;
   ElementClasses classes;
-  float* quality;           ///< [tets] times unasked_weight where nobody asks for the element
+  float* quality;           ///< [tets] times unmeshed_weight where the element is not meshed
   float goal;               ///< elements below it are bad
   double shape;             ///< of Q, as tet_quality has it
   const int32_t* vertex;    ///< [candidates] ascending
@@ -219,4 +219,4 @@ struct WakeNeighbours {
   }
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,16 +1,16 @@
-// relax_passes.hpp — relaxation in rounds, pass by pass, over a launcher: one text, one result.
+// relax_passes.hpp — relaxation in rounds of independent vertices, pass by pass, over a launcher.
 #pragma once
 #include "base/error.hpp"
-#include "contour/relaxation/vertex_stars.hpp"
+#include "contour/relaxation/star_passes.hpp"
 #include "contour/surface_distance/nearer_passes.hpp"
 #include <string>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// Mover: judge(qualities) lets that item judge all elements; move(view, active, n, fate, most_distance) lets those
 /// move who have the turn; begin(view, candidates, entries) before the first round over these stars; and what
-/// NearerPasses asks.
-template <class Launcher, class Elements, class Mover>
+/// NearerPasses needs.
+template <par::Launcher Launcher, class Elements, class Mover>
 class RelaxPasses {
   template <class T>
   using Array = typename Launcher::template Array<T>;
@@ -91,7 +91,7 @@ private:
   bool surface_moves_;
   RelaxView r_{};
   RelaxArrays<Launcher, Elements> arrays_;
-  VertexStars<Launcher> stars_;
+  StarPasses<Launcher> stars_;
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,4 +1,5 @@
-// star_items.hpp — the elements at each vertex that may move, and its neighbours. Host and device.
+// star_items.hpp — kernels that gather the elements at each vertex that may move, and its neighbours. Host and
+// device.
 #pragma once
 #include "base/hd.hpp"
 #include "mesh/tet_mesh.hpp"
@@ -6,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 struct NumberCandidates {
   const int32_t* vertex;
@@ -71,7 +72,7 @@ struct FirstOfStars {
 };
 
 /// Of a candidate: its neighbours, its elements and the worst one's quality.
-struct NameStars {
+struct ListNeighbours {
   const int64_t* first;
   const int32_t* near;
   const NearElement* described; ///< [near elements]
@@ -103,4 +104,4 @@ struct NameStars {
   }
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,10 +1,10 @@
-// finer_grid.cpp — what chords between neighbouring cells' samples cut off, against what I8 allows.
+// finer_grid.cpp — halves the spacing while chords cut off more volume than I8 allows.
 #include "contour/small_bodies/finer_grid.hpp"
 #include "base/bits.hpp"
 #include "contour/octree/chord_items.hpp"
 #include "contour/octree/leaves.hpp"
-#include "contour/small_bodies/halved_topology.hpp"
-#include "contour/surface/cube.hpp"
+#include "contour/small_bodies/halved_grid.hpp"
+#include "contour/surface/ambiguous_cell.hpp"
 #include "geom/morton.hpp"
 #include "isosurface/isosurface_view.hpp"
 #include <algorithm>
@@ -60,17 +60,17 @@ bool may_lose_too_much(const BlockGrid& grid) {
 
 /// In the grid's spacings.
 struct Bodies {
-  int64_t cells = 0;        ///< that the surface crosses
-  detail::SurfaceSums sums; ///< area and volume
-  double cut = 0;           ///< volume that chords between samples cut off
+  int64_t cells = 0; ///< that the surface crosses
+  SurfaceSums sums;  ///< area and volume
+  double cut = 0;    ///< volume that chords between samples cut off
 
   Bodies(const Surface& surface, float isovalue) : cells(static_cast<int64_t>(surface.cells.size())) {
     std::vector<uint64_t> key;
     for (const SurfaceCell& cell : surface.cells)
       key.push_back(cell.key);
-    const detail::CutByCells chords{surface.cells.data(), surface.samples.data(), key.data(), cells, isovalue};
+    const CutByCells chords{surface.cells.data(), surface.samples.data(), key.data(), cells, isovalue};
     for (size_t i = 0; i < key.size(); ++i) {
-      sums += detail::sums_of_cell(surface.cells[i], surface.samples[i], isovalue);
+      sums += sums_of_cell(surface.cells[i], surface.samples[i], isovalue);
       cut += chords.of_cell(static_cast<int64_t>(i));
     }
   }

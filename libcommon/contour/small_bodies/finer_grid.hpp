@@ -16,7 +16,7 @@ struct FinerGrid {
 /// - to more than a million cells in the grid, or inside, where they are to be uniform,
 /// - on grids of many points, unless small bodies alone have them,
 /// - where a wall cuts the surface, or the box would have too many of the halved spacings,
-/// - where rounding would change the topology, which stays that of trilinear G (I7; halved_topology.hpp), but in
+/// - where rounding would change the topology, which stays that of trilinear G (I7; halved_grid.hpp), but in
 ///   the cells at a wall that takes the place of a grid plane: of the halved grid another plane goes.
 FinerGrid finer_grid(const BlockGrid& grid, const Options& options);
 

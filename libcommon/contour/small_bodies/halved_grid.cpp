@@ -1,4 +1,4 @@
-// halved_grid.cpp — a block's points and those between them, as eight blocks.
+// halved_grid.cpp — the halved grid: each block's points and those between them, as eight blocks.
 #include "contour/small_bodies/halved_grid.hpp"
 #include "par/par.hpp"
 #include <algorithm>
@@ -51,7 +51,7 @@ Point point_at(const Window& window, Vec3i q, float iso, float inside_value, boo
   const Vec3i low{q.x >> 1, q.y >> 1, q.z >> 1};
   if (((q.x | q.y | q.z) & 1) == 0)
     return {window.value[Window::at(low)], window.active[Window::at(low)]};
-  // A sum of sums along an axis: where both are on one side so is the whole, whatever is rounded.
+  // A sum of sums along an axis: where both are on one side so is the sum, whatever is rounded.
   double sum = 0;
   bool active = true, inside = true;
   for (int x = 0; x <= (q.x & 1); ++x) {

@@ -1,8 +1,7 @@
-// halved_topology.cpp — the parts of each cell and face, joined through smaller ones.
-#include "contour/small_bodies/halved_topology.hpp"
+// halved_topology.cpp — compares the topology of the isosurface in a cell with that in its eight halves.
 #include "contour/octree/error_function.hpp"
 #include "contour/small_bodies/halved_grid.hpp"
-#include "contour/surface/cube.hpp"
+#include "contour/surface/ambiguous_cell.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <array>
@@ -41,7 +40,7 @@ uint32_t inside_of(const Corners& v) {
 
 /// Joins what the mesh joins within a cell. point: number of corner c.
 template <int N, class Point>
-void join_cell(detail::SmallSets<N>& sets, const Corners& v, Point&& point) {
+void join_cell(SmallSets<N>& sets, const Corners& v, Point&& point) {
   const std::array<int, 8> label = joined_corners(cell_topology(v.data()));
   for (int c = 0; c < 8; ++c)
     sets.join(point(c), point(label[c]));
@@ -49,7 +48,7 @@ void join_cell(detail::SmallSets<N>& sets, const Corners& v, Point&& point) {
 
 /// The same on its face f.
 template <int N, class Point>
-void join_face(detail::SmallSets<N>& sets, const Corners& v, int f, Point&& point) {
+void join_face(SmallSets<N>& sets, const Corners& v, int f, Point&& point) {
   const auto corner = [&](int i) { return face_corner_of(f, i & 3); };
   const auto at = [&](int i) { return v[corner(i)]; };
   for (int i = 0; i < 4; ++i)
@@ -70,10 +69,10 @@ int face_parts(const Corners& v, int f) {
   return d != Diagonal::none && !(v[diagonal_corners(f, d)[0]] > 0) ? 2 : 1;
 }
 
-/// Of the points that take part: whether the cell's sets and the halves' tell the same corners from each other, and
+/// Of the points that count: whether the cell's sets and the halves' tell the same corners from each other, and
 /// each set of the halves has a corner of the cell.
 template <class Takes>
-bool same_parts(const detail::SmallSets<8>& whole, const detail::SmallSets<27>& halves, Takes&& takes) {
+bool same_parts(const SmallSets<8>& whole, const SmallSets<27>& halves, Takes&& takes) {
   std::array<bool, 27> has_corner{};
   for (int c = 0; c < 8; ++c) {
     if (!takes(Halves::at(c, c)))
@@ -90,11 +89,11 @@ bool same_parts(const detail::SmallSets<8>& whole, const detail::SmallSets<27>& 
   return true;
 }
 
-/// Euler number of what is inside in the cell: its parts, less the tunnels that the outside makes through them.
+/// Euler number of what is inside in the cell: its components, less the tunnels that the outside makes through
+/// them.
 int inside_euler(const Corners& v) {
   const CellTopology t = cell_topology(v.data());
-  const std::array<int, 8> on_boundary = detail::boundary_components(t.mask, t.diagonal),
-                           within = joined_corners(t);
+  const std::array<int, 8> on_boundary = boundary_components(t.mask, t.diagonal), within = joined_corners(t);
   int chi = 0;
   for (int c = 0; c < 8; ++c) {
     const bool part = within[c] == c;
@@ -123,8 +122,8 @@ int inside_euler(const Halves& halves) {
 bool same_in_cell(const Corners& v, const Halves& halves) {
   if (inside_euler(v) != inside_euler(halves))
     return false;
-  detail::SmallSets<8> whole;
-  detail::SmallSets<27> fine;
+  SmallSets<8> whole;
+  SmallSets<27> fine;
   join_cell(whole, v, [](int c) { return c; });
   for (int o = 0; o < 8; ++o)
     join_cell(fine, halves.child(o), [&](int c) { return Halves::at(o, c); });
@@ -132,8 +131,8 @@ bool same_in_cell(const Corners& v, const Halves& halves) {
 }
 
 bool same_on_face(const Corners& v, const Halves& halves, int f) {
-  detail::SmallSets<8> whole;
-  detail::SmallSets<27> fine;
+  SmallSets<8> whole;
+  SmallSets<27> fine;
   join_face(whole, v, f, [](int c) { return c; });
   for (int i = 0; i < 4; ++i) {
     const int o = face_corner_of(f, i);
@@ -144,7 +143,7 @@ bool same_on_face(const Corners& v, const Halves& halves, int f) {
 
 /// A disc through plain cells, as octree nodes are merged.
 bool plain(const Corners& v, const Halves& halves) {
-  static constexpr detail::OneDisc one_disc;
+  static constexpr OneDisc one_disc;
   if (!one_disc(inside_of(v)))
     return false;
   for (int o = 0; o < 8; ++o)
@@ -153,7 +152,7 @@ bool plain(const Corners& v, const Halves& halves) {
   uint32_t inside = 0;
   for (size_t p = 0; p < halves.value.size(); ++p)
     inside |= uint32_t{halves.value[p] > 0} << p;
-  return detail::middles_agree(inside);
+  return middles_agree(inside);
 }
 
 bool same_topology(const Corners& v, const Halves& halves) {

@@ -1,13 +1,13 @@
-// block_window.hpp — which of the 9³ points, or fewer, of 8³ cells of the lattice are inside, or active, as rows of
-// bits; and their values.
+// block_window.hpp — the 9³ points, or fewer, of 8³ cells of the lattice: which are inside or active, as rows of
+// bits, and their values.
 #pragma once
 #include "contour/octree/lattice.hpp"
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 class BlockWindow {
 public:
-  /// corner: lattice point; cells: 8 at most along each axis, of which points are asked for
+  /// corner: lattice point; cells: 8 at most along each axis, whose points are read
   HD BlockWindow(const LatticeView& lattice, Vec3i corner, int cells = 8) : lattice_(lattice), corner_(corner) {
     const Vec3i first = lattice.base + corner;
     offset_ = {first.x & 7, first.y & 7, first.z & 7};
@@ -67,4 +67,4 @@ private:
   int64_t block_[8];
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,6 +1,6 @@
 // samples_simd.cpp — compiled once per instruction set by Highway's foreach_target.
 #include "contour/surface/samples_simd.hpp"
-#include "contour/surface/surface_sample.hpp"
+#include "contour/surface/surface_cell.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "contour/surface/samples_simd.cpp"

@@ -1,6 +1,6 @@
 // samples_simd.hpp — samples of eight surface cells, vectorized for the best instruction set of this machine.
 #pragma once
-#include "contour/surface/surface_cells.hpp"
+#include "contour/surface/surface_cell.hpp"
 
 namespace molmesh::contour {
 

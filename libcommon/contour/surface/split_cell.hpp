@@ -1,6 +1,7 @@
-// split_cell.hpp — a fine cell with more than one sheet of the surface, in pieces. Host and device.
+// split_cell.hpp — an ambiguous cell split into tetrahedra and pyramids. Section 4.1 of Liao et al. 2013, their
+// reference 51. Host and device.
 #pragma once
-#include "contour/surface/cube.hpp"
+#include "contour/surface/ambiguous_cell.hpp"
 #include <cstddef>
 
 namespace molmesh::contour {
@@ -17,8 +18,8 @@ struct Patch {
   int piece;     ///< piece of the cell behind it; -1: the chopped corner
 };
 
-/// A fine cell with more than one sheet: one piece (pyramid or tetrahedron) per patch, with the cell's centre as
-/// apex; a chopped corner is one more piece.
+/// A fine cell that the surface crosses in more than one component: one piece (pyramid or tetrahedron) per patch,
+/// with the cell's centre as apex; a chopped corner is one more piece.
 struct SplitCell {
   /// 6 faces in at most two, and the cut.
   struct Patches {

@@ -1,12 +1,14 @@
-// surface_items.hpp — the crossed cells of each block of 8³ cells as bits, then as cells with values and samples.
+// surface_items.hpp — kernels that find the cells that the surface crosses, in blocks of 8³ as bits, and make their
+// values and samples. The signs of all points replace the minimum and maximum per octree cell of section 4.1 of
+// Liao et al. 2013. Host and device.
 #pragma once
 #include "base/bits.hpp"
 #include "contour/surface/block_window.hpp"
-#include "contour/surface/surface_sample.hpp"
+#include "contour/surface/surface_cell.hpp"
 #include "geom/morton.hpp"
 #include "par/passes.hpp"
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// Blocks of the lattice (Morton keys / 8³) with a cell that block i of the grid may make a surface cell. Where a
 /// wall cuts the grid, values between two planes are met too, so that blocks further off and inside ones count.
@@ -130,4 +132,4 @@ struct MakeSamples {
   }
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

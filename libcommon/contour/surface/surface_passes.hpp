@@ -1,5 +1,4 @@
-// surface_passes.hpp — from the block grid to the cells that the surface crosses as passes over arrays: one text
-// for host and device. Launcher: par/launcher.hpp, or a Backend of cuda/par.
+// surface_passes.hpp — from the block grid to the cells that the surface crosses, pass by pass, over a launcher.
 #pragma once
 #include "base/error.hpp"
 #include "contour/surface/surface_items.hpp"
@@ -7,9 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
-template <class Launcher>
+template <par::Launcher Launcher>
 struct SurfaceLists {
   par::List<Launcher, SurfaceCell> cells;
   par::List<Launcher, SurfaceSample> samples;
@@ -24,7 +23,7 @@ struct GridBlocks {
 };
 
 /// make_samples(cells, n, isovalue, samples)
-template <class Launcher, class MakeSamples>
+template <par::Launcher Launcher, class MakeSamples>
 SurfaceLists<Launcher> find_surface(Launcher& m, const LatticeView& l, const GridBlocks& grid,
                                     MakeSamples make_samples) {
   const auto covered = par::gather<par::KeyedWord>(m, "cover blocks", grid.corners, CoveredBlocks{l, grid.corner});
@@ -63,4 +62,4 @@ struct SurfaceView {
   int64_t n;
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// What relaxation has of each element and vertex, for elements that become more.
-template <class Launcher, class Elements>
+template <par::Launcher Launcher, class Elements>
 struct RelaxArrays {
   Elements& elements;
   typename Launcher::template Array<float> quality;
@@ -29,7 +29,7 @@ struct TakeElements {
   FarPatch::Element* to;
   HD void operator()(int64_t i) const {
     const int32_t t = which[i];
-    to[i] = {t, r.e.tet[t], r.quality[t], r.classes.is_asked(r.e.tet[t]) ? 1.F : unasked_weight};
+    to[i] = {t, r.e.tet[t], r.quality[t], r.classes.is_meshed(r.e.tet[t]) ? 1.F : unmeshed_weight};
   }
 };
 struct TakeTriangles {
@@ -90,7 +90,7 @@ struct PutVertices {
 };
 
 /// Elements at the corners of far triangles, and triangles there: a patch for each set that hangs together.
-template <class Launcher>
+template <par::Launcher Launcher>
 class DividePasses {
 public:
   DividePasses(Launcher& m, const RelaxView& r, const float* off, const par::List<Launcher, int32_t>& elements,
@@ -218,4 +218,4 @@ private:
   std::vector<FarPatch> patches_;
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// The patch comes to have fewer far triangles, or what triangles cost falls by a tenth of what the two at an edge
 /// did; none gets farther than the farthest of the two. No element comes below `goal`, or where one at the edge is
@@ -34,7 +34,7 @@ public:
       bool divided = false;
       for (size_t t = 0, n = p_.triangle.size(); t < n; ++t) {
         given_up.resize(p_.triangle.size());
-        if (p_.triangle[t].off <= Off::most || given_up[t])
+        if (p_.triangle[t].off <= CentroidDistance::most || given_up[t])
           continue;
         const auto first_new = static_cast<int32_t>(p_.position.size());
         given_up[t] = !divide_at(t);
@@ -67,15 +67,15 @@ private:
     int32_t middle; ///< the first new vertex
     float floor;    ///< of elements; > 0
     double at_edge = 0;
-    float farthest = Off::most;
+    float farthest = CentroidDistance::most;
     int tried = 0; ///< places, of all new vertices
   };
 
   Cost cost() const {
     Cost c;
     for (const FarPatch::Triangle& t : p_.triangle) {
-      c.sum += Off::cost(t.off);
-      c.far += t.off > Off::most;
+      c.sum += CentroidDistance::cost(t.off);
+      c.far += t.off > CentroidDistance::most;
     }
     return c;
   }
@@ -89,7 +89,7 @@ private:
         continue;
       start_ = {before, static_cast<int32_t>(p_.position.size()), goal_};
       for (const size_t k : edge.triangles) {
-        start_.at_edge += Off::cost(p_.triangle[k].off);
+        start_.at_edge += CentroidDistance::cost(p_.triangle[k].off);
         start_.farthest = std::max(start_.farthest, p_.triangle[k].off);
       }
       for (const size_t k : edge.elements)
@@ -118,7 +118,7 @@ private:
     if (find_place(m, edge)) {
       done = is_good();
       const size_t worst = farthest_at(m);
-      if (!done && depth < most_depth && p_.triangle[worst].off > Off::most)
+      if (!done && depth < most_depth && p_.triangle[worst].off > CentroidDistance::most)
         for (const size_t i : longest_first(worst)) {
           const FarPatch::Edge next = p_.edge(worst, i);
           if (p_.is_divisible(next) && (done = divide(next, depth + 1)))
@@ -286,7 +286,7 @@ private:
   double cost_at(int32_t m) {
     double sum = 0;
     for (const size_t t : p_.triangles_at(m))
-      sum += Off::cost(p_.triangle[t].off = off_of(p_.triangle[t].tri));
+      sum += CentroidDistance::cost(p_.triangle[t].off = off_of(p_.triangle[t].tri));
     return sum;
   }
   size_t farthest_at(int32_t m) const {
@@ -351,7 +351,7 @@ private:
     Vec3d centroid;
     for (const int32_t v : tri)
       centroid += p_.position[v];
-    return Off::of(surface_, centroid / 3.);
+    return CentroidDistance::of(surface_, centroid / 3.);
   }
 
   FarPatch& p_;
@@ -374,4 +374,4 @@ int64_t divide_far(std::vector<FarPatch>& patches, const Surface& surface, float
   return std::accumulate(divided.begin(), divided.end(), int64_t{0});
 }
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

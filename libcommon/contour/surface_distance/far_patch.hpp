@@ -1,7 +1,6 @@
 // far_patch.hpp — surface triangles that elements hold far from the isosurface, with the elements round them: a
 // small mesh of its own, on the host, whose edges can be divided and joined again.
 #pragma once
-#include "base/at.hpp"
 #include "mesh/tet_mesh.hpp"
 #include <algorithm>
 #include <array>
@@ -9,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 class FarPatch {
 public:
@@ -17,13 +16,13 @@ public:
     int32_t at; ///< in the mesh; negative: not there yet
     Tet tet;    ///< vertices of the patch
     float quality;
-    float weight; ///< 1, or unasked_weight
+    float weight; ///< 1, or unmeshed_weight
   };
   struct Triangle {
     int32_t at;     ///< as above
     int32_t parent; ///< in the mesh: which has its boundary and sides
     Tri tri;
-    float off; ///< Off
+    float off; ///< CentroidDistance
   };
   struct Edge {
     std::array<int32_t, 2> end;
@@ -144,4 +143,4 @@ private:
   Stars elements_, triangles_; ///< at each vertex
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

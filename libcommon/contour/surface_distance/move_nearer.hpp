@@ -4,7 +4,7 @@
 #include "contour/relaxation/move_vertex.hpp"
 #include "contour/surface_distance/nearer_items.hpp"
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// The surface triangles at a vertex that moves.
 class TriangleFan {
@@ -27,9 +27,9 @@ public:
       if (!known_[k])
         continue;
       distance_[k] = distance < 0 ? -off_[k] : off_[k];
-      cost_ += Off::cost(off_[k]);
-      if (off_[k] > Off::least)
-        way_ += (distance < 0 ? off_[k] - Off::least : Off::least - off_[k]) * normal_[k];
+      cost_ += CentroidDistance::cost(off_[k]);
+      if (off_[k] > CentroidDistance::least)
+        way_ += (distance < 0 ? off_[k] - CentroidDistance::least : CentroidDistance::least - off_[k]) * normal_[k];
     }
   }
   HD double cost() const { return cost_; }
@@ -42,7 +42,7 @@ public:
       if (!known_[k])
         continue;
       const auto off = static_cast<float>(std::fabs(distance_[k] + dot(normal_[k], y - x_) / (3 * spacing_)));
-      sum += Off::cost(off);
+      sum += CentroidDistance::cost(off);
       if (gets_out(k, off) || sum >= enough)
         return enough;
     }
@@ -53,8 +53,8 @@ public:
   HD bool measure(const Surface& surface, Vec3d y, double enough, float* off) const {
     double sum = 0;
     for (int64_t k = 0; k < n_; ++k) {
-      off[k] = Off::of(surface, centroid(k, y));
-      sum += known_[k] ? Off::cost(off[k]) : 0;
+      off[k] = CentroidDistance::of(surface, centroid(k, y));
+      sum += known_[k] ? CentroidDistance::cost(off[k]) : 0;
       if (gets_out(k, off[k]) || sum >= enough)
         return false;
     }
@@ -67,7 +67,7 @@ public:
 
 private:
   /// No triangle that was near becomes far, and none that is far gets farther.
-  HD bool gets_out(int64_t k, float off) const { return off > Off::most && off > off_[k]; }
+  HD bool gets_out(int64_t k, float off) const { return off > CentroidDistance::most && off > off_[k]; }
   HD Vec3d centroid(int64_t k, Vec3d x) const { return (rest_[k] + x) / 3.; }
 
   const int32_t* triangle_;
@@ -184,4 +184,4 @@ HD bool move_nearer_or_make_room(const NearerView& v, const Surface& surface, in
   return move_vertex(better, surface, 0, c, star);
 }
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -4,10 +4,10 @@
 #include "contour/relaxation/relax_items.hpp"
 #include <cmath>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// How far a surface triangle's centroid is from its foot on the isosurface, in spacings.
-struct Off {
+struct CentroidDistance {
   static constexpr float most = 0.49F;   ///< beyond it a triangle is far
   static constexpr float least = 0.4F;   ///< up to it all are as good
   static constexpr float sure = 0.2F;    ///< up to it to first order will do
@@ -45,7 +45,7 @@ struct MeasureTriangles {
   Surface isosurface;
   float* off; ///< [tris]
   HD void operator()(int64_t t) const {
-    off[t] = is_surface(t) ? Off::of(isosurface, centroid(t)) : Off::of_a_wall;
+    off[t] = is_surface(t) ? CentroidDistance::of(isosurface, centroid(t)) : CentroidDistance::of_a_wall;
   }
   HD bool is_surface(int64_t t) const { return e.boundary[t] == surface; }
   HD Vec3d centroid(int64_t t) const { return (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.; }
@@ -58,9 +58,9 @@ struct FarTriangles {
   const int32_t* among; ///< null: all
   HD int64_t operator()(int64_t i, int32_t* out) const {
     const int64_t t = among ? among[i] : i;
-    if (off[t] > Off::most && out)
+    if (off[t] > CentroidDistance::most && out)
       *out = static_cast<int32_t>(t);
-    return off[t] > Off::most;
+    return off[t] > CentroidDistance::most;
   }
 };
 
@@ -109,7 +109,7 @@ struct PlaceTriangleStars {
 struct NearerView {
   RelaxView r;
   float room;              ///< quality of elements that make room
-  float* off;              ///< [tris] Off
+  float* off;              ///< [tris] CentroidDistance
   const int64_t* first;    ///< [candidates + 1] into triangle
   const int32_t* triangle; ///< surface triangles, ascending at each candidate
 };
@@ -131,10 +131,10 @@ private:
     if (!v.r.bound.on_surface(v.r.vertex[c]))
       return v.r.worst[c] < v.room;
     for (int64_t k = v.first[c]; k < v.first[c + 1]; ++k)
-      if (v.off[v.triangle[k]] > Off::most)
+      if (v.off[v.triangle[k]] > CentroidDistance::most)
         return true;
     return false;
   }
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,15 +1,15 @@
-// nearer_passes.hpp — after relaxation, surface triangles far from the isosurface come nearer; over a launcher: one
-// text, one result.
+// nearer_passes.hpp — after relaxation, moves corners of surface triangles far from the isosurface nearer to it;
+// pass by pass, over a launcher.
 #pragma once
-#include "contour/relaxation/vertex_stars.hpp"
+#include "contour/relaxation/star_passes.hpp"
 #include "contour/surface_distance/divide_passes.hpp"
 #include "contour/surface_distance/nearer_items.hpp"
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// Mover: measure(e, off) measures all triangles; move_nearer(view, active, n, fate) lets those move who have the
 /// turn; divide(patches, view) divides edges and returns how many; begin as RelaxPasses has it.
-template <class Launcher, class Elements, class Mover>
+template <par::Launcher Launcher, class Elements, class Mover>
 class NearerPasses {
   template <class T>
   using Array = typename Launcher::template Array<T>;
@@ -18,7 +18,7 @@ class NearerPasses {
 public:
   /// stars: memory for those of this.
   NearerPasses(Launcher& m, Mover& mover, const RelaxView& r, RelaxArrays<Launcher, Elements>& arrays,
-               VertexStars<Launcher>& stars)
+               StarPasses<Launcher>& stars)
       : m_(m), mover_(mover), arrays_(arrays), stars_(stars), off_(m.template array<float>(r.e.tris)) {
     constexpr double angle = 16;
     v_.r = r;
@@ -105,7 +105,7 @@ private:
   Launcher& m_;
   Mover& mover_;
   RelaxArrays<Launcher, Elements>& arrays_;
-  VertexStars<Launcher>& stars_;
+  StarPasses<Launcher>& stars_;
   NearerView v_{};
   Array<float> off_;
   Ids far_, near_; ///< triangles
@@ -113,4 +113,4 @@ private:
   Array<int64_t> first_;
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

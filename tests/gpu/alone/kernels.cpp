@@ -2,7 +2,7 @@
 #include "base/log.hpp"
 #include "contour/elements/shape_simd.hpp"
 #include "contour/surface/samples_simd.hpp"
-#include "contour/surface/surface_sample.hpp"
+#include "contour/surface/surface_cell.hpp"
 #include "geom/star_quality_simd.hpp"
 #include "geom/tet_quality.hpp"
 #include "geom/tet_quality_simd.hpp"

@@ -184,7 +184,7 @@ TEST_CASE("without a least volume no part is dropped, whatever rounding makes of
   std::vector<contour::Component> part(2);
   part[0].at_wall = true;
   part[1].inside = true;
-  const std::vector<contour::detail::PartSurface> surfaces{{1, 0, -1e-9}};
+  const std::vector<contour::ComponentSurface> surfaces{{1, 0, -1e-9}};
   contour::assign_regions(part, surfaces, {});
   CHECK(part[1].region == molecule);
   contour::RegionOptions drop;

@@ -8,7 +8,7 @@
 #include <vector>
 
 using namespace molmesh;
-using contour::detail::FarPatch;
+using contour::FarPatch;
 
 namespace {
 
@@ -81,7 +81,7 @@ float off(const FarPatch& p, const Tri& t) {
   Vec3d centroid;
   for (const int32_t v : t)
     centroid += p.position[v] / 3.;
-  return contour::detail::Off::of(Bump{}, centroid);
+  return contour::CentroidDistance::of(Bump{}, centroid);
 }
 
 /// Cubes in six tetrahedra each. The surface is y = 0; the points above it are so low that a vertex on the bump is
@@ -126,7 +126,7 @@ FarPatch low_patch(bool may_move) {
 
 int64_t far(const FarPatch& p) {
   return std::count_if(p.triangle.begin(), p.triangle.end(),
-                       [](const FarPatch::Triangle& t) { return t.off > contour::detail::Off::most; });
+                       [](const FarPatch::Triangle& t) { return t.off > contour::CentroidDistance::most; });
 }
 float worst(const FarPatch& p) {
   float least = 1;
@@ -187,7 +187,7 @@ TEST_CASE("a far edge is divided where points can make room for the new vertex")
   const size_t positions = p.position.size();
   const float before = worst(p);
   REQUIRE(far(p) == 2);
-  const int64_t divided = contour::detail::FarDivision(p, Bump{}, goal, shape).run();
+  const int64_t divided = contour::FarDivision(p, Bump{}, goal, shape).run();
   CHECK(divided > 0);
   CHECK(p.position.size() == positions + static_cast<size_t>(divided));
   CHECK(far(p) == 0);
@@ -206,7 +206,7 @@ TEST_CASE("a far edge is divided where points can make room for the new vertex")
 TEST_CASE("where nothing can make room for a new vertex all stays as it is") {
   FarPatch p = low_patch(false);
   const FarPatch before = p;
-  CHECK(contour::detail::FarDivision(p, Bump{}, goal, shape).run() == 0);
+  CHECK(contour::FarDivision(p, Bump{}, goal, shape).run() == 0);
   CHECK(p.position == before.position);
   REQUIRE(p.element.size() == before.element.size());
   for (size_t i = 0; i < p.element.size(); ++i) {

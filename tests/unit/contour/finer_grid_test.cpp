@@ -3,7 +3,6 @@
 #include "contour/octree/leaves.hpp"
 #include "contour/small_bodies/finer_grid.hpp"
 #include "contour/small_bodies/halved_grid.hpp"
-#include "contour/small_bodies/halved_topology.hpp"
 #include "contour/stages.hpp"
 #include "optimize/optimize.hpp"
 #include "unit/contour/checked.hpp"
@@ -42,7 +41,7 @@ TetMesh mesh_of_own_cells(const BlockGrid& grid) {
   stages.select_leaves(uniform);
   Options both;
   both.meshed = Options::both;
-  stages.make_dual(both.unasked_side(), [](const std::string&) {});
+  stages.make_dual(both.unmeshed_side(), [](const std::string&) {});
   stages.find_regions({});
   return stages.assemble(Options::both);
 }
@@ -217,9 +216,9 @@ TEST_CASE(
   const auto volume_of = [](const BlockGrid& grid, const Options& options) {
     const contour::Lattice lattice(grid, options.box, false, 1);
     const contour::Surface surface = contour::find_surface(lattice, 1);
-    contour::detail::SurfaceSums sums;
+    contour::SurfaceSums sums;
     for (size_t i = 0; i < surface.cells.size(); ++i)
-      sums += contour::detail::sums_of_cell(surface.cells[i], surface.samples[i], lattice.isovalue);
+      sums += contour::sums_of_cell(surface.cells[i], surface.samples[i], lattice.isovalue);
     return std::pair{sums.volume(), sums.area};
   };
   const double pi = std::acos(-1.);
@@ -292,13 +291,13 @@ TEST_CASE("what chords of fine cells cut off a ball is the same share of h²/r²
     std::vector<uint64_t> key;
     for (const contour::SurfaceCell& cell : surface.cells)
       key.push_back(cell.key);
-    contour::detail::CutByCells item{surface.cells.data(), surface.samples.data(), key.data(), n, lattice.isovalue};
+    contour::CutByCells item{surface.cells.data(), surface.samples.data(), key.data(), n, lattice.isovalue};
     std::vector<double> cut(static_cast<size_t>(item.items(n)));
     item.cut = cut.data();
     for (int64_t i = 0; i < item.items(n); ++i)
       item(i);
     const double share = std::accumulate(cut.begin(), cut.end(), 0.) / (4 * std::acos(-1.) / 3 * radius);
     CHECK(share == Approx(0.355).epsilon(0.05));
-    CHECK((radius == 110) == (n > contour::detail::CutByCells::enough));
+    CHECK((radius == 110) == (n > contour::CutByCells::enough));
   }
 }

@@ -57,7 +57,7 @@ TEST_CASE("surface triangles across creases come within half a spacing of the is
 TEST_CASE("candidates without a triangle have an empty star, wherever they are") {
   const std::vector<int32_t> owner{1, 1, 4, 6};
   std::vector<int64_t> first(9 + 1, 4); // of nine candidates
-  const contour::detail::FirstOfStars item{owner.data(), first.data()};
+  const contour::FirstOfStars item{owner.data(), first.data()};
   for (int64_t slot = 0; slot < 4; ++slot)
     item(slot);
   CHECK(first == std::vector<int64_t>{0, 0, 2, 2, 2, 3, 3, 4, 4, 4});

@@ -1,5 +1,5 @@
 // octree_test.cpp — leaves beside each other, and dual vertices off the faces of smaller ones.
-#include "contour/complex/dual.hpp"
+#include "contour/complex/dual_contouring.hpp"
 #include "unit/contour/checked.hpp"
 #include "unit/contour/level_steps.hpp"
 #include "unit/contour/sample_grid.hpp"

@@ -114,14 +114,14 @@ TEST_CASE("of a side that nobody asks for there is what the surface moves in, no
   for (const BlockGrid& grid :
        {test::sample_grid({-14, -12, -12}, {29, 25, 25}, 0.5, 2, two), test::creased_grid(6)}) {
     std::array<size_t, 2> of_both{}; // elements on each Side
-    for (const Side unasked : {Side::crossed, Side::outside, Side::inside}) {
+    for (const Side unmeshed : {Side::crossed, Side::outside, Side::inside}) {
       contour::BoxRequest box;
       box.kind = contour::BoxRequest::tight;
       const contour::Lattice lattice(grid, box, true, 1);
       contour::HostStages stages(1);
       stages.find_surface(lattice);
       stages.select_leaves({contour::default_adapt(grid.frame.spacing), true, true});
-      stages.make_dual(unasked, [](const std::string&) {});
+      stages.make_dual(unmeshed, [](const std::string&) {});
       stages.relax();
       const contour::Elements& e = stages.dual().elements;
       const contour::ComplexView& c = stages.dual().complex.view;
@@ -142,7 +142,7 @@ TEST_CASE("of a side that nobody asks for there is what the surface moves in, no
         ++elements[size_t(side)];
         const Dihedrals d = dihedrals(x(0), x(1), x(2), x(3));
         const double angle = *std::min_element(d.degree, d.degree + 6);
-        if (side == unasked) {
+        if (side == unmeshed) {
           far += std::none_of(t.begin(), t.end(), is_near);
           least_unasked = std::min(least_unasked, angle);
           continue;
@@ -155,11 +155,11 @@ TEST_CASE("of a side that nobody asks for there is what the surface moves in, no
       CHECK(least > 13);
       CHECK(least_unasked > 3);
       CHECK(greatest < 160);
-      if (unasked == Side::crossed)
+      if (unmeshed == Side::crossed)
         of_both = elements;
       for (const Side side : {Side::outside, Side::inside}) {
         const auto s = static_cast<size_t>(side);
-        CHECK((side == unasked ? elements[s] < of_both[s] : elements[s] == of_both[s]));
+        CHECK((side == unmeshed ? elements[s] < of_both[s] : elements[s] == of_both[s]));
       }
     }
   }

@@ -10,8 +10,8 @@
 #include <vector>
 
 using namespace molmesh;
-using contour::detail::least_sine;
-using contour::detail::least_sines;
+using contour::least_sine;
+using contour::least_sines;
 
 namespace {
 

@@ -1,6 +1,6 @@
 // trilinear_euler.hpp — the topology of a grid's isosurface, counted cell by cell.
 #pragma once
-#include "contour/surface/cube.hpp"
+#include "contour/surface/ambiguous_cell.hpp"
 #include "grid/block_grid.hpp"
 #include <array>
 #include <numeric>

@@ -129,11 +129,11 @@ struct WhoRuns {
 } // namespace
 
 TEST_CASE("a launcher's short loops run on the calling thread") {
-  par::Launcher launcher(4);
+  par::HostLauncher launcher(4);
   std::atomic<int> elsewhere = 0;
-  launcher.for_n("short", WhoRuns::grain * par::Launcher::least_pieces - 1, WhoRuns{&elsewhere});
+  launcher.for_n("short", WhoRuns::grain * par::HostLauncher::least_pieces - 1, WhoRuns{&elsewhere});
   CHECK(elsewhere == 0);
-  launcher.for_n("long", 16 * WhoRuns::grain * par::Launcher::least_pieces, WhoRuns{&elsewhere});
+  launcher.for_n("long", 16 * WhoRuns::grain * par::HostLauncher::least_pieces, WhoRuns{&elsewhere});
   CHECK((elsewhere > 0) == par::has_threads());
 }
 

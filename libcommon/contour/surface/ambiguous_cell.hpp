@@ -1,6 +1,5 @@
-// cube.hpp — numbering of a cell's corners, edges and faces; its topology under the trilinear function: asymptotic
-// decider on faces, a sweep for the interior. Host and device.
-// Section 4.1 of Liao et al. 2013 (ambiguous cells, their reference 51).
+// ambiguous_cell.hpp — tells ambiguous cells and their topology under the trilinear function: asymptotic decider on
+// faces, a sweep for the interior. Section 4.1 of Liao et al. 2013, their reference 51. Host and device.
 #pragma once
 #include "base/hd.hpp"
 #include "geom/vec.hpp"
@@ -69,8 +68,6 @@ HD inline Diagonal face_diagonal(double a, double b, double c, double d) {
   return even_joined ? Diagonal::even : Diagonal::odd;
 }
 
-namespace detail {
-
 /// Union-find over a handful of things; the lowest member names the set.
 template <int N>
 struct SmallSets {
@@ -132,8 +129,6 @@ HD inline bool same_partition(const std::array<int, 8>& a, const std::array<int,
   return true;
 }
 
-} // namespace detail
-
 /// For each corner a label: two inside (outside) corners carry the same label exactly when the inside (outside) of
 /// the trilinear function joins them within the cell. Labels are corner numbers.
 HD_CALL inline std::array<int, 8> trilinear_components(const double value[8]) {
@@ -168,7 +163,7 @@ HD_CALL inline std::array<int, 8> trilinear_components(const double value[8]) {
   }
   height[n++] = 1;
 
-  detail::SmallSets<40> set; // 8 corners, then (slice, line)
+  SmallSets<40> set; // 8 corners, then (slice, line)
   const auto line_at = [&](int line, double z) { return value[line] + z * (value[line + 4] - value[line]); };
   for (int s = 0; s + 1 < n; ++s) {
     const double z = 0.5 * (height[s] + height[s + 1]);
@@ -211,7 +206,7 @@ HD_CALL inline CellTopology cell_topology(const double value[8]) {
   }
   if (t.mask == 0 || t.mask == 255)
     return t;
-  const std::array<int, 8> boundary = detail::boundary_components(t.mask, t.diagonal);
+  const std::array<int, 8> boundary = boundary_components(t.mask, t.diagonal);
   for (int c = 0; c < 8; ++c)
     t.loops += boundary[c] == c;
   t.loops -= 1;
@@ -221,7 +216,7 @@ HD_CALL inline CellTopology cell_topology(const double value[8]) {
   // The sweep also has to see what the boundary joins: rounding must not tear it apart.
   const std::array<int, 8> wanted = trilinear_components(value);
   for (int inside = 0; inside < 2; ++inside)
-    if (detail::same_partition(detail::joined_through_centre(boundary, t.mask, inside != 0, -1), wanted)) {
+    if (same_partition(joined_through_centre(boundary, t.mask, inside != 0, -1), wanted)) {
       t.centre_inside = inside != 0;
       return t;
     }
@@ -235,13 +230,14 @@ HD_CALL inline CellTopology cell_topology(const double value[8]) {
     if (!isolated)
       continue;
     for (int inside = 0; inside < 2; ++inside)
-      if (detail::same_partition(detail::joined_through_centre(boundary, t.mask, inside != 0, corner), wanted)) {
+      if (same_partition(joined_through_centre(boundary, t.mask, inside != 0, corner), wanted)) {
         t.centre_inside = inside != 0;
         t.chop = corner;
         return t;
       }
   }
-  // Reached only when rounding decides between equal cases: keep the sheets apart if one side has a hub.
+  // Reached only when rounding decides between equal cases: keep the components apart if one side can be joined
+  // through the centre.
   int regions[2] = {0, 0};
   for (int c = 0; c < 8; ++c)
     if (boundary[c] == c)
@@ -252,8 +248,8 @@ HD_CALL inline CellTopology cell_topology(const double value[8]) {
 
 /// For each corner a label, as trilinear_components: of what the mesh joins within the cell.
 HD_CALL inline std::array<int, 8> joined_corners(const CellTopology& t) {
-  const std::array<int, 8> boundary = detail::boundary_components(t.mask, t.diagonal);
-  return t.split() ? detail::joined_through_centre(boundary, t.mask, t.centre_inside, t.chop) : boundary;
+  const std::array<int, 8> boundary = boundary_components(t.mask, t.diagonal);
+  return t.split() ? joined_through_centre(boundary, t.mask, t.centre_inside, t.chop) : boundary;
 }
 
 } // namespace molmesh::contour

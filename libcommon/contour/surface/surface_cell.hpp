@@ -1,10 +1,16 @@
-// surface_sample.hpp — where the surface passes through a fine cell, and which way it faces.
+// surface_cell.hpp — a fine cell that the surface crosses, and the mass centre and normal of the surface in it.
 #pragma once
 #include "base/log.hpp"
-#include "contour/surface/surface_cells.hpp"
 #include "geom/vec.hpp"
+#include <cstdint>
 
 namespace molmesh::contour {
+
+/// A fine cell that the surface crosses.
+struct SurfaceCell {
+  uint64_t key;   ///< Morton code of the lower corner, lattice point
+  float value[8]; ///< at corner c = x + 2 y + 4 z
+};
 
 /// Surface of one fine cell: the mean of its crossings with the cell's edges (the paper's mass centre), in lattice
 /// coordinates, and the unit gradient of G, inwards; zero where it vanishes.

@@ -1,9 +1,9 @@
-// edge_crossing.hpp — where the surface crosses an edge of the complex. Host and device.
+// edge_crossing.hpp — where the surface crosses a sign-change edge of the complex. Host and device.
 #pragma once
-#include "contour/complex/complex_view.hpp"
+#include "contour/complex/complex.hpp"
 #include <cmath>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 HD inline double kept_off_ends(double share) {
   constexpr double least = 0.02; // of an edge between its end and a crossing
@@ -63,4 +63,4 @@ HD_CALL inline Vec3d crossing(const ComplexView& c, int32_t a, int32_t b) {
   return pa + crossing_share(va, vb, c.lattice.isovalue) * (pb - pa);
 }
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

@@ -1,5 +1,5 @@
-// dual.cpp — the passes on the host's threads.
-#include "contour/complex/dual.hpp"
+// dual_contouring.cpp — dual contouring on the host: complex, restored grid points, elements.
+#include "contour/complex/dual_contouring.hpp"
 #include "base/error.hpp"
 #include "contour/complex/complex_passes.hpp"
 #include "par/launcher.hpp"
@@ -9,11 +9,11 @@ namespace molmesh::contour {
 
 Dual make_dual(const DualInput& in, const std::function<void(const std::string&)>& on_phase) {
   on_phase("dual vertices");
-  par::Launcher launcher(in.threads);
-  using Passes = detail::ComplexPasses<par::Launcher, HostMemory>;
+  par::HostLauncher launcher(in.threads);
+  using Passes = ComplexPasses<par::HostLauncher, HostMemory>;
   Passes passes(launcher, in.lattice.view(), in.tree.view(), in.surface.cells.data(), in.surface.samples.data(),
                 static_cast<int64_t>(in.surface.cells.size()));
-  passes.view.unasked = in.unasked;
+  passes.view.unmeshed = in.unmeshed;
   if (!in.lattice.cut_allowed() && passes.meets_wall())
     refuse_surface_at_wall();
   on_phase("elements");

@@ -1,7 +1,7 @@
-// selection_test.cpp — the device's surface cells and leaves, run by the host: the same, bit by bit, as the host's;
+// leaves_test.cpp — the device's surface cells and leaves, run by the host: the same, bit by bit, as the host's;
 // and both against leaves found the slow and obvious way.
 #include "contour/octree/leaves.hpp"
-#include "cuda/contour/selection.hpp"
+#include "cuda/contour/leaves.hpp"
 #include "cuda/par/host.hpp"
 #include "unit/contour/level_steps.hpp"
 #include "unit/contour/sample_grid.hpp"
@@ -81,7 +81,7 @@ void compare(const BlockGrid& grid, const BoxRequest& box, const contour::Refine
   const contour::Surface surface = contour::find_surface(lattice, threads);
   const contour::LeafList leaves = contour::select_leaves(lattice, surface, options, threads);
   cuda::HostBackend backend(threads);
-  cuda::Selection<cuda::HostBackend> selection(backend);
+  cuda::DeviceLeaves<cuda::HostBackend> selection(backend);
   selection.find_surface(lattice);
   selection.select_leaves(lattice, options);
   const contour::Surface device_surface = selection.surface_on_host();
@@ -155,7 +155,7 @@ TEST_CASE("leaf selection: a crossed cell with an inactive corner is bad input, 
     const contour::Lattice lattice(grid, {}, true, threads);
     CHECK_THROWS_WITH(contour::find_surface(lattice, threads), Catch::Contains("inactive corner"));
     cuda::HostBackend backend(threads);
-    cuda::Selection<cuda::HostBackend> selection(backend);
+    cuda::DeviceLeaves<cuda::HostBackend> selection(backend);
     CHECK_THROWS_WITH(selection.find_surface(lattice), Catch::Contains("inactive corner"));
   }
 }

@@ -1,4 +1,5 @@
-// dual.hpp — from the octree's leaves to the elements: complex, grid points that go back, elements.
+// dual_contouring.hpp — dual contouring: from the octree's leaves and the surface's samples to the elements.
+// Sections 4.1 and 4.2 of Liao et al. 2013.
 #pragma once
 #include "contour/complex/complex.hpp"
 #include "contour/elements/elements.hpp"
@@ -15,7 +16,7 @@ struct DualInput {
   const Lattice& lattice;
   const Octree& tree;
   const Surface& surface;
-  Side unasked; ///< as ComplexView has it
+  Side unmeshed; ///< as ComplexView has it
   int threads;
 };
 struct Dual {
@@ -24,7 +25,7 @@ struct Dual {
   int64_t restored_points = 0;
 };
 
-/// Throws Error(failed) when the surface meets a wall that was not asked to cut it.
+/// Throws Error(failed) when the surface meets a wall that may not cut it.
 Dual make_dual(const DualInput& input, const std::function<void(const std::string&)>& on_phase);
 
 } // namespace molmesh::contour

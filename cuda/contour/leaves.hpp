@@ -1,7 +1,7 @@
-// selection.hpp — surface cells, samples and leaves on a Backend: the host's own passes
-// (libcommon/contour/octree/leaf_selection.hpp), so the same leaves.
+// leaves.hpp — surface cells, samples and leaves on a Backend: the host's own passes
+// (libcommon/contour/octree/leaf_passes.hpp), so the same leaves.
 #pragma once
-#include "contour/octree/leaf_selection.hpp"
+#include "contour/octree/leaf_passes.hpp"
 #include "contour/octree/leaves.hpp"
 #include "cuda/contour/device_lattice.hpp"
 #include <optional>
@@ -9,10 +9,10 @@
 namespace molmesh::cuda {
 
 /// What is selected stays in the Backend's memory.
-template <class Backend>
-class Selection {
+template <par::Launcher Backend>
+class DeviceLeaves {
 public:
-  explicit Selection(Backend& b) : b_(b) {}
+  explicit DeviceLeaves(Backend& b) : b_(b) {}
 
   void find_surface(const contour::Lattice& l) {
     leaves = {};
@@ -22,16 +22,15 @@ public:
     const BlockGrid& grid = l.grid();
     const auto corner = b_.upload(grid.corner.data(), static_cast<int64_t>(grid.corner.size()));
     const auto inside = b_.upload(grid.inside.data(), static_cast<int64_t>(grid.inside.size()));
-    surface = contour::detail::find_surface(
+    surface = contour::find_surface(
         b_, lattice->view, {corner.data(), corner.size(), inside.data(), inside.size()},
         [&](const contour::SurfaceCell* cells, int64_t n, double isovalue, contour::SurfaceSample* samples) {
-          b_.for_n("make samples", n, contour::detail::MakeSamples{cells, isovalue, samples});
+          b_.for_n("make samples", n, contour::MakeSamples{cells, isovalue, samples});
         });
   }
   void select_leaves(const contour::Lattice& l, const contour::RefineOptions& options) {
-    leaves = contour::detail::LeafSelection<Backend>(
-                 b_, lattice->view, l.top_level, {surface.cells.data(), surface.samples.data(), surface.cells.n},
-                 options)
+    leaves = contour::LeafPasses<Backend>(b_, lattice->view, l.top_level,
+                                          {surface.cells.data(), surface.samples.data(), surface.cells.n}, options)
                  .run();
   }
   /// Copies for the host.
@@ -41,8 +40,8 @@ public:
   }
 
   std::optional<DeviceLattice<Backend>> lattice;
-  contour::detail::SurfaceLists<Backend> surface;
-  contour::detail::LeafLists<Backend> leaves;
+  contour::SurfaceLists<Backend> surface;
+  contour::LeafLists<Backend> leaves;
 
 private:
   template <class T>

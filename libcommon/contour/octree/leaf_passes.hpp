@@ -1,6 +1,5 @@
-// leaf_selection.hpp — from the surface's cells to the octree's leaves as passes over arrays: one text for host and
-// device. Launcher: par/launcher.hpp, or a Backend of cuda/par. Every sum keeps its order, sets are united by
-// sorting: the same leaves from every launcher.
+// leaf_passes.hpp — from the surface's cells to the leaves of a strongly balanced octree, pass by pass, over a
+// launcher. Every sum keeps its order, sets are united by sorting: the same leaves from every launcher.
 #pragma once
 #include "base/error.hpp"
 #include "contour/octree/chord_items.hpp"
@@ -16,10 +15,10 @@
 #include <utility>
 #include <vector>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// Members as in LeafList.
-template <class Launcher>
+template <par::Launcher Launcher>
 struct LeafLists {
   par::List<Launcher, uint64_t> key;
   par::List<Launcher, uint8_t> level;
@@ -27,15 +26,15 @@ struct LeafLists {
   par::List<Launcher, int32_t> large;
 };
 
-template <class Launcher>
-class LeafSelection {
+template <par::Launcher Launcher>
+class LeafPasses {
   template <class T>
   using Array = typename Launcher::template Array<T>;
   using Nodes = par::List<Launcher, par::KeyedWord>;
 
 public:
-  LeafSelection(Launcher& m, const LatticeView& lattice, int top_level, const SurfaceView& surface,
-                const RefineOptions& options)
+  LeafPasses(Launcher& m, const LatticeView& lattice, int top_level, const SurfaceView& surface,
+             const RefineOptions& options)
       : m_(m), l_(lattice), top_(top_level), levels_(std::max(top_level, 3)), surface_(surface), options_(options) {
   }
 
@@ -106,14 +105,13 @@ private:
       refined(level) = level > top_ ? layer(level, -1) : refine(level);
   }
 
-  /// Volume that chords may cut off on the whole, in cubed fine spacings. Of a halved grid tetsmooth gives back
+  /// Volume that chords may cut off in all, in cubed fine spacings. Of a halved grid tetsmooth gives back
   /// more: its spacing is the file's.
   double allowed_cut() {
-    const int64_t stretches = (surface_.n + SumCells::stretch - 1) / SumCells::stretch;
-    auto part = m_.template array<SurfaceSums>(stretches);
-    m_.for_n("sum cells", stretches,
-             SumCells{surface_.cell, surface_.sample, surface_.n, l_.isovalue, part.data()});
-    const SurfaceSums all = sum(part, stretches, SurfaceSums{});
+    const int64_t runs = (surface_.n + SumCells::run - 1) / SumCells::run;
+    auto part = m_.template array<SurfaceSums>(runs);
+    m_.for_n("sum cells", runs, SumCells{surface_.cell, surface_.sample, surface_.n, l_.isovalue, part.data()});
+    const SurfaceSums all = sum(part, runs, SurfaceSums{});
     return most_offset * all.area + most_cut * all.volume();
   }
   void find_cuts() {
@@ -252,4 +250,4 @@ private:
   std::vector<Nodes> refined_; ///< [levels + 1] nodes with children
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

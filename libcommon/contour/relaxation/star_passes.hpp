@@ -1,15 +1,15 @@
-// vertex_stars.hpp — vertices that may move, the elements round them, and rounds in which none is another's
-// neighbour.
+// star_passes.hpp — the elements round the vertices that may move, and rounds in which vertices without common
+// elements move; pass by pass, over a launcher.
 #pragma once
 #include "contour/relaxation/relax_items.hpp"
 #include "contour/relaxation/star_items.hpp"
 #include "par/passes.hpp"
 #include <utility>
 
-namespace molmesh::contour::detail {
+namespace molmesh::contour {
 
 /// Elements at a wanted vertex; among: null: of all.
-template <class Launcher>
+template <par::Launcher Launcher>
 par::List<Launcher, int32_t> near_elements(Launcher& m, const ElementsView& e, const uint8_t* wanted,
                                            const par::List<Launcher, int32_t>* among) {
   return par::gather<int32_t>(m, "near elements", among ? among->n : e.tets,
@@ -18,7 +18,7 @@ par::List<Launcher, int32_t> near_elements(Launcher& m, const ElementsView& e, c
 
 /// The entries of each candidate in order, those of candidate c from first[c] on, by Place{of, entry, owner}; of:
 /// the candidate of a corner, -1: none. Returns how many there are.
-template <class Place, class Launcher, class Of, class Entries, class Firsts>
+template <class Place, par::Launcher Launcher, class Of, class Entries, class Firsts>
 int64_t place_stars(Launcher& m, const char* name, int64_t corners, int64_t candidates, const Of& of,
                     Entries& entry, Firsts& first) {
   Entries owner;
@@ -34,15 +34,15 @@ int64_t place_stars(Launcher& m, const char* name, int64_t corners, int64_t cand
   return entries;
 }
 
-template <class Launcher>
-class VertexStars {
+template <par::Launcher Launcher>
+class StarPasses {
   template <class T>
   using Array = typename Launcher::template Array<T>;
 
 public:
   using Ids = par::List<Launcher, int32_t>;
 
-  explicit VertexStars(Launcher& m) : m_(m) {}
+  explicit StarPasses(Launcher& m) : m_(m) {}
 
   /// Of the candidates `vertex`, ascending; near: all elements at them.
   void gather_stars(RelaxView& r, Ids vertex, Ids near) {
@@ -62,10 +62,10 @@ public:
     entries_ = place_stars<PlaceStars>(m_, "stars", 4 * near_.n, n, of, element_, first_);
     neighbour_ = m_.template array<int32_t>(3 * entries_ + n);
     worst_ = m_.template array<float>(n);
-    m_.for_n(
-        "name stars", n,
-        NameStars{first_.data(), near_.data(), described.data(), element_.data(), neighbour_.data(), worst_.data()},
-        {double(entries_) * 28});
+    m_.for_n("list neighbours", n,
+             ListNeighbours{first_.data(), near_.data(), described.data(), element_.data(), neighbour_.data(),
+                            worst_.data()},
+             {double(entries_) * 28});
     turn_ = m_.filled(n, RelaxView::at_rest);
     wakes_ = m_.filled(n, uint8_t{1});
     changed_ = m_.filled(n, uint8_t{0});
@@ -116,4 +116,4 @@ private:
   Array<uint8_t> wakes_, changed_;
 };
 
-} // namespace molmesh::contour::detail
+} // namespace molmesh::contour

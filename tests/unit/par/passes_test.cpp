@@ -19,7 +19,7 @@ TEST_CASE("flagged lists the places of raised flags, ascending") {
         if (flag[i])
           expected.push_back(i);
       }
-      par::Launcher launcher(2);
+      par::HostLauncher launcher(2);
       const auto list = par::flagged(launcher, "flags", n, flag.data());
       CHECK(std::vector<int32_t>(list.array.begin(), list.array.end()) == expected);
     }

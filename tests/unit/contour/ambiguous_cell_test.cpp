@@ -1,5 +1,5 @@
-// cube_test.cpp — the trilinear sweep through a cell against a fine resampling of it.
-#include "contour/surface/cube.hpp"
+// ambiguous_cell_test.cpp — the trilinear sweep through a cell against a fine resampling of it.
+#include "contour/surface/ambiguous_cell.hpp"
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
