@@ -201,7 +201,7 @@ private:
   HD float evaluate(const Spoke<float>& s, bool meshed, Vec3d x) const {
     return (meshed ? 1 : contour::unmeshed_weight) * quality(s, local(x, meshed));
   }
-  /// see(k, asked, spoke) of this thread's elements.
+  /// see(k, meshed, spoke) of this thread's elements.
   template <class See>
   HD void for_each_spoke(const See& see) const {
     if (team_.rank() < n_)
