@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """docs/benchmarks.md from one run on one machine: target beside result, the paper's figures and peers beside both.
 
-    benchmarks.py BIN DATA [--quick] [--threads N] [--only density,mesh,improvement,chain,surface] [--note TEXT]
+    benchmarks.py BIN DATA [--quick] [--threads N | --shared] [--only density,mesh,improvement,chain,surface] [--note TEXT]
                            [-o docs/benchmarks.md]
 
 BIN: folder of the programs; where field_errors, surface_distances and bench_contour are built there too (targets of that
 name) their tables are made as well. DATA: folder of public structures (MOLMESH_TEST_DATA) with paper/, typical/, pqr/ and
 large/; what is not there is skipped, with a line on standard error and one in the page. --quick: small structures alone,
-one run each, a few minutes; else medians of three and every structure, which takes hours. --note: a sentence about the
-machine for the page. Tables that this machine cannot make (a GPU, other programs) come from the .md files beside this
+one run each, a few minutes; else medians of three and every structure, which takes hours. --shared: other work goes on
+beside this one: everything on one thread, and seconds are those of the clock times the share of a processor that the
+program had. --note: a sentence about the machine for the page. Tables that this machine cannot make (a GPU, other programs) come from the .md files beside this
 script."""
 import argparse
 import os
@@ -74,8 +75,8 @@ class Page:
 
     def __init__(self, arguments, folder):
         self.arguments, self.data, self.quick = arguments, arguments.data, arguments.quick
-        self.threads = arguments.threads or os.cpu_count()
-        self.chain = Chain(arguments.bin, folder, self.threads)
+        self.threads = 1 if arguments.shared else arguments.threads or os.cpu_count()
+        self.chain = Chain(arguments.bin, folder, self.threads, arguments.shared)
         self.repeats = 1 if self.quick else 3
         self.text, self.skipped, self.promises = [], [], []
 
@@ -110,6 +111,11 @@ class Page:
         runs = sorted((run() for _ in range(self.repeats)), key=lambda r: r["work"])
         return runs[len(runs) // 2]
 
+    def on_threads(self, run):
+        """On one thread, and on all."""
+        one = self.repeated(lambda: run(1))
+        return one, one if self.threads == 1 else self.repeated(lambda: run(self.threads))
+
     def promise(self, what, target, result, kept):
         self.promises.append((what, target, result, "yes" if kept else "**no**"))
 
@@ -134,7 +140,7 @@ class Page:
             if not structure:
                 continue
             self.chain.hierarchy(structure, *options)
-            one, all_ = (self.repeated(lambda t=t: self.chain.density(*arguments, threads=t)) for t in (1, self.threads))
+            one, all_ = self.on_threads(lambda t: self.chain.density(*arguments, threads=t))
             counts = all_["counts"]
             grid = "×".join(str(n) for n in counts["grid_points"])
             rows.append((structure.name.split(".")[0].split("_")[0].upper(), " ".join(arguments), count(counts["atoms"]), grid,
@@ -144,7 +150,7 @@ class Page:
         self.write("### Speed", "Phase `density` on one thread and on all; *process* is the whole program with reading and "
                    "writing, on all threads. Exponents: P_R 0.5, P_C 1 where there is a target, else the defaults.",
                    table(("structure", "grid asked for", "atoms", "grid", "active points", "1 thread, s",
-                          f"{self.threads} threads, s", "target, 2 threads", "process, s", "memory"), rows))
+                          "all threads, s", "target, 2 threads", "process, s", "memory"), rows))
 
     def density_errors(self):
         program = self.program("field_errors")
@@ -249,14 +255,13 @@ class Page:
                 continue
             self.chain.hierarchy(structure, *rules)
             self.chain.density(*grid)
-            one, all_ = (self.repeated(lambda t=t: self.chain.mesh(*options, threads=t)) for t in (1, self.threads))
+            one, all_ = self.on_threads(lambda t: self.chain.mesh(*options, threads=t))
             n = all_["counts"]["tetrahedra"]
             rows.append((title, count(n), seconds(one["work"]), seconds(all_["work"]), f"{n / one['work'] / 1e6:.2f} M",
                          target, megabytes(all_["peak_rss_bytes"])))
         self.write("### Speed", "Interior; all phases but reading and writing. The paper's mesh generation takes 6.3 to 6.7 s "
                    "with 8 threads, 12.8 to 13.2 s on one, for meshes of 1 to 2 million.",
-                   table(("", "tetrahedra", "1 thread, s", f"{self.threads} threads, s", "elements/s on 1", "target",
-                          "memory"), rows))
+                   table(("", "tetrahedra", "1 thread, s", "all threads, s", "elements/s on 1", "target", "memory"), rows))
 
     def mesh_distance(self):
         program = self.program("surface_distances")
@@ -266,7 +271,7 @@ class Page:
         for title, name, grid, adapts in (("1UBQ, 0.5 Å", "typical/1ubq.pdb", ["--spacing", "0.5"], ["0", "0.1", "0.2", "auto"]),
                                           ("1TII, 0.5 Å", "tests/data/1tii.pdb", ["--spacing", "0.5"], ["0.2", "auto"]),
                                           ("1SU4, 513 points", "paper/1su4.pdb.gz", ["--grid", "513"], ["0.2", "0.41", "auto"])):
-            if self.quick and name.startswith("paper"):
+            if self.quick and not name.startswith("typical"):
                 continue
             structure = self.file(name)
             if not structure:
@@ -306,8 +311,9 @@ class Page:
     def improvement(self):
         self.write("## Elements: tetsmooth --density")
         if self.quick:
-            sets = [("0.5 Å", ["--spacing", "0.5"], ["tests/data/1tii.pdb", "typical/1crn.pdb", "typical/1ubq.pdb",
-                                                     "typical/1bna.pdb", "typical/1l2y.pdb.gz", "pqr/born__ion.pqr"])]
+            sets = [("0.5 Å", ["--spacing", "0.5"], ["typical/1crn.pdb", "typical/1ubq.pdb", "typical/1bna.pdb",
+                                                     "typical/1l2y.pdb.gz", "pqr/born__ion.pqr"]),
+                    ("1 Å", ["--spacing", "1"], ["tests/data/1tii.pdb"])]
         else:
             def all_of(*folders):
                 return [f"{folder}/{p.name}" for folder in folders for p in sorted((self.data / folder).glob("*"))
@@ -336,7 +342,7 @@ class Page:
         self.write("Before: the mesh as density2tet leaves it. Points off: surface points over 0.02 h from the isosurface (I8: "
                    "none). Centroids: surface triangles over 0.25 h from it (I8: 10 ‰). Turned: by over 45° from the field's "
                    "normal (target: 1 ‰). Volume: what the isosurface encloses beyond the mesh (I8: 0.5 %). Rate: elements "
-                   f"that come in a second, on {self.threads} threads (target: 100,000 a core).",
+                   "that come in a second, on all threads (target: 100,000 a core).",
                    table(("", "tetrahedra", "before", "after", "Q ≥", "edge ratio ≤", "points off", "centroids", "turned",
                           "volume", "mesh, s", "improvement, s", "rate", "valid"), rows))
         self.keep_promises([r for _, r in every])
@@ -388,7 +394,7 @@ class Page:
             if not structure:
                 continue
             atoms = self.chain.hierarchy(structure)["counts"]["atoms"]
-            for threads in (1, self.threads):
+            for threads in sorted({1, self.threads}):
                 density = self.chain.density("--grid", "513", threads=threads)
                 mesh = self.chain.mesh("--region", "both", threads=threads)
                 improvement = self.chain.improve(threads=threads)
@@ -416,7 +422,7 @@ class Page:
     # --- the body
 
     def surface(self):
-        names = ["typical/1crn.pdb", "typical/1ubq.pdb"] if self.quick else [
+        names = ["typical/1crn.pdb"] if self.quick else [
             f"typical/{p.name}" for p in sorted((self.data / "typical").glob("*.pdb*")) if p.name[:4] not in ("1bna", "2koc", "1j59")]
         files = [f for f in map(self.file, names) if f]
         if not files:
@@ -446,8 +452,7 @@ class Page:
         version = subprocess.run([self.arguments.bin / "hier2density", "--version"], stdout=subprocess.PIPE, text=True).stdout
         return (f"{model.group(1) if model else 'unknown processor'}, {os.cpu_count()} cores in use, {simd}, "
                 f"{int(memory.group(1)) / 2**20:.0f} GiB{', a virtual machine' if 'hypervisor' in flags else ''}; "
-                f"molmesh {version.split()[-1]}; {self.threads} threads where a table does not say otherwise. "
-                f"{self.arguments.note}").strip()
+                f"molmesh {version.split()[-1]}; all threads: {self.threads}. {self.arguments.note}").strip()
 
     def include(self, name):
         path = HERE / name
@@ -466,7 +471,9 @@ class Page:
                    + "`: do not edit. Target beside result, the paper's figures and other programs beside both. What the "
                    "contracts I1 to I12 are, units and measures: [conventions.md](conventions.md).",
                    f"**Machine.** {self.machine()}", "Times are " + ("of one run" if self.quick else "medians of three runs")
-                   + "; ratios of times say more than times. \"1 thread\" and \"all\" are the same bytes.",
+                   + (", on a machine that other work shares: one thread, and seconds of the clock times the share of a processor "
+                      "that the program had. A quiet machine is faster" if self.arguments.shared else "")
+                   + "; ratios of times say more than times. Any number of threads gives the same bytes.",
                    "## Targets and results", table(("", "target", "result", "met"), self.promises))
         self.text += body
         if self.quick:
@@ -485,6 +492,7 @@ def main():
     parser.add_argument("data", type=pathlib.Path)
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--threads", type=int, default=0)
+    parser.add_argument("--shared", action="store_true")
     parser.add_argument("--only", default="")
     parser.add_argument("--note", default="")
     parser.add_argument("-o", dest="output", type=pathlib.Path, default=ROOT / "docs" / "benchmarks.md")

@@ -4,6 +4,7 @@ import pathlib
 import random
 import resource
 import subprocess
+import time
 
 
 class ToolError(Exception):
@@ -11,26 +12,31 @@ class ToolError(Exception):
 
 
 class Chain:
-    """The programs in one folder, their files in another. threads: of those that have a choice."""
+    """The programs in one folder, their files in another. threads: of those that have a choice. shared: other work goes on
+    beside this one; one thread, and every second counts as the share of a processor that the run had."""
 
-    def __init__(self, programs, folder, threads):
-        self.programs, self.folder, self.threads = pathlib.Path(programs), pathlib.Path(folder), str(threads)
+    def __init__(self, programs, folder, threads, shared=False):
+        self.programs, self.folder, self.shared = pathlib.Path(programs), pathlib.Path(folder), shared
+        self.threads = "1" if shared else str(threads)
 
     def path(self, name):
         return self.folder / name
 
     def run(self, program, *options, threads=None):
-        """The run report; `processor`: seconds of user and system, `wall` those of all phases."""
+        """The run report; `seconds` of each phase, `wall` of all, `work` without reading and writing, `processor`: user and
+        system."""
         report = self.path(f"{program}.json")
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        done = subprocess.run([self.programs / program, "-q", "-t", str(threads or self.threads), "--report", report,
+        before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+        threads = 1 if self.shared else threads or self.threads
+        done = subprocess.run([self.programs / program, "-q", "-t", str(threads), "--report", report,
                                *map(str, options)], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
         if done.returncode != 0:
             raise ToolError(f"{program}: status {done.returncode}: {done.stderr.strip()}")
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        after, elapsed = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic() - start
         text = json.loads(report.read_text())
-        text["seconds"] = {p["name"]: p["seconds"] for p in text["phases"]}
         text["processor"] = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        share = min(1, text["processor"] / elapsed) if self.shared else 1
+        text["seconds"] = {p["name"]: p["seconds"] * share for p in text["phases"]}
         text["wall"] = sum(text["seconds"].values())
         text["work"] = sum(s for name, s in text["seconds"].items() if name not in ("read", "write"))
         return text
