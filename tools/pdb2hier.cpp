@@ -21,7 +21,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--format", o.pdb.format,
                  "of the input; auto: PQR where the name ends in .pqr, else from its contents")
       ->type_name("FORMAT")
-      ->check(CLI::IsMember({"auto", "pdb", "mmcif", "mmjson", "pqr"}));
+      ->check(CLI::IsMember({"auto", "pdb", "mmcif", "bcif", "mmjson", "pqr", "gro", "xyzr"}));
   app.add_option("--model", o.pdb.model, "first, all, or a model's number")->type_name("MODEL");
   app.add_option("--assembly", o.pdb.assembly, "identifier of a biological assembly, or none")->type_name("ID");
   app.add_option("--levels", o.levels, "group levels, outermost first, of domain, chain, residue; or none")

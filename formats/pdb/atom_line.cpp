@@ -35,7 +35,7 @@ bool is_coordinate(std::string_view field) {
   return signed_decimal(trimmed(field)).has_value();
 }
 
-AtomLine in_columns(std::string_view line, std::string& room) {
+AtomLine in_columns(std::string_view line, std::string& room, bool coordinates) {
   AtomLine a{line};
   const auto without_column = [&](size_t column) {
     if (a.text.data() != room.data())
@@ -45,7 +45,7 @@ AtomLine in_columns(std::string_view line, std::string& room) {
   };
   for (; is_pushed(a.text); a.pushed = true)
     without_column(11);
-  a.shifted = is_shifted(a.text);
+  a.shifted = coordinates && is_shifted(a.text);
   if (a.shifted)
     without_column(first_x);
   return a;

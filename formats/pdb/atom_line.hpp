@@ -16,7 +16,8 @@ struct AtomLine {
   bool pushed = false;  ///< a serial wider than its columns 7-11 had moved the rest to the right
   bool shifted = false; ///< its coordinates began one column late, as residue numbers of five digits move them
 };
-/// room: holds the text of a line that was moved.
-AtomLine in_columns(std::string_view line, std::string& room);
+/// room: holds the text of a line that was moved. coordinates: false where the labels alone are wanted, which is
+/// faster.
+AtomLine in_columns(std::string_view line, std::string& room, bool coordinates = true);
 
 } // namespace molmesh::formats

@@ -60,7 +60,6 @@ void check_integers(cif::Loop& loop, const AtomColumns& columns, std::string_vie
         fail_input(where + ":" + std::to_string(line_of_row(text, line, loop.tags.size(), row, value)) +
                    ": found " + in_quotes(value) + " as " + name + ", expected an integer");
     });
-  each("id", [](std::string& value, size_t) { value = "1"; });
   each("pdbx_formal_charge", [](std::string& value, size_t) { value = "?"; });
 }
 
@@ -78,7 +77,7 @@ void check_sequence(const cif::Item& item, const std::string& where) {
         check(item.loop.values[i]);
 }
 
-int64_t name_elements(cif::Loop& loop, const AtomColumns& columns) {
+int64_t name_elements(cif::Loop& loop, const AtomColumns& columns, ElementGuesses& guesses) {
   const auto element = static_cast<size_t>(columns.find("type_symbol"));
   const auto residue = static_cast<size_t>(columns.find("label_comp_id"));
   const int label = columns.find("label_atom_id");
@@ -91,7 +90,9 @@ int64_t name_elements(cif::Loop& loop, const AtomColumns& columns) {
     if (cif::is_null(symbol)) {
       const std::string name = cif::as_string(loop.values[row + atom]),
                         of = cif::as_string(loop.values[row + residue]);
-      symbol = named_element(name, of).name();
+      const gemmi::Element named_as = named_element(name, of);
+      guesses.add(name, of, named_as);
+      symbol = named_as.name();
       ++named;
     }
   }

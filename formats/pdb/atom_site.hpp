@@ -66,6 +66,6 @@ void check_integers(gemmi::cif::Loop& loop, const AtomColumns& columns, std::str
 /// If `item` is _entity_poly_seq: its places are integers.
 void check_sequence(const gemmi::cif::Item& item, const std::string& where);
 /// Elements that the file does not give, told by the names; returns how many. Wants type_symbol and label_comp_id.
-int64_t name_elements(gemmi::cif::Loop& loop, const AtomColumns& columns);
+int64_t name_elements(gemmi::cif::Loop& loop, const AtomColumns& columns, class ElementGuesses& guesses);
 
 } // namespace molmesh::formats

@@ -1,8 +1,10 @@
 // element_name.cpp — names of atoms and residues as the PDB and force fields write them.
 #include "formats/pdb/element_name.hpp"
+#include "formats/pdb/parse.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
 #include <array>
+#include <gemmi/resinfo.hpp>
 #include <string>
 #include <utility>
 
@@ -43,16 +45,116 @@ gemmi::Element ion_element(std::string_view atom, std::string_view residue) {
   return name.size() <= 2 ? gemmi::Element(name) : gemmi::Element(gemmi::El::X);
 }
 
+namespace {
+
+/// Cofactors whose metal is named like carbon or nitrogen with a letter behind.
+bool holds_metal(std::string_view residue, std::string_view metal) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 10> known = {{{"CUA", "CU"},
+                                                                                           {"CUB", "CU"},
+                                                                                           {"CUZ", "CU"},
+                                                                                           {"CUO", "CU"},
+                                                                                           {"B12", "CO"},
+                                                                                           {"CNC", "CO"},
+                                                                                           {"COB", "CO"},
+                                                                                           {"CBY", "CO"},
+                                                                                           {"NCO", "CO"},
+                                                                                           {"F43", "NI"}}};
+  return std::find(known.begin(), known.end(), std::pair(residue, metal)) != known.end();
+}
+
+} // namespace
+
 gemmi::Element named_element(std::string_view atom, std::string_view residue) {
   if (const gemmi::Element ion = ion_element(atom, residue); ion != gemmi::El::X)
     return ion;
-  static constexpr std::array<std::string_view, 9> pairs = {"CL", "BR", "SI", "SE", "FE", "ZN", "MG", "MN", "CU"};
+  static constexpr std::array<std::string_view, 10> pairs = {"CL", "BR", "SI", "SE", "AS",
+                                                             "FE", "ZN", "MG", "MN", "MO"};
   const std::string letters = letters_of(atom), pair = letters.substr(0, 2);
   if (letters.empty())
     return gemmi::El::X;
-  if (std::find(pairs.begin(), pairs.end(), pair) != pairs.end())
+  if (std::find(pairs.begin(), pairs.end(), pair) != pairs.end() || (letters == pair && holds_metal(residue, pair)))
     return gemmi::Element(pair);
   return gemmi::impl::find_single_letter_element(letters[0]);
+}
+
+gemmi::Element element_in_columns(std::string_view field, std::string_view residue) {
+  const std::string_view name = trimmed(field);
+  if (const gemmi::Element ion = ion_element(name, residue); ion != gemmi::El::X)
+    return ion;
+  const std::string letters = letters_of(name);
+  if (letters.empty())
+    return gemmi::El::X;
+  const gemmi::Element one = gemmi::impl::find_single_letter_element(letters[0]);
+  const gemmi::ResidueInfo info = gemmi::find_tabulated_residue(std::string(residue));
+  if ((info.is_amino_acid() || info.is_nucleic_acid() || is_protonation_variant(residue)) &&
+      field.find("SE") == std::string_view::npos)
+    return one;
+  if (is_letter(field[0]) || one == gemmi::El::X)
+    return named_element(name, residue);
+  return one;
+}
+
+gemmi::Element autodock_element(std::string_view type) {
+  static constexpr std::array<std::pair<std::string_view, gemmi::El>, 17> types = {{{"A", gemmi::El::C},
+                                                                                    {"HD", gemmi::El::H},
+                                                                                    {"HS", gemmi::El::H},
+                                                                                    {"NA", gemmi::El::N},
+                                                                                    {"NS", gemmi::El::N},
+                                                                                    {"OA", gemmi::El::O},
+                                                                                    {"OS", gemmi::El::O},
+                                                                                    {"SA", gemmi::El::S},
+                                                                                    {"W", gemmi::El::O},
+                                                                                    {"Z", gemmi::El::Zn},
+                                                                                    {"GA", gemmi::El::C},
+                                                                                    {"G", gemmi::El::C},
+                                                                                    {"G0", gemmi::El::C},
+                                                                                    {"G1", gemmi::El::C},
+                                                                                    {"G2", gemmi::El::C},
+                                                                                    {"G3", gemmi::El::C},
+                                                                                    {"J", gemmi::El::C}}};
+  std::string upper(type);
+  for (char& c : upper)
+    c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  for (const auto& [name, element] : types)
+    if (name == upper)
+      return element;
+  if (upper.size() == 2 && upper[0] == 'C' && is_digit(upper[1])) // CG0: a carbon of a ring that is cut open
+    return gemmi::El::C;
+  if (upper.substr(0, 2) == "CG")
+    return gemmi::El::C;
+  return gemmi::Element(upper);
+}
+
+void ElementGuesses::add(std::string_view atom, std::string_view residue, gemmi::Element element) {
+  ++all_;
+  ++of_element_[element.name()];
+  const std::string letters = letters_of(atom);
+  if (letters.size() < 2 || letters[0] == 'H')
+    return;
+  const gemmi::Element pair(letters.substr(0, 2));
+  if (!pair.is_metal() && !element.is_metal())
+    return;
+  const gemmi::ResidueInfo info = gemmi::find_tabulated_residue(std::string(residue));
+  if (!info.is_amino_acid() && !info.is_nucleic_acid() && !is_protonation_variant(residue))
+    ++doubtful_[std::string(atom) + " of " + std::string(residue) + " as " + element.name()];
+}
+
+void ElementGuesses::report(Parsed& parsed) const {
+  for (const auto& [element, n] : of_element_)
+    parsed.guessed[element] += n;
+  if (doubtful_.empty())
+    return;
+  constexpr size_t most = 12;
+  std::string list;
+  int64_t atoms = 0;
+  size_t named = 0;
+  for (const auto& [guess, n] : doubtful_) {
+    atoms += n;
+    if (named++ < most)
+      list += (list.empty() ? "" : ", ") + guess + (n > 1 ? " (" + std::to_string(n) + ")" : "");
+  }
+  parsed.notes.push_back("of these, names that could be a metal's or another element's: " + std::to_string(atoms) +
+                         ", " + list + (named > most ? ", …" : ""));
 }
 
 bool is_protonation_variant(std::string_view residue) {

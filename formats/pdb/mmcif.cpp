@@ -1,16 +1,21 @@
 // mmcif.cpp — mmCIF and mmJSON through gemmi: only the categories that matter, missing columns filled in.
 #include "base/error.hpp"
 #include "formats/pdb/atom_site.hpp"
+#include "formats/pdb/bcif.hpp"
 #include "formats/pdb/chains.hpp"
+#include "formats/pdb/element_name.hpp"
 #include "formats/pdb/mmcif_assembly.hpp"
 #include "formats/pdb/mmjson.hpp"
 #include "formats/pdb/model_names.hpp"
 #include "formats/pdb/parse.hpp"
+#include "formats/pdb/structure_builder.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <gemmi/cif.hpp>
 #include <gemmi/mmcif.hpp>
+#include <limits>
 #include <unordered_set>
 
 namespace molmesh::formats {
@@ -89,6 +94,39 @@ cif::Item* atom_loop(cif::Block& block) {
   return &block.items.back();
 }
 
+/// Of other categories nothing is used.
+bool is_read(const std::string& tag) {
+  static constexpr std::array<const char*, 5> read = {"_atom_site.", "_entity.", "_entity_poly.",
+                                                      "_entity_poly_seq.", "_struct_asym."};
+  return std::any_of(read.begin(), read.end(), [&](const char* category) { return starts_with(tag, category); });
+}
+
+void number_rows(cif::Loop& loop, const AtomColumns& columns) {
+  const auto id = static_cast<size_t>(columns.find("id"));
+  for (size_t row = 0, i = id; i < loop.values.size(); ++row, i += loop.width())
+    loop.values[i] = std::to_string(row);
+}
+
+/// Charges and radii of PDB2PQR's mmCIF.
+void read_charges(const cif::Loop& loop, const AtomColumns& columns, Parsed& parsed) {
+  const int charge = columns.find("pqr_partial_charge"), radius = columns.find("pqr_radius");
+  if (charge < 0 && radius < 0)
+    return;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const auto number = [&](size_t row, int column) {
+    return column < 0 ? none : cif::as_number(loop.val(row, static_cast<size_t>(column)), none);
+  };
+  int64_t without = 0;
+  for (size_t row = 0; row < loop.length(); ++row) {
+    const Parsed::Values values{number(row, charge), number(row, radius)};
+    without += radius >= 0 && !(values.radius >= 0);
+    parsed.pqr.push_back({values.charge, values.radius >= 0 ? values.radius : none});
+  }
+  if (without > 0)
+    parsed.notes.push_back("atoms without a number ≥ 0 as _atom_site.pqr_radius, which have their element's: " +
+                           std::to_string(without));
+}
+
 Parsed from_document(cif::Document& document, std::string_view text, const std::string& file, const char* format,
                      const std::string& assembly) {
   Parsed parsed;
@@ -117,12 +155,16 @@ Parsed from_document(cif::Document& document, std::string_view text, const std::
   check_integers(loop, columns, text, file, item->line_number);
   check_models(loop, columns, where);
   columns.complete("id", {}, "1");
+  number_rows(loop, columns); // gemmi::Atom::serial is the row then
   columns.complete("type_symbol", {}, "?");
   columns.complete("label_alt_id", {}, ".");
   columns.complete("label_asym_id", {"auth_asym_id"}, "A");
   columns.complete("label_comp_id", {"auth_comp_id"}, "UNK");
-  if (const int64_t named = name_elements(loop, columns); named > 0)
+  ElementGuesses guesses;
+  if (const int64_t named = name_elements(loop, columns, guesses); named > 0)
     parsed.notes.push_back("atoms without an element, taken from the name: " + std::to_string(named));
+  guesses.report(parsed);
+  read_charges(loop, columns, parsed);
   columns.complete("occupancy", {}, "1");
   columns.complete("B_iso_or_equiv", {}, "0");
   columns.complete("auth_seq_id", {"label_seq_id"}, "1");
@@ -130,16 +172,17 @@ Parsed from_document(cif::Document& document, std::string_view text, const std::
   const bool divided = divide_long_chains(loop, columns);
 
   const std::vector<gemmi::Assembly> assemblies = read_assemblies(*block, assembly, file);
+  for (const cif::Item& other : block->items)
+    if (const std::string& tag = tag_of(other); !tag.empty() && !is_read(tag))
+      ++parsed.passed_over[tag.substr(0, tag.find('.'))];
   // Other categories cost time and can only fail: _atom_site_anisotrop, _struct_conn, _pdbx_sifts_…
   cif::Block needed(block->name);
   for (cif::Item& other : block->items) {
     const std::string& tag = tag_of(other);
-    for (const char* kept : {"_atom_site.", "_entity.", "_entity_poly.", "_entity_poly_seq.", "_struct_asym."})
-      if (starts_with(tag, kept)) {
-        check_sequence(other, file + ":" + std::to_string(std::max(other.line_number, 1)));
-        needed.items.push_back(std::move(other));
-        break;
-      }
+    if (is_read(tag)) {
+      check_sequence(other, file + ":" + std::to_string(std::max(other.line_number, 1)));
+      needed.items.push_back(std::move(other));
+    }
   }
   try {
     parsed.structure = gemmi::make_structure_from_block(needed);
@@ -152,6 +195,8 @@ Parsed from_document(cif::Document& document, std::string_view text, const std::
     join_divided_chains(parsed.structure);
     gemmi::impl::fill_residue_entity_type(parsed.structure); // it looks at whole chains
   }
+  if (const int64_t restarted = part_restarted(parsed.structure); restarted > 0)
+    parsed.notes.push_back("residues whose number has started again, kept apart: " + std::to_string(restarted));
   parsed.structure.assemblies = assemblies; // gemmi 0.5.7 reads no products of operators
   return parsed;
 }
@@ -168,6 +213,11 @@ Parsed parse_mmcif(std::string_view text, const std::string& file, const std::st
     fail_input(one_line(file, e.what()));
   }
   return from_document(document, text, file, "mmCIF", assembly);
+}
+
+Parsed parse_bcif(const std::string& bytes, const std::string& file, const std::string& assembly) {
+  cif::Document document = read_bcif(bytes, file);
+  return from_document(document, {}, file, "BinaryCIF", assembly);
 }
 
 Parsed parse_mmjson(std::string& text, const std::string& file, const std::string& assembly) {

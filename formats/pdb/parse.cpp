@@ -2,6 +2,8 @@
 #include "formats/pdb/parse.hpp"
 #include "base/error.hpp"
 #include "formats/pdb/atom_line.hpp"
+#include "formats/pdb/element_name.hpp"
+#include "formats/pdb/foreign.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
 
@@ -72,17 +74,45 @@ bool ends_within_atom_line(std::string_view text) {
   return has_begun && is_atom_record(atom) && last.size() < atom.size();
 }
 
-std::string detect(std::string_view text, const std::string& file) {
-  std::string_view name(file);
+std::string_view without_gz(std::string_view name) {
   if (ends_with(name, ".gz"))
     name.remove_suffix(3);
+  return name;
+}
+
+/// Is what is called PQR the PDB format? Every line has an occupancy and a temperature factor in their columns, and
+/// these are no radii, or most of the others are 1.00, which are no charges but of ions.
+bool is_pdb_after_all(std::string_view text) {
+  int64_t atoms = 0, in_place = 0, large = 0, ones = 0;
+  std::string room;
+  for_each_line(text, [&](std::string_view as_it_is, int64_t) {
+    if (!is_atom_record(as_it_is))
+      return;
+    ++atoms;
+    const std::string_view line = in_columns(as_it_is, room).text;
+    if (!has_pdb_columns(line) || !has_occupancy(line))
+      return;
+    ++in_place;
+    large += decimal(trimmed(line.substr(60, 6))).value_or(0) > largest_radius;
+    ones += line.substr(54, 6) == "  1.00" &&
+            ion_element(trimmed(line.substr(12, 4)), trimmed(line.substr(17, 4))) == gemmi::El::X;
+  });
+  return in_place == atoms && (large > 0 || (atoms >= 4 && 2 * ones > atoms));
+}
+
+std::string detect(std::string_view text, const std::string& file) {
+  const std::string_view name = without_gz(file);
   const size_t first = text.find_first_not_of(" \t\n");
   if (first == std::string_view::npos)
     fail_input(file + ":1: found an empty file, expected a structure");
   if (text[first] == '{')
     return "mmjson";
   if (ends_with(name, ".pqr"))
-    return "pqr";
+    return is_pdb_after_all(text) ? "pdb" : "pqr";
+  if (ends_with(name, ".gro"))
+    return "gro";
+  if (ends_with(name, ".xyzr") || ends_with(name, ".xyzrn"))
+    return "xyzr";
   std::string format;
   for_each_line(text, [&](std::string_view line, int64_t) {
     if (!format.empty())
@@ -95,6 +125,10 @@ std::string detect(std::string_view text, const std::string& file) {
   });
   if (format.empty() && (ends_with(name, ".cif") || ends_with(name, ".mmcif")))
     return "mmcif";
+  if (format.empty() && looks_like_gro(text))
+    return "gro";
+  if (format.empty() && looks_like_xyzr(text))
+    return "xyzr";
   return format.empty() ? "pdb" : format;
 }
 
@@ -126,6 +160,10 @@ std::string in_quotes(std::string_view text) {
 
 Parsed parse_structure(std::string text, const std::string& file, const std::string& format,
                        const std::string& assembly) {
+  if (format == "bcif" || (format == "auto" && looks_like_bcif(text)))
+    return parse_bcif(text, file, assembly);
+  if (format == "auto")
+    refuse_foreign(text, file);
   const bool cut = ends_within_atom_line(text);
   normalize(text, file);
   const std::string kind = format == "auto" ? detect(text, file) : format;
@@ -134,8 +172,16 @@ Parsed parse_structure(std::string text, const std::string& file, const std::str
   if (kind == "mmjson")
     return parse_mmjson(text, file, assembly);
   if (kind == "pqr")
-    return parse_pqr(text, file);
+    return parse_pqr(text, file, format == "pqr");
+  if (kind == "gro")
+    return parse_gro(text, file);
+  if (kind == "xyzr")
+    return parse_xyzr(text, file);
   Parsed parsed = parse_pdb(text, file, assembly);
+  if (format == "auto" && ends_with(without_gz(file), ".pqr"))
+    parsed.notes.emplace_back(
+        "the file is called PQR and holds occupancies and temperature factors, no charges and "
+        "radii: read as PDB (--format pqr takes them for charges and radii)");
   if (cut)
     parsed.notes.push_back("the file ends within an atom's line: is it cut off?");
   return parsed;

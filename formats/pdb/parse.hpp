@@ -1,6 +1,8 @@
 // parse.hpp — the text of a structure file into gemmi's structure.
 #pragma once
+#include <cstdint>
 #include <gemmi/model.hpp>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,11 +21,14 @@ struct Parsed {
     double charge, radius; ///< e, Å
   };
   std::vector<Values> pqr;
-  std::vector<std::string> notes; ///< what the user should know about how the file was read
+  std::vector<std::string> notes;             ///< what the user should know about how the file was read
+  std::map<std::string, int64_t> passed_over; ///< lines or categories that are no atoms, by record or name
+  std::map<std::string, int64_t> guessed;     ///< elements that the file does not give, taken from the names
 };
 
-/// format: auto, pdb, mmcif, mmjson or pqr; auto looks at the contents, and at the name where PDB and PQR look
-/// alike. Throws Error(bad_input) "FILE:LINE: …" when there is no atom, or a coordinate is not a finite number.
+/// format: auto, pdb (PDBQT too), mmcif, bcif, mmjson, pqr, gro or xyzr; auto looks at the contents, and at the
+/// name where PDB and PQR look alike. Throws Error(bad_input) "FILE:LINE: …" when there is no atom, or a coordinate
+/// is not a finite number.
 Parsed parse_structure(std::string text, const std::string& file, const std::string& format,
                        const std::string& assembly);
 
@@ -31,7 +36,20 @@ Parsed parse_structure(std::string text, const std::string& file, const std::str
 Parsed parse_pdb(std::string_view text, const std::string& file, const std::string& assembly);
 Parsed parse_mmcif(std::string_view text, const std::string& file, const std::string& assembly);
 Parsed parse_mmjson(std::string& text, const std::string& file, const std::string& assembly);
-Parsed parse_pqr(std::string_view text, const std::string& file);
+/// believed: radii of any size; otherwise those beyond largest_radius are refused.
+Parsed parse_pqr(std::string_view text, const std::string& file, bool believed);
+Parsed parse_gro(std::string_view text, const std::string& file);
+Parsed parse_xyzr(std::string_view text, const std::string& file);
+/// BinaryCIF: MessagePack.
+Parsed parse_bcif(const std::string& bytes, const std::string& file, const std::string& assembly);
+
+/// By contents.
+bool looks_like_gro(std::string_view text);
+bool looks_like_xyzr(std::string_view text);
+bool looks_like_bcif(std::string_view bytes);
+
+/// Å. No atom is larger, nor a bead that stands for a few.
+inline constexpr double largest_radius = 10;
 
 /// Calls take(line, number) for each line, without its end.
 template <class Take>

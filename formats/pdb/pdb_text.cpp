@@ -1,61 +1,58 @@
-// pdb_text.cpp — the PDB format: our own strict look at each line, then gemmi's reader on the records that matter.
+// pdb_text.cpp — the PDB format (and PDBQT, which AutoDock writes in its columns), line by line.
 #include "base/error.hpp"
+#include "formats/pdb/atom_labels.hpp"
 #include "formats/pdb/atom_line.hpp"
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/model_names.hpp"
 #include "formats/pdb/parse.hpp"
+#include "formats/pdb/passed_over.hpp"
 #include "formats/pdb/remark350.hpp"
+#include "formats/pdb/structure_builder.hpp"
 #include "molecule/words.hpp"
-#include <gemmi/pdb.hpp>
+#include <limits>
 
 namespace molmesh::formats {
 namespace {
 
-/// Where columns 77-78 hold no element (then true): an ion's; in amino acids and nucleotides the first letter of
-/// the atom's name ("CA  " is no calcium there), elsewhere gemmi decides, unless all that it finds is X.
-bool set_element(std::string& line) {
-  if (line.size() > 76 && (is_letter(line[76]) || (line.size() > 77 && is_letter(line[77]))))
-    return false;
-  const std::string name = line.substr(12, 4), residue(trimmed(std::string_view(line).substr(17, 3)));
-  const auto set = [&line](std::string_view symbol) { // right-adjusted
-    line.resize(76, ' ');
-    line.append(2 - symbol.size(), ' ').append(symbol);
-    return true;
-  };
-  if (const gemmi::Element ion = ion_element(trimmed(name), trimmed(std::string_view(line).substr(17, 4)));
-      ion != gemmi::El::X)
-    return set(ion.uname());
-  const size_t first = name.find_first_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz");
-  if (first == std::string::npos)
-    return true;
-  const gemmi::ResidueInfo info = gemmi::find_tabulated_residue(residue);
-  const bool polymer = (info.is_amino_acid() || info.is_nucleic_acid() || is_protonation_variant(residue)) &&
-                       name.find("SE") == std::string::npos;
-  if (!polymer && gemmi::Element(name.c_str()) != gemmi::El::X)
-    return true;
-  return set(std::string_view(name).substr(first, 1));
+/// Of columns 77-78; X where they hold none.
+gemmi::Element written_element(std::string_view line) {
+  if (line.size() > 76 && (is_letter(line[76]) || (line.size() > 77 && is_letter(line[77])))) {
+    const char symbol[3] = {line[76], line.size() > 77 ? line[77] : '\0', '\0'};
+    return gemmi::Element(symbol);
+  }
+  return gemmi::El::X;
 }
 
-/// Residue numbers are integers, hybrid-36 in capitals, or missing. gemmi takes small letters for capitals, and
-/// -999 for none.
-bool is_residue_number(std::string_view field) {
-  field = trimmed(field);
-  const auto is_capital = [](char c) { return c >= 'A' && c <= 'Z'; };
-  if (field.size() == 4 && is_capital(field[0]))
-    return std::all_of(field.begin(), field.end(), [&](char c) { return is_digit(c) || is_capital(c); });
-  if (field == "-999")
-    return false;
-  if (!field.empty() && (field[0] == '-' || field[0] == '+'))
-    field.remove_prefix(1);
-  return std::all_of(field.begin(), field.end(), is_digit);
+bool has_element(std::string_view line) {
+  return line.size() > 76 && (is_letter(line[76]) || (line.size() > 77 && is_letter(line[77])));
+}
+
+double number_in(std::string_view line, size_t at, size_t width) {
+  return at < line.size() ? signed_decimal(trimmed(line.substr(at, width))).value_or(0) : 0;
+}
+
+/// "  0.123 OA": the charge and type of AutoDock's atoms in columns 71-76 and 78-79.
+bool has_autodock_type(std::string_view line) {
+  return line.size() > 77 && line[72] == '.' && line[76] == ' ' && (is_letter(line[77]) || line[77] == '*') &&
+         signed_decimal(trimmed(line.substr(70, 6))).has_value() && trimmed(line.substr(66, 4)).empty();
 }
 
 class PdbLines {
 public:
-  PdbLines(const std::string& file, bool assemblies_wanted) : file_(file), assemblies_wanted_(assemblies_wanted) {}
+  PdbLines(const std::string& file, bool assemblies_wanted, Parsed& parsed)
+      : file_(file), assemblies_wanted_(assemblies_wanted), parsed_(parsed), passed_over_(file),
+        builder_(parsed.structure) {}
+
+  /// First of every line: what the columns of this file are.
+  void look(std::string_view line) {
+    if (is_atom_record(line))
+      columns_.look(in_columns(line, room_, false).text);
+  }
 
   void take(std::string_view line, int64_t number) {
     line_ = number;
+    if (line_ == 1)
+      columns_.finish();
     if (ended_)
       after_end_ += is_atom_record(line);
     else if (is_atom_record(line))
@@ -64,56 +61,95 @@ public:
       open_model(line);
     else if (is_record(line, "ENDMDL"))
       in_model_ = false;
-    else if (is_record(line, "END") && (line.size() == 3 || line[3] == ' '))
+    else if (is_end(line, "END"))
       ended_ = true;
-    else if (is_record(line, "TER") || is_record(line, "SEQRES"))
-      text.append(line);
+    else if (is_end(line, "TER"))
+      builder_.end_polymer();
+    else if (is_record(line, "SEQRES"))
+      builder_.add_sequence(line);
     else if (assemblies_wanted_ && is_record(line, "REMARK 350"))
       remark350_.take(line, file_ + ":" + std::to_string(number));
-    text += '\n';
+    else
+      passed_over_.take(line, number);
   }
 
-  void finish(Parsed& parsed) const {
+  void finish() {
     if (atoms_ == 0)
       fail_input(file_ + ":" + std::to_string(std::max<int64_t>(line_, 1)) +
                  ": found the end without an ATOM or HETATM record, expected a structure");
     remark350_.finish();
+    builder_.finish();
+    parsed_.structure.assemblies = remark350_.assemblies;
+    if (types_ > 0)
+      parsed_.format = "PDBQT";
     const auto note = [&](int64_t count, const std::string& what) {
       if (count > 0)
-        parsed.notes.push_back(what + ": " + std::to_string(count));
+        parsed_.notes.push_back(what + ": " + std::to_string(count));
     };
     note(shifted_, "atom lines whose coordinates stand one column to the right, read there");
     note(pushed_, "atom lines that a wide serial has moved to the right, read there");
+    note(segments_, "atoms without a chain, which has the name of their segment (columns 73-76)");
     if (odd_numbers_ > 0)
       note(odd_numbers_, "residue numbers that are none, read as far as they go, the first in line " +
                              std::to_string(first_odd_number_));
-    note(guessed_, "atoms without an element, taken from the name");
+    note(numbers_.hexadecimal(), "atoms with a residue number that counts on in hexadecimal");
+    note(builder_.restarted(), "residues whose number has started again, kept apart");
+    note(guesses_.all(), "atoms without an element, taken from the name");
+    guesses_.report(parsed_);
     note(after_end_, "atom lines after END, not read");
     note(names_.renumbered(), "models without a number of their own, numbered in order");
+    passed_over_.report(parsed_);
   }
-
-  std::string text; ///< the records that matter, checked, for gemmi
-  const std::vector<std::string>& models() const { return names_.all(); }
-  const std::vector<gemmi::Assembly>& assemblies() const { return remark350_.assemblies; }
 
 private:
   [[noreturn]] void refuse(const std::string& what) const {
     fail_input(file_ + ":" + std::to_string(line_) + ": " + what);
   }
 
-  void atom(std::string_view line) {
+  static bool is_end(std::string_view line, std::string_view name) {
+    return is_record(line, name) && (line.size() == 3 || line[3] <= ' ');
+  }
+
+  void atom(std::string_view as_it_is) {
     if (!in_model_)
       open_model("");
     ++atoms_;
-    const AtomLine in_place = in_columns(line, room_);
+    const AtomLine in_place = in_columns(as_it_is, room_);
     pushed_ += in_place.pushed;
     shifted_ += in_place.shifted;
-    check_coordinates(in_place.text);
-    record_ = in_place.text.substr(0, 78); // the formal charge behind is not used
-    guessed_ += set_element(record_);
-    if (!is_residue_number(std::string_view(record_).substr(22, 4)) && odd_numbers_++ == 0)
+    const std::string_view line = in_place.text;
+    check_coordinates(line);
+    const AtomLabels labels = columns_.of(line);
+    segments_ += labels.chain_of_segment;
+    const ResidueNumbers::Number number = numbers_.read(labels.number);
+    if (!number.is_number && odd_numbers_++ == 0)
       first_odd_number_ = line_;
-    text += record_;
+    gemmi::Atom atom;
+    atom.name = trimmed(line.substr(12, 4));
+    atom.altloc = line[16] == ' ' ? '\0' : line[16];
+    atom.pos = {number_in(line, first_x, coordinate_width),
+                number_in(line, first_x + coordinate_width, coordinate_width),
+                number_in(line, first_x + 2 * coordinate_width, coordinate_width)};
+    atom.occ = line.size() > 57 ? static_cast<float>(number_in(line, 54, 6)) : 1.0F;
+    atom.b_iso = line.size() > 63 ? static_cast<float>(number_in(line, 60, 6)) : 20.0F;
+    if (has_autodock_type(line)) {
+      ++types_;
+      atom.element = autodock_element(trimmed(line.substr(77, 2)));
+    } else if (has_element(line)) {
+      atom.element = written_element(line);
+    } else {
+      atom.element = element_in_columns(line.substr(12, 4), labels.residue);
+      guesses_.add(atom.name, labels.residue, atom.element);
+    }
+    atom.serial = static_cast<int>(atoms_ - 1);
+    if (types_ > 0) {
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      parsed_.pqr.resize(static_cast<size_t>(atoms_), {none, none});
+      if (has_autodock_type(line))
+        parsed_.pqr.back().charge = number_in(line, 70, 6);
+    }
+    const gemmi::ResidueId id{number.id, std::string(labels.segment), std::string(labels.residue)};
+    builder_.add(labels.chain, id, is_record(line, "HETATM"), number.is_number, std::move(atom));
   }
 
   void check_coordinates(std::string_view line) const {
@@ -130,45 +166,36 @@ private:
   /// record: its MODEL line, empty without one.
   void open_model(std::string_view record) {
     in_model_ = true;
-    names_.next(record);
-    const size_t models = names_.all().size();
-    // gemmi reads four digits and wants ENDMDL and distinct numbers; the names come back afterwards.
-    if (models > most_models)
+    builder_.open_model(names_.next(record));
+    if (names_.all().size() > most_models)
       refuse("found more than " + std::to_string(most_models) + " models, expected fewer");
-    if (models > 1)
-      text += "ENDMDL\n";
-    const std::string number = std::to_string(models);
-    text += "MODEL     " + std::string(4 - number.size(), ' ') + number + "\n";
   }
 
   const std::string& file_;
   const bool assemblies_wanted_;
+  Parsed& parsed_;
+  PassedOver passed_over_;
+  StructureBuilder builder_;
+  LabelColumns columns_;
+  ResidueNumbers numbers_;
+  ElementGuesses guesses_;
   Remark350 remark350_;
   ModelNames names_;
-  std::string record_, room_;
-  int64_t line_ = 0, atoms_ = 0, shifted_ = 0, after_end_ = 0, guessed_ = 0, pushed_ = 0, odd_numbers_ = 0,
-          first_odd_number_ = 0;
+  std::string room_;
+  int64_t line_ = 0, atoms_ = 0, shifted_ = 0, after_end_ = 0, pushed_ = 0, odd_numbers_ = 0, first_odd_number_ = 0,
+          segments_ = 0, types_ = 0;
   bool in_model_ = false, ended_ = false;
 };
 
 } // namespace
 
 Parsed parse_pdb(std::string_view text, const std::string& file, const std::string& assembly) {
-  PdbLines lines(file, assembly != "none");
-  lines.text.reserve(text.size());
-  for_each_line(text, [&](std::string_view line, int64_t number) { lines.take(line, number); });
   Parsed parsed;
   parsed.format = "PDB";
-  lines.finish(parsed);
-  gemmi::Structure& st = parsed.structure;
-  try {
-    st = gemmi::read_pdb_from_memory(lines.text.data(), lines.text.size(), "pdb");
-  } catch (const std::runtime_error& e) {
-    fail_input(file + ": " + std::string(e.what()).substr(0, std::string_view(e.what()).find('\n')));
-  }
-  for (size_t m = 0; m < st.models.size(); ++m)
-    st.models[m].name = lines.models().at(m);
-  st.assemblies = lines.assemblies(); // gemmi loses its columns from the 1000th operator on
+  PdbLines lines(file, assembly != "none", parsed);
+  for_each_line(text, [&](std::string_view line, int64_t) { lines.look(line); });
+  for_each_line(text, [&](std::string_view line, int64_t number) { lines.take(line, number); });
+  lines.finish();
   return parsed;
 }
 

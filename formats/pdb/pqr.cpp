@@ -4,8 +4,12 @@
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/model_names.hpp"
 #include "formats/pdb/parse.hpp"
+#include "formats/pdb/passed_over.hpp"
 #include "molecule/words.hpp"
+#include <array>
 #include <charconv>
+#include <gemmi/resinfo.hpp>
+#include <set>
 #include <unordered_map>
 
 namespace molmesh::formats {
@@ -19,9 +23,40 @@ struct PqrAtom {
   gemmi::Element element = gemmi::El::X;
 };
 
+/// The columns of GROMACS (-mead), "%-6s%5d %-4.4s%4.4s%c%4d %8.3f %8.3f %8.3f %6.2f %6.2f": names, chain and
+/// number stand one column before those of the PDB format and touch where they are wide.
+bool has_gromacs_columns(std::string_view line) {
+  constexpr std::array<size_t, 5> points = {30, 39, 48, 56, 63}, blanks = {25, 34, 43, 52, 59};
+  return line.size() >= 66 &&
+         std::all_of(points.begin(), points.end(), [&](size_t at) { return line[at] == '.'; }) &&
+         std::all_of(blanks.begin(), blanks.end(), [&](size_t at) { return line[at] == ' '; });
+}
+
+std::string shortest(double v) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), v).ptr};
+}
+
 class PqrLines {
 public:
-  PqrLines(const std::string& file, Parsed& parsed) : file_(file), parsed_(parsed) {}
+  PqrLines(const std::string& file, Parsed& parsed, bool believed)
+      : file_(file), parsed_(parsed), believed_(believed), passed_over_(file) {}
+
+  /// First of every line: do residues' names of four letters end with their chain's?
+  void look(std::string_view line) {
+    if (!is_atom_record(line))
+      return;
+    std::vector<std::string_view> word = words(line.substr(is_record(line, "HETATM") ? 6 : 4));
+    take_element(word);
+    if (word.size() != 9 || word[2].size() > 4)
+      return;
+    const gemmi::ResidueInfo info = gemmi::find_tabulated_residue(std::string(word[2].substr(0, 3)));
+    if (!info.is_amino_acid() || !info.is_standard())
+      return;
+    if (word[2].size() == 4)
+      glued_.emplace(word[2].substr(0, 3));
+    apart_ |= word[2].size() < 4;
+  }
 
   void take(std::string_view line, int64_t number) {
     line_ = number;
@@ -35,9 +70,14 @@ public:
       in_model_ = false;
     else if (is_record(line, "END") && (line.size() == 3 || line[3] == ' '))
       ended_ = true;
+    else
+      passed_over_.take(line, number);
   }
 
   void finish() const {
+    passed_over_.report(parsed_);
+    if (large_ > 0)
+      parsed_.notes.push_back("radii of more than " + shortest(largest_radius) + " Å: " + std::to_string(large_));
     if (after_end_ > 0)
       parsed_.notes.push_back("atom lines after END, not read: " + std::to_string(after_end_));
     if (parsed_.pqr.empty())
@@ -59,18 +99,23 @@ private:
   }
 
   PqrAtom atom(std::string_view line) const {
+    if (has_gromacs_columns(line))
+      return columns(line, 1);
     const size_t record = is_record(line, "HETATM") ? 6 : 4;
     std::vector<std::string_view> word = words(line.substr(record));
     PqrAtom a;
     a.element = take_element(word);
     if (word.size() >= 5 + 3) {
       const size_t head = word.size() - 5;
-      const bool names_run_together = word[1].size() > 4 && has_pdb_columns(line);
+      // In the PDB format's columns: "HD11ALEU", or "POPCA", the last letter the chain's in column 22.
+      const auto ends_in_22 = [&](std::string_view w) { return w.data() + w.size() == line.data() + 22; };
+      const bool names_run_together =
+          has_pdb_columns(line) && (word[1].size() > 4 || (word[2].size() == 5 && ends_in_22(word[2])));
       if (!names_run_together && numbers({word.begin() + static_cast<std::ptrdiff_t>(head), word.end()}, a) &&
           labels(word, head, a))
         return a;
     }
-    return columns(line);
+    return columns(line, 0);
   }
 
   /// x y z charge radius
@@ -86,7 +131,7 @@ private:
   }
 
   /// serial name residue [chain] number, where chain and number may run together.
-  static bool labels(const std::vector<std::string_view>& word, size_t count, PqrAtom& a) {
+  bool labels(const std::vector<std::string_view>& word, size_t count, PqrAtom& a) const {
     if (count < 3 || count > 5)
       return false;
     a.name = word[1];
@@ -97,6 +142,9 @@ private:
     else if (count == 4 && number.size() > 1 && !is_digit(number[0]) && number[0] != '-') {
       a.chain = number.substr(0, 1);
       number.remove_prefix(1);
+    } else if (count == 4 && a.residue.size() == 4 && glued_.size() > 1 && !apart_) {
+      a.chain = a.residue.substr(3);
+      a.residue.resize(3);
     }
     return residue_number(number, a);
   }
@@ -111,26 +159,34 @@ private:
     return left == 0 || a.insertion != ' ';
   }
 
-  PqrAtom columns(std::string_view line) const {
+  /// before: columns by which residue, chain and number stand before those of the PDB format, each coordinate
+  /// behind a blank of its own.
+  PqrAtom columns(std::string_view line, size_t before) const {
     PqrAtom a;
     const auto field = [&](size_t at, size_t width) {
       return at < line.size() ? trimmed(line.substr(at, width)) : std::string_view{};
     };
-    std::vector<std::string_view> word = {field(30, 8), field(38, 8), field(46, 8)};
-    for (const std::string_view w : words(field(54, line.size())))
+    const size_t x = before > 0 ? 26 : 30, width = before > 0 ? 9 : 8;
+    std::vector<std::string_view> word = {field(x, 8), field(x + width, 8), field(x + 2 * width, 8)};
+    for (const std::string_view w : words(field(x + 3 * width, line.size())))
       word.push_back(w);
     a.element = take_element(word);
     if (word.size() > 5 || !numbers(word, a))
       refuse("found " + in_quotes(line) + ", expected serial, name, residue, number, x, y, z, charge, radius");
     a.name = field(12, 4);
-    a.residue = field(17, 4);
-    a.chain = field(21, 1);
-    if (!residue_number(field(22, 5), a))
-      refuse("found residue number " + in_quotes(field(22, 5)) + ", expected an integer");
+    a.residue = field(17 - before, 4);
+    a.chain = field(21 - before, 1);
+    const std::string_view number = field(22 - before, 5 - before);
+    if (!residue_number(number, a))
+      refuse("found residue number " + in_quotes(number) + ", expected an integer");
     return a;
   }
 
   void add(const PqrAtom& a, bool hetero) {
+    if (a.radius > largest_radius && !believed_)
+      refuse("found radius " + shortest(a.radius) + ", expected one of at most " + shortest(largest_radius) +
+             " Å (--format pqr believes it)");
+    large_ += a.radius > largest_radius;
     if (a.radius < 0)
       refuse("found radius " + std::to_string(a.radius) + ", expected a number ≥ 0 (Å)");
     if (!in_model_)
@@ -156,18 +212,23 @@ private:
 
   const std::string& file_;
   Parsed& parsed_;
+  const bool believed_;
+  PassedOver passed_over_;
+  std::set<std::string> glued_; ///< amino acids with a fourth letter
+  bool apart_ = false;          ///< is there one without?
   ModelNames names_;
   std::unordered_map<std::string, size_t> chain_; ///< of the model
-  int64_t line_ = 0, after_end_ = 0;
+  int64_t line_ = 0, after_end_ = 0, large_ = 0;
   bool in_model_ = false, ended_ = false;
 };
 
 } // namespace
 
-Parsed parse_pqr(std::string_view text, const std::string& file) {
+Parsed parse_pqr(std::string_view text, const std::string& file, bool believed) {
   Parsed parsed;
   parsed.format = "PQR";
-  PqrLines lines(file, parsed);
+  PqrLines lines(file, parsed, believed);
+  for_each_line(text, [&](std::string_view line, int64_t) { lines.look(line); });
   for_each_line(text, [&](std::string_view line, int64_t number) { lines.take(line, number); });
   lines.finish();
   return parsed;

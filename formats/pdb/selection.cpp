@@ -1,12 +1,14 @@
-// selection.cpp — parsing with gemmi, and the lens.
+// selection.cpp — names and numbers are read here, models, elements, alternative locations and the rest by gemmi.
 #include "formats/pdb/selection.hpp"
+#include "formats/hier/text.hpp"
 #include "formats/pdb/parse.hpp"
 #include "molecule/words.hpp"
-#include <algorithm>
-#include <vector>
 
 namespace molmesh::formats {
 namespace {
+
+constexpr char quote = '"';
+constexpr size_t npos = std::string_view::npos;
 
 /// gemmi's integers overflow unnoticed.
 bool has_large_number(std::string_view cid) {
@@ -16,22 +18,92 @@ bool has_large_number(std::string_view cid) {
                      [&](char c) { return (digits = is_digit(c) ? digits + 1 : 0) > most_digits; });
 }
 
-/// Does the residue field end with '-', as "45-" (45 and all behind it) does?
-bool is_open_range(std::string_view cid) {
-  cid = cid.substr(0, cid.find(';'));
-  const int omitted = gemmi::impl::determine_omitted_cid_fields(std::string(cid));
-  for (int field = omitted == 0 ? -1 : omitted; field < 2; ++field)
-    cid.remove_prefix(std::min(cid.find('/'), cid.size() - 1) + 1);
-  const std::string_view residue = cid.substr(0, cid.find('/'));
-  return !residue.empty() && residue.back() == '-';
-}
-
 /// Of gemmi's "Invalid selection syntax near "…": …" what is not the selection itself.
 std::string reason(const std::string& what) {
   const size_t begin = what.find(" near "), end = what.rfind(": ");
   return begin == std::string::npos || end <= begin
              ? ""
              : " (" + in_quotes(what.substr(begin + 1, end - begin - 1)) + ")";
+}
+
+[[noreturn]] void wrong(const std::string& what) {
+  throw std::invalid_argument(what);
+}
+
+/// Where the quoted text that begins at `at` ends: behind its closing quote. Two quotes within it are one.
+size_t end_of_quoted(std::string_view text, size_t at) {
+  for (size_t i = at + 1; i < text.size(); ++i)
+    if (text[i] == quote) {
+      if (i + 1 == text.size() || text[i + 1] != quote)
+        return i + 1;
+      ++i;
+    }
+  wrong("a name without its second quote");
+}
+
+/// The first of `marks` outside quotes. A quote opens at the beginning of a name alone.
+size_t find_unquoted(std::string_view text, std::string_view marks, size_t at = 0) {
+  for (size_t i = at; i < text.size();) {
+    const bool begins = i == 0 || std::string_view("/,(!;").find(text[i - 1]) != npos;
+    if (text[i] == quote && begins)
+      i = end_of_quoted(text, i);
+    else if (marks.find(text[i]) != npos)
+      return i;
+    else
+      ++i;
+  }
+  return npos;
+}
+
+std::vector<std::string_view> split(std::string_view text, std::string_view mark) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const size_t end = find_unquoted(text, mark);
+    parts.push_back(text.substr(0, end));
+    if (end == npos)
+      return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+/// forbidden: what a name without quotes may not hold.
+NameList read_list(std::string_view text, std::string_view forbidden) {
+  NameList list;
+  if (text == "*")
+    return list;
+  list.all = false;
+  list.inverted = !text.empty() && text[0] == '!';
+  if (list.inverted)
+    text.remove_prefix(1);
+  for (const std::string_view part : split(text, ",")) {
+    if (part.empty() || part[0] != quote) {
+      if (part.find_first_of(forbidden) != npos)
+        wrong("a name with one of " + std::string(forbidden) + ", which needs double quotes");
+      list.name.emplace_back(part);
+      continue;
+    }
+    if (end_of_quoted(part, 0) != part.size())
+      wrong("text behind a quoted name");
+    std::string name;
+    for (size_t i = 1; i + 1 < part.size(); ++i) {
+      name += part[i];
+      i += part[i] == quote;
+    }
+    list.name.push_back(name);
+  }
+  return list;
+}
+
+/// Quoted names as letters, so that gemmi sees which fields there are.
+std::string without_quoted(std::string_view cid) {
+  std::string text;
+  for (size_t i = 0; i < cid.size();) {
+    const bool begins = i == 0 || std::string_view("/,(!;").find(cid[i - 1]) != npos;
+    const size_t end = cid[i] == quote && begins ? end_of_quoted(cid, i) : i + 1;
+    text += end > i + 1 ? std::string(end - i, 'Q') : std::string(1, cid[i]);
+    i = end;
+  }
+  return text;
 }
 
 } // namespace
@@ -47,27 +119,93 @@ Selection::Selection(const std::string& text, const std::string& where, bool aro
     around_ = distance;
     cid = trimmed(std::string_view(word[1].data(), static_cast<size_t>(word.back().data() - word[1].data())));
   }
-  if (has_large_number(cid))
-    fail(status, where + ": found selection " + in_quotes(text) + ", expected numbers of nine digits at most");
   try {
-    selection_ = gemmi::Selection(cid);
+    const std::string plain = without_quoted(cid);
+    if (has_large_number(plain))
+      fail(status, where + ": found selection " + in_quotes(text) + ", expected numbers of nine digits at most");
+    if (cid.empty() || cid == "*")
+      return;
+    const size_t semicolon = std::min(plain.find(';'), cid.size());
+    const std::string extensions = cid.substr(semicolon);
+    // Model, chain, residue, atom; the first ones may be left out.
+    const int omitted = gemmi::impl::determine_omitted_cid_fields(plain);
+    const std::string_view all = std::string_view(cid).substr(0, semicolon);
+    const std::vector<std::string_view> given = split(omitted == 0 ? all.substr(1) : all, "/");
+    std::vector<std::string_view> field(static_cast<size_t>(omitted));
+    field.insert(field.end(), given.begin(), given.end());
+    if (field.size() > 4)
+      wrong("more than four fields");
+    const auto has = [&](size_t f) { return f >= static_cast<size_t>(omitted) && f < field.size(); };
+    if (has(1)) {
+      chains_ = read_list(field[1], "[]()!*:;");
+      if (!chains_.all && chains_.name.size() == 1 && chains_.name[0].empty())
+        chains_.name[0] = "_"; // the chain without a name, whose place gemmi's syntax leaves empty
+    }
+    if (has(2)) {
+      std::string_view numbers = field[2];
+      std::string outside;
+      if (const size_t open = find_unquoted(numbers, "("); open != npos) {
+        const size_t close = find_unquoted(numbers, ")", open + 1);
+        if (close == npos)
+          wrong("no ')' behind names of residues");
+        residues_ = read_list(numbers.substr(open + 1, close - open - 1), "[]()!/*:;");
+        outside = std::string(numbers.substr(0, open)) + std::string(numbers.substr(close + 1));
+        numbers = outside;
+      }
+      const std::vector<std::string_view> parts = split(numbers, ",");
+      for (const std::string_view item : parts) {
+        const std::string_view part = trimmed(item);
+        if (part.empty() && parts.size() > 1)
+          wrong("a list of residues with nothing between two commas");
+        const gemmi::Selection one("//*/" + std::string(part));
+        Range range{one.from_seqid, one.to_seqid};
+        // gemmi 0.5.7 takes "45" for "45-"; in MMDB syntax, and in later gemmi, it is that residue alone.
+        if (!range.first.empty() && range.last.empty() && part.back() != '-')
+          range.last = range.first;
+        if (range.first.empty() && range.last.empty()) {
+          ranges_.clear(); // all
+          break;
+        }
+        ranges_.push_back(range);
+      }
+    }
+    std::string atoms = has(3) ? std::string(field[3]) : "";
+    if (const size_t end = std::min(find_unquoted(atoms, "[:"), atoms.size());
+        atoms.substr(0, end).find(quote) != std::string::npos) {
+      atoms_ = read_list(std::string_view(atoms).substr(0, end), "[]()!/*-.:;");
+      atoms = "*" + atoms.substr(end);
+    }
+    rest_ = gemmi::Selection("/" + (has(0) ? std::string(field[0]) : "") + "/*/*" +
+                             (atoms.empty() ? "" : "/" + atoms) + extensions);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::invalid_argument& e) {
+    fail(status, where + ": found selection " + in_quotes(text) + " with " + e.what() +
+                     ", expected gemmi's syntax and names in double quotes");
   } catch (const std::exception& e) {
     fail(status, where + ": found selection " + in_quotes(text) + ", expected gemmi's syntax" + reason(e.what()));
   }
-  // gemmi 0.5.7 takes "45" for "45-"; in MMDB syntax, and in later gemmi, it is that residue alone.
-  if (!selection_.from_seqid.empty() && selection_.to_seqid.empty() && !is_open_range(cid))
-    selection_.to_seqid = selection_.from_seqid;
-  // The chain without a name is "_" here; gemmi's syntax leaves its place empty.
-  if (!selection_.chain_ids.all && selection_.chain_ids.list.empty())
-    selection_.chain_ids.list.assign(1, '_');
 }
 
 bool Selection::chain(const std::string& name, const std::string& copy) const {
-  const gemmi::Selection::List& list = selection_.chain_ids;
-  if (list.all)
+  if (chains_.all)
     return true;
-  const bool found = gemmi::is_in_list(name, list.list) || (copy != name && gemmi::is_in_list(copy, list.list));
-  return found != list.inverted;
+  const auto listed = [&](const std::string& n) {
+    if (chains_.has(n) != chains_.inverted)
+      return true;
+    std::string encoded;
+    percent_encode(encoded, n);
+    return encoded != n && chains_.has(encoded) != chains_.inverted;
+  };
+  return (listed(name) || (copy != name && listed(copy))) != chains_.inverted;
+}
+
+bool Selection::residue(const gemmi::Residue& r) const {
+  if (!residues_.has(r.name) || !rest_.matches(r))
+    return false;
+  return ranges_.empty() || std::any_of(ranges_.begin(), ranges_.end(), [&](const Range& range) {
+           return range.first.compare(r.seqid) <= 0 && range.last.compare(r.seqid) >= 0;
+         });
 }
 
 } // namespace molmesh::formats

@@ -4,37 +4,54 @@
 #include "base/error.hpp"
 #define USE_STD_SNPRINTF // gemmi's own wants stb_sprintf.h, which Debian's gemmi-dev lacks; only messages are
                          // printed
+#include <algorithm>
 #include <gemmi/select.hpp>
 #include <string>
+#include <vector>
 
 namespace molmesh::formats {
 
+/// A list of names in a selection: all, some, or all but some.
+struct NameList {
+  bool all = true, inverted = false;
+  std::vector<std::string> name;
+  bool has(const std::string& n) const {
+    return all || (std::find(name.begin(), name.end(), n) != name.end()) != inverted;
+  }
+};
+
 /// "SELECTION", or where allowed "around SELECTION DISTANCE": everything within DISTANCE (Å) of an atom of
-/// SELECTION.
+/// SELECTION. Beside gemmi's syntax: names of chains, residues and atoms in double quotes, chains' with dashes and
+/// dots without, lists of residue numbers and ranges (PDB.md).
 class Selection {
 public:
   /// Throws Error(status) "WHERE: …" when the syntax is wrong.
   Selection(const std::string& text, const std::string& where, bool around_allowed = false,
             Status status = Status::bad_input);
 
-  bool model(const gemmi::Model& m) const { return selection_.matches(m); }
-  /// name: in the file; copy: the unique name of one copy of an assembly. Either may be selected.
+  bool model(const gemmi::Model& m) const { return rest_.matches(m); }
+  /// name: in the file; copy: the unique name of one copy of an assembly. Either may be selected, as it is or as a
+  /// .hier has it (percent-encoded).
   bool chain(const std::string& name, const std::string& copy) const;
-  bool residue(const gemmi::Residue& r) const { return selection_.matches(r); }
-  bool atom(const gemmi::Atom& a) const { return selection_.matches(a); }
-  bool names_chains() const { return !selection_.chain_ids.all; }
-  bool names_residues() const { return !selection_.residue_names.all || numbers_residues(); }
-  bool numbers_residues() const { return !selection_.from_seqid.empty() || !selection_.to_seqid.empty(); }
+  bool residue(const gemmi::Residue& r) const;
+  bool atom(const gemmi::Atom& a) const { return rest_.matches(a) && atoms_.has(a.name); }
+  bool names_chains() const { return !chains_.all; }
+  bool names_residues() const { return !residues_.all || numbers_residues(); }
+  bool numbers_residues() const { return !ranges_.empty(); }
   /// Does it ask for what a .hier does not hold: other models than the first, alternative locations, occupancies …?
   bool beyond_hierarchy() const {
-    return selection_.mdl > 1 || !selection_.altlocs.all || !selection_.entity_types.all ||
-           !selection_.atom_inequalities.empty();
+    return rest_.mdl > 1 || !rest_.altlocs.all || !rest_.entity_types.all || !rest_.atom_inequalities.empty();
   }
   /// Å; negative when the selection is no "around".
   double around() const { return around_; }
 
 private:
-  gemmi::Selection selection_;
+  struct Range {
+    gemmi::Selection::SequenceId first, last;
+  };
+  gemmi::Selection rest_; ///< what the lists below leave to gemmi
+  NameList chains_, residues_, atoms_;
+  std::vector<Range> ranges_; ///< of residue numbers; empty: all
   double around_ = -1;
 };
 

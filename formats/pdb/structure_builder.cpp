@@ -1,0 +1,157 @@
+// structure_builder.cpp — a residue is a stretch of atoms, joined to an earlier one unless it repeats an atom.
+#include "formats/pdb/structure_builder.hpp"
+#include "molecule/words.hpp"
+#include <algorithm>
+#include <gemmi/polyheur.hpp>
+
+namespace molmesh::formats {
+namespace {
+
+/// Name and alternative location: what a residue has once.
+std::string label(const gemmi::Atom& a) {
+  return a.name + '\n' + a.altloc;
+}
+
+std::string_view field(std::string_view line, size_t at, size_t width) {
+  return at < line.size() ? trimmed(line.substr(at, width)) : std::string_view{};
+}
+
+} // namespace
+
+void StructureBuilder::open_model(const std::string& name) {
+  close_residue();
+  structure_.models.emplace_back(name);
+  chain_open_ = false;
+  chains_.clear();
+}
+
+void StructureBuilder::open_chain(std::string_view name) {
+  gemmi::Model& model = structure_.models.back();
+  const auto [first, is_new] = chains_.try_emplace(std::string(name), model.chains.size());
+  after_ter_ = !is_new && model.chains[first->second].residues[0].entity_type == gemmi::EntityType::Polymer;
+  model.chains.emplace_back(std::string(name));
+  chain_open_ = true;
+  slot_.clear();
+}
+
+void StructureBuilder::add(std::string_view name, const gemmi::ResidueId& id, bool hetero, bool has_number,
+                           gemmi::Atom atom) {
+  if (!chain_open_ || chain().name != name) {
+    close_residue();
+    open_chain(name);
+  }
+  const bool begins_again = !has_number && !stretch_.atoms.empty() && label(stretch_.atoms[0]) == label(atom);
+  if (begins_again || !stretch_.matches(id))
+    close_residue();
+  if (stretch_.atoms.empty()) {
+    static_cast<gemmi::ResidueId&>(stretch_) = id;
+    stretch_.het_flag = hetero ? 'H' : 'A';
+  }
+  stretch_.atoms.push_back(std::move(atom));
+}
+
+bool StructureBuilder::repeats(Slot& slot) const {
+  if (!slot.atoms) {
+    slot.atoms = std::make_unique<std::unordered_set<std::string>>();
+    for (const gemmi::Atom& a : structure_.models.back().chains.back().residues[slot.residue].atoms)
+      slot.atoms->insert(label(a));
+  }
+  return std::any_of(stretch_.atoms.begin(), stretch_.atoms.end(),
+                     [&](const gemmi::Atom& a) { return slot.atoms->count(label(a)) != 0; });
+}
+
+void StructureBuilder::close_residue() {
+  if (stretch_.atoms.empty())
+    return;
+  std::vector<gemmi::Residue>& residues = chain().residues;
+  const auto [found, is_new] = slot_.try_emplace(stretch_, Slot{residues.size(), nullptr});
+  Slot& slot = found->second;
+  if (!is_new && !repeats(slot)) {
+    for (gemmi::Atom& a : stretch_.atoms) {
+      slot.atoms->insert(label(a));
+      residues[slot.residue].atoms.push_back(std::move(a));
+    }
+    stretch_.atoms.clear();
+    return;
+  }
+  if (!is_new) {
+    ++restarted_;
+    slot = Slot{residues.size(), nullptr};
+  }
+  if (after_ter_)
+    stretch_.entity_type = stretch_.is_water() ? gemmi::EntityType::Water : gemmi::EntityType::NonPolymer;
+  residues.push_back(std::move(stretch_));
+  stretch_ = gemmi::Residue();
+}
+
+void StructureBuilder::end_polymer() {
+  close_residue();
+  if (!chain_open_ || after_ter_)
+    return;
+  for (gemmi::Residue& residue : chain().residues)
+    residue.entity_type = gemmi::EntityType::Polymer;
+  after_ter_ = true;
+}
+
+void StructureBuilder::add_sequence(std::string_view line) {
+  gemmi::Entity& entity = gemmi::impl::find_or_add(structure_.entities, std::string(field(line, 10, 2)));
+  entity.entity_type = gemmi::EntityType::Polymer;
+  for (size_t at = 19; at < 68; at += 4)
+    if (const std::string_view name = field(line, at, 3); !name.empty())
+      entity.full_sequence.emplace_back(name);
+}
+
+void StructureBuilder::finish() {
+  close_residue();
+  for (gemmi::Model& model : structure_.models)
+    for (gemmi::Chain& chain : model.chains)
+      if (chain.residues[0].entity_type != gemmi::EntityType::Unknown)
+        gemmi::assign_subchain_names(chain);
+  for (gemmi::Chain& chain : structure_.models[0].chains)
+    if (gemmi::Entity* const entity = structure_.get_entity(chain.name))
+      if (const auto polymer = chain.get_polymer())
+        entity->subchains.emplace_back(polymer.subchain_id());
+}
+
+int64_t part_restarted(gemmi::Structure& structure) {
+  int64_t restarted = 0;
+  const auto stands_apart = [](const gemmi::Residue& r) {
+    return !r.atoms.empty() && r.atoms.back().serial - r.atoms.front().serial >= static_cast<int>(r.atoms.size());
+  };
+  for (gemmi::Model& model : structure.models)
+    for (gemmi::Chain& chain : model.chains) {
+      if (std::none_of(chain.residues.begin(), chain.residues.end(), stands_apart))
+        continue;
+      std::vector<gemmi::Residue> parts;
+      for (gemmi::Residue& residue : chain.residues) {
+        std::vector<gemmi::Atom> atoms = std::move(residue.atoms);
+        residue.atoms.clear();
+        std::unordered_set<std::string> labels;
+        for (size_t begin = 0, end = 0; begin < atoms.size(); begin = end) {
+          for (end = begin + 1; end < atoms.size() && atoms[end].serial == atoms[end - 1].serial + 1;)
+            ++end;
+          const bool again = begin > 0 && std::any_of(atoms.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                      atoms.begin() + static_cast<std::ptrdiff_t>(end),
+                                                      [&](const auto& a) { return labels.count(label(a)) != 0; });
+          if (again) {
+            parts.push_back(residue);
+            residue.atoms.clear();
+            labels.clear();
+            ++restarted;
+          }
+          for (size_t a = begin; a < end; ++a) {
+            labels.insert(label(atoms[a]));
+            residue.atoms.push_back(std::move(atoms[a]));
+          }
+        }
+        parts.push_back(std::move(residue));
+      }
+      std::stable_sort(parts.begin(), parts.end(), [](const gemmi::Residue& a, const gemmi::Residue& b) {
+        return !a.atoms.empty() && !b.atoms.empty() && a.atoms[0].serial < b.atoms[0].serial;
+      });
+      chain.residues = std::move(parts);
+    }
+  return restarted;
+}
+
+} // namespace molmesh::formats
