@@ -133,6 +133,8 @@ Status run(Options& o, cli::Run& run) {
                            {"radius_0", r.no_radius}};
   run.counts["dropped"]["outside_assembly"] = r.unassembled;
   run.counts["dropped_charge"] = r.no_radius_charge;
+  run.counts["passed_over"] = nlohmann::json(r.passed_over);
+  run.counts["guessed_elements"] = nlohmann::json(r.guessed_elements);
   run.counts["unknown_elements"] = nlohmann::json::object();
   for (const auto& [element, unknown] : r.unknown_elements)
     run.counts["unknown_elements"][element] = unknown.atoms;

@@ -129,7 +129,8 @@ AtomLabels LabelColumns::of(std::string_view line) const {
   const auto field = [&](size_t at, size_t width) {
     return at < line.size() ? trimmed(line.substr(at, width)) : std::string_view{};
   };
-  labels.segment = field(segment_at, 4);
+  if (column(line, segment_at) != '.') // the decimals of a charge in PDBQT
+    labels.segment = field(segment_at, 4);
   if (is_wider(line)) {
     const std::vector<std::string_view> word = words(line.substr(residue_at, 10));
     labels.residue = word[0];

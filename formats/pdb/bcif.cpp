@@ -4,8 +4,8 @@
 #include "base/error.hpp"
 #include "formats/pdb/msgpack.hpp"
 #include "formats/pdb/parse.hpp"
+#include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -217,7 +217,7 @@ bool looks_like_bcif(std::string_view bytes) {
     return false;
   const auto first = static_cast<uint8_t>(bytes[0]);
   const std::string_view head = bytes.substr(0, 256);
-  return (first >= 0x80 && first < 0x90) &&
+  return ((first >= 0x80 && first < 0x90) || first == 0xDE || first == 0xDF) && // a map
          (head.find("dataBlocks") != std::string_view::npos ||
           (head.find("encoder") != std::string_view::npos && head.find("version") != std::string_view::npos));
 }

@@ -125,14 +125,15 @@ gemmi::Element autodock_element(std::string_view type) {
   return gemmi::Element(upper);
 }
 
-void ElementGuesses::add(std::string_view atom, std::string_view residue, gemmi::Element element) {
+void ElementGuesses::add(std::string_view atom, std::string_view residue, gemmi::Element element,
+                         bool of_one_letter) {
   ++all_;
   ++of_element_[element.name()];
   const std::string letters = letters_of(atom);
-  if (letters.size() < 2 || letters[0] == 'H')
+  if (letters.size() < 2 || letters[0] == 'H' || ion_element(atom, residue) != gemmi::El::X)
     return;
   const gemmi::Element pair(letters.substr(0, 2));
-  if (!pair.is_metal() && !element.is_metal())
+  if ((of_one_letter || !pair.is_metal()) && !element.is_metal())
     return;
   const gemmi::ResidueInfo info = gemmi::find_tabulated_residue(std::string(residue));
   if (!info.is_amino_acid() && !info.is_nucleic_acid() && !is_protonation_variant(residue))

@@ -30,7 +30,8 @@ gemmi::Element autodock_element(std::string_view type);
 /// Elements that the names told, counted; those of which the name could be a metal's are listed.
 class ElementGuesses {
 public:
-  void add(std::string_view atom, std::string_view residue, gemmi::Element element);
+  /// of_one_letter: the name stands where elements of one letter do.
+  void add(std::string_view atom, std::string_view residue, gemmi::Element element, bool of_one_letter = false);
   int64_t all() const { return all_; }
   /// Into parsed.guessed, and a note on the doubtful ones.
   void report(Parsed& parsed) const;

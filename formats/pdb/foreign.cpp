@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "formats/pdb/parse.hpp"
 #include "molecule/words.hpp"
+#include <algorithm>
 #include <array>
 
 namespace molmesh::formats {

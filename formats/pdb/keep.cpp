@@ -5,6 +5,7 @@
 #include "formats/pdb/selection.hpp"
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <unordered_map>
 
@@ -224,7 +225,7 @@ void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, Pd
     report.no_radius = drop_atoms(st, [&](Model, Chain, Residue) {
       return [&](Atom a) {
         const Parsed::Values& own = parsed.pqr[a.serial];
-        report.no_radius_charge += own.radius == 0 ? own.charge : 0;
+        report.no_radius_charge += own.radius == 0 && !std::isnan(own.charge) ? own.charge : 0;
         return own.radius == 0;
       };
     });

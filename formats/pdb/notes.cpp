@@ -1,5 +1,7 @@
 // notes.cpp — one sentence on what is kept, one on what is dropped, then the rest.
 #include "formats/pdb/notes.hpp"
+#include <algorithm>
+#include <cmath>
 
 namespace molmesh::formats {
 namespace {
@@ -25,8 +27,13 @@ void add_notes(PdbReport& report, const Parsed& parsed, const PdbOptions& option
   if (options.assembly != "none")
     kept += ", assembly " + options.assembly + " of " + std::to_string(report.copies) +
             (report.copies == 1 ? " copy" : " copies");
-  if (!parsed.pqr.empty() && options.own_radii)
-    kept += ", radii and charges of the file";
+  const auto gives = [&](double Parsed::Values::*value) {
+    return std::any_of(parsed.pqr.begin(), parsed.pqr.end(), [&](const auto& v) { return !std::isnan(v.*value); });
+  };
+  const bool radii = options.own_radii && gives(&Parsed::Values::radius), charges = gives(&Parsed::Values::charge);
+  if (radii || (charges && options.own_radii))
+    kept += std::string(", ") + (radii ? "radii" : "") + (radii && charges ? " and " : "") +
+            (charges ? "charges" : "") + " of the file";
   notes.push_back(kept);
 
   std::string dropped;

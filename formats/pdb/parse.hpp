@@ -16,9 +16,10 @@ inline constexpr size_t most_models = 9999;
 struct Parsed {
   gemmi::Structure structure;
   std::string format; ///< "PDB", "mmCIF", "mmJSON", "PQR"
-  /// PQR only, by gemmi::Atom::serial, which is then the index of the atom in the file.
+  /// Of formats that have charges or radii, by gemmi::Atom::serial, which is then the index of the atom in the
+  /// file.
   struct Values {
-    double charge, radius; ///< e, Å
+    double charge, radius; ///< e, Å; NaN: the file gives none
   };
   std::vector<Values> pqr;
   std::vector<std::string> notes;             ///< what the user should know about how the file was read

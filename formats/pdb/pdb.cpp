@@ -68,6 +68,8 @@ PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbO
     p.parsed = parse_structure(std::move(bytes), name, options.format, options.assembly);
   }
   p.report.format = p.parsed.format;
+  p.report.passed_over = p.parsed.passed_over;
+  p.report.guessed_elements = p.parsed.guessed;
   gemmi::Structure& st = p.parsed.structure;
   merge_chain_parts(st);
   if (needs_entities(options))

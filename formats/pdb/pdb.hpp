@@ -42,6 +42,8 @@ struct PdbReport {
     int64_t atoms = 0;
     std::string first; ///< "ATOM of RESIDUE CHAIN/NUMBER"
   };
+  std::map<std::string, int64_t> passed_over;      ///< lines or categories that are no atoms, by record or name
+  std::map<std::string, int64_t> guessed_elements; ///< that the file does not give, taken from the names
   std::map<std::string, Unknown> unknown_elements; ///< by element ("X": none known), given `unknown_radius`
   std::vector<std::string> notes;                  ///< all of the above that a user should know, a sentence each
 };

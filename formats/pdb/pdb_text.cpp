@@ -139,7 +139,7 @@ private:
       atom.element = written_element(line);
     } else {
       atom.element = element_in_columns(line.substr(12, 4), labels.residue);
-      guesses_.add(atom.name, labels.residue, atom.element);
+      guesses_.add(atom.name, labels.residue, atom.element, !is_letter(line[12]));
     }
     atom.serial = static_cast<int>(atoms_ - 1);
     if (types_ > 0) {

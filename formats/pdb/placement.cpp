@@ -69,7 +69,7 @@ Flat flatten(const Parsed& parsed, const std::string& file, const PdbOptions& op
           const Parsed::Values* own = parsed.pqr.empty() ? nullptr : &parsed.pqr[a.serial];
           if (own != nullptr)
             atom.charge = own->charge;
-          if (own != nullptr && options.own_radii) {
+          if (own != nullptr && options.own_radii && !std::isnan(own->radius)) {
             atom.radius = own->radius;
           } else if (const auto radius = options.radii.find(residue.name, a.name, a.element.name())) {
             atom.radius = *radius;

@@ -5,6 +5,7 @@
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/structure_builder.hpp"
 #include "molecule/words.hpp"
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <limits>

@@ -94,3 +94,80 @@ TEST_CASE("A selection finds the same atoms in the .hier as pdb2hier finds in th
         CHECK(all.atom[a].center == part.atom[b++].center);
   }
 }
+
+TEST_CASE(
+    "Chains of any name are selected as printed, or in double quotes, by every option that takes a selection") {
+  const std::string path = MOLMESH_SOURCE_DIR "/tests/data/cases/chain_names.cif";
+  const auto read = [&](const formats::PdbOptions& options) {
+    std::ifstream in(path);
+    std::stringstream out;
+    formats::PdbHierarchy(in, path, options).write(out);
+    return formats::read_hier(out, path);
+  };
+  const Hierarchy all = read({});
+  REQUIRE(all.level[0].group.size() == 9);
+  const auto is_chain = [&](const std::string& selection, const std::string& name) {
+    INFO(selection);
+    formats::PdbOptions options;
+    options.select = selection;
+    const Hierarchy part = read(options);
+    REQUIRE(part.level[0].group.size() == 1);
+    CHECK(part.level[0].group[0].name == name);
+    REQUIRE(part.atom.size() == 2);
+
+    options = {};
+    options.rules = {{selection, 0.7, {}, {}, "here", Status::usage}};
+    const Hierarchy ruled = read(options);
+    size_t sharp = 0;
+    for (const Group& residue : ruled.level[1].group)
+      sharp += residue.exponent == 0.7;
+    CHECK(sharp == 1);
+
+    options = {};
+    options.levels = {"domain", "chain", "residue"};
+    options.domains = formats::PdbOptions::Domains::file;
+    options.domain_parts = {{"one", selection, "here"}, {"rest", "//!" + selection.substr(2), "here"}};
+    const Hierarchy divided = read(options);
+    REQUIRE(divided.level[0].group.size() == 2);
+    CHECK(divided.level[1].group[divided.level[0].group[0].begin].name == name);
+
+    const std::vector<uint8_t> chosen = formats::select_atoms(all, selection, "here");
+    CHECK(std::accumulate(chosen.begin(), chosen.end(), size_t{0}) == 2);
+    const std::vector<uint8_t> lens = formats::select_atoms(all, "around " + selection + " 0.1", "here");
+    CHECK(lens == chosen);
+  };
+  for (const char* name : {"A", "A-2", "A.1", "A'"}) {
+    is_chain("//" + std::string(name), name);
+    is_chain("//\"" + std::string(name) + "\"", name);
+  }
+  for (const char* name : {"A,B", "A/1", "A B", "*"})
+    is_chain("//\"" + std::string(name) + "\"", name);
+  is_chain("//A%20B", "A B");
+  is_chain("//A\"", "A\"");       // a quote opens at the beginning of a name alone
+  is_chain("//\"A\"\"\"", "A\""); // within quotes it is written twice
+  const auto count = [&](const std::string& selection) {
+    const std::vector<uint8_t> chosen = formats::select_atoms(all, selection, "here");
+    return std::accumulate(chosen.begin(), chosen.end(), size_t{0});
+  };
+  CHECK(count("//A-2,\"A,B\"/2-3/CA") == 2);
+  CHECK(count("//!A,\"A/1\"") == 14);
+  CHECK(count("\"A,B\"/3/N") == 1);
+  CHECK(refusal("//\"A", all, Status::usage).find("without its second quote") != std::string::npos);
+  CHECK(refusal("//\"A\"B", all, Status::usage).find("behind a quoted name") != std::string::npos);
+  CHECK(refusal("//A(1)", all, Status::usage).find("needs double quotes") != std::string::npos);
+}
+
+TEST_CASE("Residues may be a list of numbers and ranges, their and atoms' names may be quoted") {
+  CHECK(selected("//*/1,2-9") == selected("//*/1-9"));
+  CHECK(selected("//A_1/1,2.A") == "0 1 2");
+  CHECK(selected("//A/1,2.A(ALA)") == "2");
+  CHECK(selected("//A_1/2.A,1/N,CA") == "0 1 2");
+  CHECK(selected("//*/(\"GLY\",odd)") == "0 1 3 5");
+  CHECK(selected("//*/*/\"N\"[N]") == "0");
+  CHECK(selected("1,2.A/CA") == "1 2 3");
+  CHECK(selected("around //A_1/1,2.A/CA 3.9") == "0 1 2");
+  for (const char* wrong : {"//A/1,,2", "//A/1,", "//A/1,x", "//A/1(GLY", "//A/1-2-3"}) {
+    INFO(wrong);
+    CHECK(refusal(wrong, hierarchy(), Status::usage).find("gemmi's syntax") != std::string::npos);
+  }
+}
