@@ -1,5 +1,5 @@
-// bcif.cpp — the encodings of BinaryCIF (D. Sehnal et al., PLoS Comput. Biol. 16 (2020) e1008247), undone last to
-// first.
+// bcif.cpp — the encodings of BinaryCIF are undone, last to first.
+// D. Sehnal et al., PLoS Comput. Biol. 16 (2020) e1008247.
 #include "formats/pdb/bcif.hpp"
 #include "base/error.hpp"
 #include "formats/pdb/msgpack.hpp"

@@ -1,4 +1,4 @@
-// gro.cpp — GROMACS' .gro: frames of a title, a number of atoms, their lines, a box. Lengths in nm become Å.
+// gro.cpp — GROMACS' .gro: frames of a title, a number of atoms, their lines and a box; nm become Å.
 #include "base/error.hpp"
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/parse.hpp"

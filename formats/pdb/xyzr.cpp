@@ -1,5 +1,4 @@
-// xyzr.cpp — MSMS' .xyzr: a sphere a line, x y z r (Å), perhaps with a number and NAME_RESIDUE_NUMBER behind
-// (.xyzrn).
+// xyzr.cpp — MSMS' .xyzr: lines x y z radius (Å), in .xyzrn with 1 NAME_RESIDUE_NUMBER behind.
 #include "base/error.hpp"
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/parse.hpp"
