@@ -59,7 +59,7 @@ TEST_CASE("chords of merged cells cut off little, whatever the tolerance, and la
   }
 }
 
-TEST_CASE("known shapes have their Euler numbers, components and volumes") {
+TEST_CASE("known shapes have their Euler numbers, components and volumes", "[slow]") {
   const auto torus = [](Vec3d x) {
     const double ring = std::hypot(x.x, x.y) - 4;
     return std::exp(1.5 * 1.5 - ring * ring - x.z * x.z);

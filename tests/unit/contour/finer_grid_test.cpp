@@ -106,7 +106,7 @@ TEST_CASE("half the spacing: blocks inside stay inside, and the same bytes at an
   CHECK(half.inside == threads.inside);
 }
 
-TEST_CASE("finer grids keep components and Euler number") {
+TEST_CASE("finer grids keep components and Euler number", "[slow]") {
   std::mt19937_64 random(12);
   int finer_ones = 0;
   for (int trial = 1; trial < 60; ++trial) {
@@ -256,7 +256,7 @@ TEST_CASE("bodies far apart keep their volume") {
   CHECK(std::fabs(result.fidelity.missing) < 0.005 * result.fidelity.volume);
 }
 
-TEST_CASE("half the spacing with the topology of the grid") {
+TEST_CASE("half the spacing with the topology of the grid", "[slow]") {
   std::mt19937_64 random(13);
   int other = 0, refused = 0;
   for (int trial = 0; trial < 100; ++trial) {

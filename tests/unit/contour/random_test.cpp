@@ -12,7 +12,7 @@ using namespace molmesh;
 using namespace molmesh::test;
 using contour::Options;
 
-TEST_CASE("random densities: always valid, ties with the isovalue among them") {
+TEST_CASE("random densities: always valid, ties with the isovalue among them", "[slow]") {
   std::mt19937_64 random(5);
   for (int trial = 0; trial < 36; ++trial) {
     const BlockGrid grid = random_grid(random, trial);

@@ -107,7 +107,7 @@ Seen compare(const BlockGrid& grid, const Options& o, int threads = 1, cuda::Byt
 
 } // namespace
 
-TEST_CASE("device stages: the host's, one by one, on random densities with ambiguous cells and ties") {
+TEST_CASE("device stages: the host's, one by one, on random densities with ambiguous cells and ties", "[slow]") {
   std::mt19937_64 random(5);
   contour::Summary sum;
   int64_t meshes = 0, dropped = 0, filled = 0;

@@ -137,7 +137,7 @@ TEST_CASE("a launcher's short loops run on the calling thread") {
   CHECK((elsewhere > 0) == par::has_threads());
 }
 
-TEST_CASE("memory that is asked for keeps what it and its neighbours hold") {
+TEST_CASE("memory that is asked for keeps what it and its neighbours hold", "[slow]") {
   std::vector<LargeArray<uint8_t>> array;
   const auto pattern = [](size_t a, size_t i) { return static_cast<uint8_t>(31 * a + i % 251); };
   for (const size_t n : {100u, 5000u, 200'000u, 3'000'001u, 9u}) {
