@@ -8,11 +8,11 @@
 #include "formats/report/optimization.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
-#include "mesh/carry.hpp"
+#include "mesh/attribute_transfer.hpp"
 #include "mesh/partition.hpp"
 #include "mesh/same_source.hpp"
-#include "mesh/worst.hpp"
-#include "molecule/nearest.hpp"
+#include "mesh/worst_elements.hpp"
+#include "molecule/hierarchy.hpp"
 #include "optimize/optimize.hpp"
 #include "tools/device_report.hpp"
 #include <optional>
@@ -66,7 +66,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.notes(described(notes));
   if (grid)
     require_same_source(mesh, !notes.isovalue_missing, grid->info, density->name());
-  const CarriedArrays arrays(mesh);
+  const AttributeTransfer arrays(mesh);
   run.counts.update({{"elements_before", mesh.tet.size()}, {"points_before", mesh.point.size()}});
   optimize::Options options{.iterations = o.iterations, .threads = threads, .measure_later = true};
   options.min_dihedral = std::max(options.min_dihedral, o.min_dihedral);

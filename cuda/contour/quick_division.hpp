@@ -5,7 +5,7 @@
 
 namespace molmesh::cuda {
 
-/// What spoke_quality divides by, which is positive: its bits are right where holds() is true in the end.
+/// What star_element_quality divides by, which is positive: its bits are right where holds() is true in the end.
 class QuickDivision {
 public:
   HD void invert(float x, float& out) {

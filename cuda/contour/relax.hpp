@@ -1,5 +1,5 @@
 // relax.hpp — contour::relax on a Backend: the host's passes; a team looks for a vertex's place, an element of its
-// star to each thread, in the order and with the rounding of Spokes.
+// star to each thread, in the order and with the rounding of StarQuality.
 #pragma once
 #include "contour/relaxation/relax_passes.hpp"
 #include "contour/surface_distance/far_division.hpp"
@@ -32,10 +32,11 @@ class TeamStar {
 public:
   static constexpr int most_places = StarShared::most_places;
 
-  /// spoke, quality: scratch for all stars, as MoveTeams has it.
-  HD TeamStar(const RelaxView& r, int32_t c, Team team, Spoke<float>* spoke, float* quality, StarShared& shared)
+  /// star_element, quality: scratch for all stars, as MoveTeams has it.
+  HD TeamStar(const RelaxView& r, int32_t c, Team team, StarElement<float>* star_element, float* quality,
+              StarShared& shared)
       : r_(r), team_(team), vertex_(r.vertex[c]), n_(static_cast<int32_t>(r.first[c + 1] - r.first[c])),
-        element_(r.element + r.first[c]), spoke_(spoke + r.first[c]), quality_(quality + r.first[c]),
+        element_(r.element + r.first[c]), star_element_(star_element + r.first[c]), quality_(quality + r.first[c]),
         shared_(shared), origin_(r.e.position[vertex_]) {
     int32_t first[2] = {n_, n_};
     for (int32_t k = team_.rank(); k < n_; k += Team::size)
@@ -48,11 +49,11 @@ public:
       }
     for (int32_t k = team_.rank(); k < n_; k += Team::size) {
       const bool meshed = is_meshed(k);
-      const Spoke<float> made =
-          make_spoke(local(corner(k, 1), meshed), local(corner(k, 2), meshed), local(corner(k, 3), meshed));
+      const StarElement<float> made =
+          make_star_element(local(corner(k, 1), meshed), local(corner(k, 2), meshed), local(corner(k, 3), meshed));
       if (k == team_.rank())
         mine_ = made, mine_meshed_ = meshed;
-      spoke_[k] = made;
+      star_element_[k] = made;
     }
     team_.sync();
   }
@@ -66,11 +67,11 @@ public:
     return sum / (3. * double(n_));
   }
 
-  HD TeamStar& spokes() { return *this; }
+  HD TeamStar& star_quality() { return *this; }
 
   HD float worst(Vec3d x, float) const {
     float least = 3e38f;
-    for_each_spoke([&](int32_t, bool meshed, const Spoke<float>& s) {
+    for_each_element([&](int32_t, bool meshed, const StarElement<float>& s) {
       const float q = evaluate(s, meshed, x);
       least = q < least ? q : least;
     });
@@ -85,7 +86,7 @@ public:
       for (float& l : least)
         l = 3e38f;
       const auto at = [&](int i) { return place[first + i < end ? first + i : end - 1]; };
-      for_each_spoke([&](int32_t, bool meshed, const Spoke<float>& s) {
+      for_each_element([&](int32_t, bool meshed, const StarElement<float>& s) {
         QuickDivision by; // no branches: the places are in flight together
         float here[at_once];
         for (int i = 0; i < at_once; ++i)
@@ -130,7 +131,7 @@ public:
   HD Vec3d ascent(Vec3d x, double step) {
     // Of equals the first, and one that is asked for before others.
     uint64_t least = ~uint64_t{0};
-    for_each_spoke([&](int32_t k, bool meshed, const Spoke<float>& s) {
+    for_each_element([&](int32_t k, bool meshed, const StarElement<float>& s) {
       uint32_t bits = std::bit_cast<uint32_t>(evaluate(s, meshed, x) + 0.0f); // in the numbers' order
       bits ^= bits >> 31 ? ~uint32_t{0} : uint32_t{1} << 31;
       const uint64_t key = uint64_t{bits} << 32 | uint32_t{!meshed} << 31 | static_cast<uint32_t>(k);
@@ -142,7 +143,7 @@ public:
     for (int s = team_.rank(); s < 6; s += Team::size) {
       Vec3f y = local(x, meshed);
       y[s / 2] = s % 2 ? y[s / 2] - d : y[s / 2] + d;
-      shared_.side[s] = quality(spoke_[worst], y);
+      shared_.side[s] = quality(star_element_[worst], y);
     }
     team_.sync();
     Vec3d g;
@@ -185,40 +186,40 @@ private:
   HD Vec3d corner(int32_t k, int i) const {
     const Tet& t = r_.e.tet[element_[k]];
     const int moving = t[0] == vertex_ ? 0 : t[1] == vertex_ ? 1 : t[2] == vertex_ ? 2 : 3;
-    return r_.e.position[t[spoke_corner(moving, i)]];
+    return r_.e.position[t[star_corner(moving, i)]];
   }
   HD Vec3f local(Vec3d x, bool meshed) const {
     const Vec3d u = (x - origin_) * inverse_[meshed];
     return {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z)};
   }
   template <class By = const Division>
-  HD float quality(const Spoke<float>& s, const Vec3f& y, By&& by = {}) const {
+  HD float quality(const StarElement<float>& s, const Vec3f& y, By&& by = {}) const {
     float q;
-    spoke_quality(s, y.x, y.y, y.z, q, static_cast<float>(r_.shape), by);
+    star_element_quality(s, y.x, y.y, y.z, q, static_cast<float>(r_.shape), by);
     return q;
   }
   /// With the vertex at x.
-  HD float evaluate(const Spoke<float>& s, bool meshed, Vec3d x) const {
+  HD float evaluate(const StarElement<float>& s, bool meshed, Vec3d x) const {
     return (meshed ? 1 : contour::unmeshed_weight) * quality(s, local(x, meshed));
   }
-  /// see(k, meshed, spoke) of this thread's elements.
+  /// see(k, meshed, star_element) of this thread's elements.
   template <class See>
-  HD void for_each_spoke(const See& see) const {
+  HD void for_each_element(const See& see) const {
     if (team_.rank() < n_)
       see(team_.rank(), mine_meshed_, mine_);
     for (int32_t k = team_.rank() + Team::size; k < n_; k += Team::size)
-      see(k, is_meshed(k), Spoke<float>(spoke_[k]));
+      see(k, is_meshed(k), StarElement<float>(star_element_[k]));
   }
 
   const RelaxView& r_;
   Team team_;
   int32_t vertex_, n_;
   const int32_t* element_;
-  Spoke<float>* spoke_; ///< [n]
-  float* quality_;      ///< [n]
+  StarElement<float>* star_element_; ///< [n]
+  float* quality_;                   ///< [n]
   StarShared& shared_;
   Vec3d origin_;
-  Spoke<float> mine_{}; ///< of the thread's first element
+  StarElement<float> mine_{}; ///< of the thread's first element
   bool mine_meshed_ = false;
   double inverse_[2] = {0, 0}; ///< of the unit of length, of either
 };
@@ -230,14 +231,14 @@ struct MoveTeams {
   double most_distance;
   const int32_t* active;
   Fate* fate;
-  Spoke<float>* spoke; ///< [star entries]
-  float* quality;      ///< [star entries]
+  StarElement<float>* star_element; ///< [star entries]
+  float* quality;                   ///< [star entries]
   using Shared = StarShared;
   template <class Team>
   HD void operator()(int64_t i, Team team, Shared& shared) const {
     if (fate[i] != Fate::stays)
       return;
-    TeamStar<Team> star(r, active[i], team, spoke, quality, shared);
+    TeamStar<Team> star(r, active[i], team, star_element, quality, shared);
     if (contour::move_vertex(r, surface, most_distance, active[i], star) && team.rank() == 0)
       fate[i] = Fate::moves;
   }
@@ -249,14 +250,14 @@ struct MoveNearerTeams {
   IsosurfaceView surface;
   const int32_t* active;
   Fate* fate;
-  Spoke<float>* spoke; ///< [star entries]
-  float* quality;      ///< [star entries]
+  StarElement<float>* star_element; ///< [star entries]
+  float* quality;                   ///< [star entries]
   using Shared = StarShared;
   template <class Team>
   HD void operator()(int64_t i, Team team, Shared& shared) const {
     if (fate[i] != Fate::stays)
       return;
-    TeamStar<Team> star(v.r, active[i], team, spoke, quality, shared);
+    TeamStar<Team> star(v.r, active[i], team, star_element, quality, shared);
     if (contour::move_nearer_or_make_room(v, surface, active[i], star) && team.rank() == 0)
       fate[i] = Fate::moves;
   }
@@ -274,12 +275,12 @@ public:
   }
   void begin(const RelaxView&, int64_t candidates, int64_t entries) {
     entries_ = double(entries) / double(candidates);
-    spoke_ = b_.template array<Spoke<float>>(entries);
+    star_element_ = b_.template array<StarElement<float>>(entries);
     quality_ = b_.template array<float>(entries);
   }
   void move(const RelaxView& r, const int32_t* active, int64_t n, Fate* fate, double most_distance) {
     b_.for_teams("move vertices", n,
-                 MoveTeams{r, surface_.view(), most_distance, active, fate, spoke_.data(), quality_.data()},
+                 MoveTeams{r, surface_.view(), most_distance, active, fate, star_element_.data(), quality_.data()},
                  {double(n) * entries_ * 112});
   }
   void measure(const contour::ElementsView& e, float* off) {
@@ -288,7 +289,7 @@ public:
   }
   void move_nearer(const contour::NearerView& v, const int32_t* active, int64_t n, Fate* fate) {
     b_.for_teams("move nearer", n,
-                 MoveNearerTeams{v, surface_.view(), active, fate, spoke_.data(), quality_.data()},
+                 MoveNearerTeams{v, surface_.view(), active, fate, star_element_.data(), quality_.data()},
                  {double(n) * entries_ * 112});
   }
   int64_t divide(std::vector<contour::FarPatch>& patches, const RelaxView& r) {
@@ -301,7 +302,7 @@ private:
   DeviceIsosurface<Backend> surface_;
   int threads_;
   double entries_ = 0; ///< of a star, in the mean
-  typename Backend::template Array<Spoke<float>> spoke_;
+  typename Backend::template Array<StarElement<float>> star_element_;
   typename Backend::template Array<float> quality_;
 };
 

@@ -1,4 +1,4 @@
-// band_items.hpp — which blocks must be known for the band, which points are in it, and the band packed.
+// band_items.hpp — tells which blocks the band needs and which points are in it, and packs them.
 #pragma once
 #include "cuda/density/block_key.hpp"
 

@@ -1,6 +1,6 @@
-// density.cu — the search on the GPU.
+// density.cu — runs the neighboring search on the GPU.
 #include "cuda/density/density.hpp"
-#include "cuda/density/search.hpp"
+#include "cuda/density/neighboring_search.hpp"
 #include "cuda/par/device.cuh"
 
 namespace molmesh::cuda {

@@ -1,4 +1,4 @@
-// density.hpp — hier2density --mode cuda.
+// density.hpp — computes the density on the GPU (hier2density --mode cuda).
 #pragma once
 #include "cuda/par/backend.hpp"
 #include "density/density.hpp"

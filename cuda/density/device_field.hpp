@@ -1,6 +1,6 @@
-// device_field.hpp — the field and the molecule's boxes in a Backend's memory.
+// device_field.hpp — the field and the molecule's bounding volume hierarchy in a Backend's memory.
 #pragma once
-#include "cuda/density/molecule_tree.hpp"
+#include "cuda/density/bvh.hpp"
 #include "cuda/par/backend.hpp"
 #include <algorithm>
 #include <cmath>
@@ -51,7 +51,7 @@ public:
       d.exponent[l] = up(exponent_[l], f.level[l].exponent);
       d.parent[l] = up(parent_[l], f.level[l].parent);
     }
-    const std::vector<TreeNode> tree = molecule_tree(f);
+    const std::vector<BvhNode> tree = bvh(f);
     d.node = up(node_, tree);
     d.nodes = static_cast<int32_t>(tree.size());
   }
@@ -61,7 +61,7 @@ private:
   Array<double> x_, y_, z_, peak_, ln_peak_, cutoff2_, exponent_[FieldView::most_levels];
   Array<int64_t> begin_, group_, parent_[FieldView::most_levels];
   Array<Box> box_;
-  Array<TreeNode> node_;
+  Array<BvhNode> node_;
 };
 
 } // namespace molmesh::cuda

@@ -1,7 +1,7 @@
-// known_blocks.hpp — what a wave has found out, the blocks that the band still needs, and the band on its way to
-// the host.
+// known_blocks.hpp — keeps what waves have found, lists the blocks that the band still needs, and brings the band
+// to the host.
 #pragma once
-#include "cuda/density/search_items.hpp"
+#include "cuda/density/neighboring_search_items.hpp"
 #include "cuda/par/run_copy.hpp"
 #include "grid/band.hpp"
 #include "par/pages.hpp"

@@ -1,7 +1,6 @@
-// log_sum.hpp — sums of exponentials of any size, kept as their logarithm, and their way up the levels of the
-// field.
+// log_sum.hpp — adds exponentials of any size as logarithms, and takes the sums up the levels of the field.
 #pragma once
-#include "cuda/density/molecule_tree.hpp"
+#include "cuda/density/bvh.hpp"
 #include <cmath>
 
 namespace molmesh::cuda {

@@ -1,8 +1,8 @@
-// near_clusters.hpp — the clusters near cubes of a few blocks, found once through the molecule's boxes: a block's
-// own are among its cube's, which a team looks through side by side.
+// near_clusters.hpp — finds the clusters near cubes of a few blocks once, through the molecule's boxes; a block's
+// own are among its cube's, which a team of threads looks through side by side.
 #pragma once
 #include "cuda/density/block_key.hpp"
-#include "cuda/density/molecule_tree.hpp"
+#include "cuda/density/bvh.hpp"
 
 namespace molmesh::cuda {
 

@@ -1,4 +1,4 @@
-// backend.hpp — what an algorithm asks of the machine it runs on, and how its time is told.
+// backend.hpp — what an algorithm asks of the machine it runs on, and how its time is measured.
 //
 // An algorithm of this folder is a template over a Backend: par/host.hpp (threads of the host, in every build and
 // in the tests) or par/device.cuh (one GPU). Both are a par::Launcher (par/launcher.hpp), whose arrays are freed in

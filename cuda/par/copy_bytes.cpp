@@ -1,4 +1,4 @@
-// copy_bytes.cpp — a mebibyte a thread at a time.
+// copy_bytes.cpp — copies a mebibyte at a time on each thread.
 #include "cuda/par/copy_bytes.hpp"
 #include "par/par.hpp"
 #include <algorithm>

@@ -1,4 +1,4 @@
-// copy_bytes.hpp — memory to memory by the host's threads, for files that are compiled without OpenMP.
+// copy_bytes.hpp — copies memory by the host's threads, for files that are compiled without OpenMP.
 #pragma once
 #include <cstddef>
 #include <cstdint>

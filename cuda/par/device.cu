@@ -1,4 +1,4 @@
-// device.cu — the driver, the device and the host's memory, asked once.
+// device.cu — asks the driver for the device and the host's memory, once.
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "cuda/par/device.hpp"

@@ -1,4 +1,4 @@
-// device.hpp — is there a GPU. The only part of this room that the tools' start sees.
+// device.hpp — tells whether there is a GPU. Programs include no other file of this room before they need it.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -1,4 +1,4 @@
-// device_memory.cuh — the device's memory in the order of a stream, and pages of the host's beside it.
+// device_memory.cuh — allocates the device's memory in the order of a stream, and pages of the host beside it.
 #pragma once
 #include "cuda/par/backend.hpp"
 #include "cuda/par/device.hpp"

@@ -1,4 +1,4 @@
-// handles.cuh — checked calls; streams, events and page-locked memory that give themselves back.
+// handles.cuh — checks calls; owns streams, events and page-locked memory.
 #pragma once
 #include "base/error.hpp"
 #include <algorithm>

@@ -1,4 +1,5 @@
-// host.hpp — the device's algorithms on the host's threads: the same text, so that tests cover it without a GPU.
+// host.hpp — runs the device's algorithms on the host's threads: the same text, so that tests cover it without a
+// GPU.
 #pragma once
 #include "cuda/par/backend.hpp"
 #include "par/par.hpp"

@@ -1,4 +1,4 @@
-// ledger.hpp — the bytes that arrays take of a device's memory and, where that does not suffice, of the host's.
+// ledger.hpp — counts the bytes that arrays take of the device's memory and, beyond it, of the host's.
 #pragma once
 #include "base/error.hpp"
 #include <algorithm>

@@ -1,4 +1,4 @@
-// run_copy.hpp — arrays on their way to the host in runs: a run is copied while the next one is made.
+// run_copy.hpp — copies arrays to the host in runs: one run is copied while the next is made.
 #pragma once
 #include "cuda/par/backend.hpp"
 #include "cuda/par/copy_bytes.hpp"

@@ -1,5 +1,4 @@
-// aligned_vector.hpp — arrays of numbers for the kernels. They begin on a cache line, so that no vector of 16 lies
-// on two.
+// aligned_vector.hpp — a vector that begins on a cache line, so that no SIMD vector of 16 floats lies on two.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -9,14 +8,14 @@
 namespace molmesh {
 
 template <class T>
-struct LineAllocator : std::allocator<T> {
+struct CacheLineAllocator : std::allocator<T> {
   template <class U>
   struct rebind {
-    using other = LineAllocator<U>;
+    using other = CacheLineAllocator<U>;
   };
-  LineAllocator() = default;
+  CacheLineAllocator() = default;
   template <class U>
-  LineAllocator(const LineAllocator<U>&) {}
+  CacheLineAllocator(const CacheLineAllocator<U>&) {}
   T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), line)); }
   void deallocate(T* p, std::size_t) { ::operator delete(p, line); }
 
@@ -25,7 +24,7 @@ private:
 };
 
 template <class T>
-using Numbers = std::vector<T, LineAllocator<T>>;
-using Floats = Numbers<float>;
+using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
+using AlignedFloats = AlignedVector<float>;
 
 } // namespace molmesh

@@ -1,4 +1,4 @@
-// array.hpp — a vector with a signed index.
+// array.hpp — a vector whose index may be signed.
 #pragma once
 #include <cassert>
 #include <concepts>

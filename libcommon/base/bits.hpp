@@ -1,4 +1,4 @@
-// bits.hpp — the bits of a word. Host and device.
+// bits.hpp — counts and finds the bits of a word. Host and device.
 #pragma once
 #include "base/hd.hpp"
 #include <cstdint>

@@ -1,4 +1,4 @@
-// control_groups.cpp — /proc/self/cgroup, lines of number:controllers:group; version 2 names no controllers.
+// control_groups.cpp — reads /proc/self/cgroup: lines number:controllers:group; version 2 names no controllers.
 #include "base/control_groups.hpp"
 #include <fstream>
 

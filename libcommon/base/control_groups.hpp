@@ -1,4 +1,4 @@
-// control_groups.hpp — the limits that containers and batch systems set to this process.
+// control_groups.hpp — finds the limits that containers and batch systems set to this process.
 #pragma once
 #include <filesystem>
 #include <functional>

@@ -1,4 +1,4 @@
-// dispatch.hpp — kernels for this machine's instruction set, found without a call into Highway for every call.
+// dispatch.hpp — calls the SIMD code for this machine's instruction set, without a call into Highway each time.
 #pragma once
 #include <hwy/targets.h>
 

@@ -1,4 +1,4 @@
-// lanes.hpp — formulas for one place and for many, a place in each lane. Host and device.
+// lanes.hpp — formulas that work on one place, or on several with one in each SIMD lane. Host and device.
 // In them V is double or one of the compiler's vectors, whose bits are the scalar's, lane by lane. Vectors come and
 // go by reference: what they look like as arguments depends on the processor. Square roots, which compilers have no
 // operator for, are left to the caller.

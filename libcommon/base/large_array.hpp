@@ -1,6 +1,7 @@
-// large_array.hpp — a vector for arrays of many megabytes: resizing does not touch them.
+// large_array.hpp — a vector for arrays of many megabytes, whose resizing does not touch them.
 // Its pages are large ones where the system grants them: they are filled several times as fast, unless a virtual
-// machine's host has to fetch them, and walks over scattered elements miss fewer translations (docs/experiments.md).
+// machine's host has to fetch them, and walks over scattered elements miss fewer translations
+// (docs/experiments.md).
 #pragma once
 #include "base/array.hpp"
 #include <atomic>

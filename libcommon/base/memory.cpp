@@ -1,4 +1,4 @@
-// memory.cpp — /proc/meminfo and the memory controllers of control groups, versions 1 and 2.
+// memory.cpp — reads /proc/meminfo and the memory controllers of control groups, versions 1 and 2.
 #include "base/memory.hpp"
 #include <algorithm>
 #include <fstream>

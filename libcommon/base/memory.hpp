@@ -1,4 +1,4 @@
-// memory.hpp — how much memory there is, and a process that asks for no more.
+// memory.hpp — measures the memory at hand and limits the process to it.
 #pragma once
 #include "base/control_groups.hpp"
 #include <cstdint>

@@ -1,8 +1,8 @@
-// density.cpp — field, frame, search, in that order.
+// density.cpp — makes the field and the grid frame, then searches the band.
 #include "density/density.hpp"
 #include "base/error.hpp"
-#include "density/culling/selection.hpp"
-#include "density/field/frame.hpp"
+#include "density/culling/block_atoms.hpp"
+#include "density/field/margin.hpp"
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -1,4 +1,4 @@
-// density.hpp — the room's front door: a hierarchy and options to the sparse density grid.
+// density.hpp — computes the sparse density grid of a hierarchy: the front door of this room.
 #pragma once
 #include "density/band/neighboring_search.hpp"
 #include "molecule/hierarchy.hpp"

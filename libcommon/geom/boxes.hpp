@@ -1,5 +1,5 @@
-// boxes.hpp — boxes in single precision, rounded outwards, and eight of them side by side: many are looked through,
-// and few are met.
+// boxes.hpp — boxes in single precision, rounded outwards, one at a time and eight side by side for searches
+// that look at many and meet few.
 #pragma once
 #include "geom/vec.hpp"
 #include <algorithm>

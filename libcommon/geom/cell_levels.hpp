@@ -1,5 +1,5 @@
-// cell_levels.hpp — boxes of any size in grids of cells: each in the grid whose cells fit it, so that a few cells
-// hold it. Level l has cells of 4^l times the size.
+// cell_levels.hpp — sorts boxes of any size into grids of cells, each into the grid whose cells fit it, so that a
+// few cells hold it. Level l has cells of 4^l times the size.
 #pragma once
 #include "geom/vec.hpp"
 #include <algorithm>

@@ -1,5 +1,5 @@
-// double_lanes-inl.hpp — up to eight numbers in double precision side by side, for kernels whose formulas are the
-// device's text too. Included once per instruction set by Highway's foreach_target.
+// double_lanes-inl.hpp — up to eight doubles side by side, for formulas whose text is the device's too. Included
+// once per instruction set by Highway's foreach_target.
 #if defined(MOLMESH_DOUBLE_LANES) == defined(HWY_TARGET_TOGGLE)
 #ifdef MOLMESH_DOUBLE_LANES
 #undef MOLMESH_DOUBLE_LANES

@@ -1,4 +1,4 @@
-// hilbert.hpp — the Hilbert curve: points beside each other on it are beside each other in space.
+// hilbert.hpp — orders points along the Hilbert curve: neighbors on it are neighbors in space.
 // After J. Skilling, Programming the Hilbert curve, AIP Conf. Proc. 707 (2004).
 #pragma once
 #include "geom/morton.hpp"

@@ -1,4 +1,5 @@
-// intersect.hpp — do two triangles of a mesh meet elsewhere than in their common corners and edges? Exact.
+// intersect.hpp — tells exactly whether two triangles of a mesh meet elsewhere than in their common corners and
+// edges.
 #pragma once
 #include "geom/predicates.hpp"
 #include <array>

@@ -1,4 +1,4 @@
-// morton.hpp — the Z-order curve: 21 bits an axis, x in the lowest place.
+// morton.hpp — orders points along the Z-order (Morton) curve: 21 bits an axis, x in the lowest place.
 #pragma once
 #include "geom/vec.hpp"
 #include <cstdint>

@@ -1,4 +1,4 @@
-// near_points.hpp — is a place within a distance of one of many points?
+// near_points.hpp — tells whether a place lies within a distance of one of many points.
 #pragma once
 #include "geom/vec.hpp"
 #include <algorithm>

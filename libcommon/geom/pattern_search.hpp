@@ -1,4 +1,4 @@
-// pattern_search.hpp — pattern search for the place of one vertex where its worst element is best.
+// pattern_search.hpp — finds the place of a vertex where the worst element of its star is best, by pattern search.
 // The worst quality is not smooth where two elements tie, so steps are tried, not derived: first along the gradient
 // of the worst element, then along a fixed set of directions, with halving step lengths.
 #pragma once
@@ -13,8 +13,9 @@ inline constexpr double finest_step = 0.01;
 /// Raises best = worth.worst(x) by moving x until it reaches the goal or no step helps. `basis`: up to three
 /// orthonormal directions to search. constrain(y) moves a trial onto what the vertex is bound to, or refuses;
 /// constrain.all(y, n), where there is one, does so to n trials and puts those not refused in front, in order; it
-/// returns how many. accept(y) has the last word. Worth: worst() and ascent() as in Spokes, and first_above() where
-/// that is faster than asking one by one. Steps under `least_step` of the length are not tried. Host and device.
+/// returns how many. accept(y) has the last word. Worth: worst() and ascent() as in StarQuality, and first_above()
+/// where that is faster than asking one by one. Steps under `least_step` of the length are not tried. Host and
+/// device.
 template <class Worth, class Constrain, class Accept>
 HD bool pattern_search(Worth& worth, Vec3d& x, float& best, float goal, double length, const Vec3d* basis,
                        int dimensions, Constrain constrain, Accept accept, double least_step = finest_step) {

@@ -1,4 +1,4 @@
-// predicates.hpp — exact orientation of four points. Host and device.
+// predicates.hpp — computes the exact orientation of four points. Host and device.
 #pragma once
 #include "geom/expansion.hpp"
 #include "geom/vec.hpp"

@@ -1,14 +1,14 @@
-// star_quality.cpp — from corners to the kernels' groups.
+// star_quality.cpp — groups the corners of elements for SIMD.
 #include "geom/star_quality.hpp"
 #include <algorithm>
 
 namespace molmesh {
 
-void Spokes::add(const std::array<Vec3d, 4>& p, int moving) {
-  const auto corner = [&](int i) { return p[spoke_corner(moving, i)]; };
+void StarQuality::add(const std::array<Vec3d, 4>& p, int moving) {
+  const auto corner = [&](int i) { return p[star_corner(moving, i)]; };
   if (inverse_ == 0)
     inverse_ = 1 / std::max(norm(corner(1) - corner(2)), 1e-300);
-  const auto lane = order_.size() % SpokeGroup::lanes;
+  const auto lane = order_.size() % StarElementGroup::lanes;
   if (lane == 0) {
     if (!made_)
       make_last_group();
@@ -21,18 +21,18 @@ void Spokes::add(const std::array<Vec3d, 4>& p, int moving) {
   order_.push_back(static_cast<int32_t>(order_.size()));
 }
 
-void Spokes::make_last_group() {
-  const size_t used = (order_.size() - 1) % SpokeGroup::lanes + 1;
+void StarQuality::make_last_group() {
+  const size_t used = (order_.size() - 1) % StarElementGroup::lanes + 1;
   for (double* const field : last_.field)
-    std::fill(field + used, field + SpokeGroup::lanes, field[0]);
-  make_spokes(last_, origin_, inverse_, group_.back());
+    std::fill(field + used, field + StarElementGroup::lanes, field[0]);
+  make_star_elements(last_, origin_, inverse_, group_.back());
   made_ = true;
 }
 
-Vec3d Spokes::ascent(Vec3d x, double step, float* worst_quality) {
+Vec3d StarQuality::ascent(Vec3d x, double step, float* worst_quality) {
   const Vec3f y = local(x);
-  quality_.resize(group_.size() * SpokeGroup::lanes);
-  judge_spokes(view(), y, quality_.data());
+  quality_.resize(group_.size() * StarElementGroup::lanes);
+  star_qualities(view(), y, quality_.data());
   const auto worst = std::min_element(quality_.begin(), quality_.begin() + static_cast<std::ptrdiff_t>(size()));
   std::swap(*std::find(order_.begin(), order_.end(), static_cast<int32_t>(worst - quality_.begin())),
             order_.front());
@@ -48,7 +48,7 @@ Vec3d Spokes::ascent(Vec3d x, double step, float* worst_quality) {
   return length > 0 ? g / length : Vec3d{};
 }
 
-int Spokes::first_above(const Vec3d* y, int from, int n, float above, float& q) {
+int StarQuality::first_above(const Vec3d* y, int from, int n, float above, float& q) {
   Places places;
   for (int k = from; k < n; ++k) {
     const Vec3f u = local(y[k]);

@@ -1,4 +1,4 @@
-// star_quality.hpp — the elements at a vertex that moves: their worst quality, many elements or places at a time.
+// star_quality.hpp — the worst quality of the elements at a moving vertex, for many elements or places at a time.
 #pragma once
 #include "geom/star_quality_simd.hpp"
 #include "geom/tet_quality.hpp"
@@ -9,7 +9,7 @@
 namespace molmesh {
 
 /// Single precision relative to where the vertex began: for comparing places. What is taken is judged in double.
-class Spokes {
+class StarQuality {
 public:
   static constexpr int most_places = Places::most; ///< of first_above
   /// Lengths are measured from `origin` in units of the first element's first edge. shape: as tet_quality has it.
@@ -26,7 +26,7 @@ public:
   void add(const std::array<Vec3d, 4>& p, int moving);
   size_t size() const { return order_.size(); }
   /// Smallest quality with the vertex at x, or some value ≤ above as soon as elements are no better than that.
-  float worst(Vec3d x, float above) { return worst_spoke(view(), local(x), above); }
+  float worst(Vec3d x, float above) { return worst_in_star(view(), local(x), above); }
   /// Direction (unit) in which the worst element at x, of equals the first, improves fastest, by differences over
   /// `step`; zero when flat. worst: its quality. Not of an empty star.
   Vec3d ascent(Vec3d x, double step, float* worst = nullptr);
@@ -35,7 +35,7 @@ public:
 
 private:
   void make_last_group();
-  SpokesView view() {
+  StarView view() {
     if (!made_)
       make_last_group();
     return {group_.data(), static_cast<int32_t>(order_.size()), order_.data(), &decided_, shape_};
@@ -48,9 +48,9 @@ private:
   float shape_ = 0;
   double inverse_ = 0; ///< of the unit of length
   int32_t decided_ = 0;
-  std::vector<SpokeGroup> group_;
-  SpokeCorners last_; ///< of the last group
-  bool made_ = true;  ///< the last group is, from all of last_
+  std::vector<StarElementGroup> group_;
+  StarCorners last_; ///< of the last group
+  bool made_ = true; ///< the last group is, from all of last_
   std::vector<int32_t> order_;
   std::vector<float> quality_;
 };

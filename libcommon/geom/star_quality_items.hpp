@@ -1,13 +1,13 @@
-// star_quality_items.hpp — tet_quality of elements at a vertex that moves, in single precision. Host and device.
+// star_quality_items.hpp — the quality of an element at a moving vertex, in single precision. Host and device.
 #pragma once
 #include "geom/tet_quality.hpp"
 
 namespace molmesh {
 
-/// What does not move of an element (vertex, a, b, c), which is positive. V: float, or one of the compiler's
-/// vectors with an element in each lane.
+/// An element (vertex, a, b, c) of a vertex star, of positive volume: what does not change as the vertex moves. V:
+/// float, or one of the compiler's vectors with an element in each lane.
 template <class V>
-struct Spoke {
+struct StarElement {
   V ax, ay, az, bx, by, bz, cx, cy, cz;
   V nx, ny, nz, r; ///< normal of a b c, twice its area long, and 1 / |n|²
   V ab, bc, ca;    ///< squared edges
@@ -15,7 +15,7 @@ struct Spoke {
 
 /// From its corners.
 template <class V>
-HD __attribute__((always_inline)) inline void complete(Spoke<V>& s) {
+HD __attribute__((always_inline)) inline void complete(StarElement<V>& s) {
   const V ux = s.bx - s.ax, uy = s.by - s.ay, uz = s.bz - s.az, vx = s.cx - s.ax, vy = s.cy - s.ay,
           vz = s.cz - s.az;
   const V wx = s.cx - s.bx, wy = s.cy - s.by, wz = s.cz - s.bz;
@@ -28,18 +28,18 @@ HD __attribute__((always_inline)) inline void complete(Spoke<V>& s) {
   s.ca = vx * vx + vy * vy + vz * vz;
 }
 
-HD inline Spoke<float> make_spoke(Vec3f a, Vec3f b, Vec3f c) {
-  Spoke<float> s{a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, 0, 0, 0, 0, 0, 0, 0};
+HD inline StarElement<float> make_star_element(Vec3f a, Vec3f b, Vec3f c) {
+  StarElement<float> s{a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, 0, 0, 0, 0, 0, 0, 0};
   complete(s);
   return s;
 }
 
 /// Corners of an element with the vertex `moving` in front, the others in an even permutation.
-HD constexpr int spoke_corner(int moving, int i) {
+HD constexpr int star_corner(int moving, int i) {
   return (moving == 0 ? 0x3210 : moving == 1 ? 0x2301 : moving == 2 ? 0x1032 : 0x0123) >> (4 * i) & 3;
 }
 
-/// 1 / x and a / x, as spoke_quality asks for them.
+/// 1 / x and a / x, as star_element_quality asks for them.
 struct Division {
   template <class V>
   HD __attribute__((always_inline)) inline void invert(const V& x, V& out) const {
@@ -55,8 +55,9 @@ struct Division {
 /// float: elements in the lanes, or places. A lane's bits are the scalar's. Vectors come and go by reference: what
 /// they look like as arguments depends on the processor.
 template <class S, class X, class V, class By = const Division>
-HD __attribute__((always_inline)) inline void spoke_quality(const Spoke<S>& s, const X& x, const X& y, const X& z,
-                                                            V& q, float q_weight, By&& division = {}) {
+HD __attribute__((always_inline)) inline void star_element_quality(const StarElement<S>& s, const X& x, const X& y,
+                                                                   const X& z, V& q, float q_weight,
+                                                                   By&& division = {}) {
   const V ax = s.ax - x, ay = s.ay - y, az = s.az - z;
   const V bx = s.bx - x, by = s.by - y, bz = s.bz - z;
   const V cx = s.cx - x, cy = s.cy - y, cz = s.cz - z;

@@ -1,4 +1,5 @@
-// tet_quality.hpp — how good a tetrahedron is: its worst dihedral angle, or that it is a needle.
+// tet_quality.hpp — the quality of a tetrahedron: its worst dihedral angle or, for needles, the measure of Joe and
+// Liu.
 #pragma once
 #include "geom/vec.hpp"
 #include <algorithm>

@@ -1,4 +1,4 @@
-// vec.hpp — three numbers: positions (Å) and grid indices. Host and device.
+// vec.hpp — vectors of three numbers: positions (Å) and grid indices. Host and device.
 #pragma once
 #include "base/hd.hpp"
 #include <cmath>

@@ -1,4 +1,4 @@
-// band.cpp — the band unpacked.
+// band.cpp — unpacks the band.
 #include "grid/band.hpp"
 #include "grid/pack_simd.hpp"
 #include "par/par.hpp"

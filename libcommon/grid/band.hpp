@@ -1,4 +1,4 @@
-// band.hpp — the band, packed: what the search finds and the file holds.
+// band.hpp — the band, packed: what the neighboring search finds and the file holds.
 // A cell is a band cell when its corners are neither all below band_lower nor all above band_upper.
 #pragma once
 #include "grid/block_grid.hpp"

@@ -1,4 +1,4 @@
-// block_grid.cpp — filling the block hash; values at any index.
+// block_grid.cpp — fills the block hash; looks up values at any index.
 #include "grid/block_grid.hpp"
 
 namespace molmesh {

@@ -1,5 +1,5 @@
-// block_grid.hpp — the density on the grid points near the surface, in blocks of 8³; everything else is a side.
-// What hier2density makes, the .vdb file holds and density2tet reads (docs/conventions.md).
+// block_grid.hpp — the density on the grid points near the surface, in blocks of 8³; all other points have a side
+// alone. What hier2density makes, the .vdb file holds and density2tet reads (docs/conventions.md).
 #pragma once
 #include "base/large_array.hpp"
 #include "geom/vec.hpp"

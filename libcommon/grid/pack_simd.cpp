@@ -15,9 +15,11 @@ namespace HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
+#if HWY_TARGET <= HWY_AVX2
 using F = hn::CappedTag<float, 16>;
 constexpr F f{};
 constexpr int32_t lanes = static_cast<int32_t>(HWY_MIN(16, HWY_LANES(float)));
+#endif
 
 int32_t pack_active_simd(const float* v, const uint64_t* active, float* out) {
   float* const begin = out;

@@ -1,5 +1,5 @@
-// pack_simd.hpp — packs the values of the active points of a block; vectorized for the machine's best instruction
-// set. Masks [8]: bit 8·j + k of word i.
+// pack_simd.hpp — packs the values of some of a block's 512 points, vectorized for the best instruction set of this
+// machine. Masks [8]: bit 8·j + k of word i.
 #pragma once
 #include <cstdint>
 

@@ -1,4 +1,4 @@
-// isosurface.cpp — log G of the active points.
+// isosurface.cpp — computes log G of the active points.
 #include "isosurface/isosurface.hpp"
 #include "isosurface/logs_simd.hpp"
 #include "par/par.hpp"

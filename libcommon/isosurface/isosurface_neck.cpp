@@ -1,4 +1,5 @@
-// isosurface_neck.cpp — where inside or outside is narrowest near a place: the saddle of log G between two lobes.
+// isosurface_neck.cpp — finds where inside or outside is narrowest near a place: the saddle of log G between two
+// lobes.
 #include "isosurface/isosurface.hpp"
 #include <algorithm>
 #include <array>

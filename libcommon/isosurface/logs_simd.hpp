@@ -1,4 +1,4 @@
-// logs_simd.hpp — log G of 64 grid points, vectorized for the best instruction set of this machine.
+// logs_simd.hpp — computes log G of 64 grid points, vectorized for the best instruction set of this machine.
 #pragma once
 #include <cstdint>
 

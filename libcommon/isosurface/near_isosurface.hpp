@@ -1,4 +1,4 @@
-// near_isosurface.hpp — an isosurface probed at many points close to each other.
+// near_isosurface.hpp — probes the isosurface at many points close to each other.
 #pragma once
 #include "isosurface/probe_simd.hpp"
 

@@ -1,5 +1,5 @@
-// probe_simd.hpp — the isosurface probed at eight places, eight places put on it, and how eight triangles fit it;
-// vectorized for the best instruction set of this machine.
+// probe_simd.hpp — probes the isosurface at eight places, projects eight places onto it, and tells how eight
+// triangles fit it; vectorized for the best instruction set of this machine.
 #pragma once
 #include "isosurface/isosurface_view.hpp"
 #include <cstddef>

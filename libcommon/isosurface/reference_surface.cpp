@@ -1,4 +1,4 @@
-// reference_surface.cpp — hash grids of triangles and the closest point of one.
+// reference_surface.cpp — hashes triangles into grids and finds the closest point of one.
 #include "isosurface/reference_surface.hpp"
 #include "geom/cell_levels.hpp"
 #include "par/par.hpp"

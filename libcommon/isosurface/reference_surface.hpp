@@ -1,4 +1,4 @@
-// reference_surface.hpp — the surface that came in, as a target when there is no density.
+// reference_surface.hpp — the input mesh's own surface, the target if there is no density.
 #pragma once
 #include "isosurface/target.hpp"
 #include "mesh/tet_mesh.hpp"

@@ -1,4 +1,5 @@
-// target.hpp — what surface points are kept on: the isosurface of the density, or the surface that came in.
+// target.hpp — the surface that boundary points are kept on: the isosurface of the density, or the input mesh's
+// own surface.
 #pragma once
 #include "isosurface/probe_simd.hpp"
 #include <cmath>

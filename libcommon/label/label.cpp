@@ -1,7 +1,7 @@
-// label.cpp — the tree of sums at each place, from the clusters near its tile of places.
+// label.cpp — evaluates the tree of sums at each place, from the clusters near its tile of places.
 #include "label/label.hpp"
 #include "base/error.hpp"
-#include "density/culling/cluster_tree.hpp"
+#include "density/culling/kd_tree.hpp"
 #include "geom/morton.hpp"
 #include "label/reach.hpp"
 #include "par/par.hpp"
@@ -13,8 +13,8 @@ namespace molmesh::label {
 namespace {
 
 using density::Box;
-using density::ClusterTree;
 using density::Field;
+using density::KdTree;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// e^-18 of G in one term, or e^-16 in all the clusters left out, is not looked for.
@@ -208,7 +208,7 @@ Labels find_labels(const Hierarchy& h, const std::vector<Vec3d>& place, const Op
 
   const Field f = density::make_field(h, options.decay, 1e-8 * options.isovalue);
   const double enough = std::log(1e7 * f.far_error); // where G is less, what was left out may be felt
-  const ClusterTree tree(f);
+  const KdTree tree(f);
   const Reach reach(f);
   const Tiles tiles = make_tiles(place, options.threads);
   par::for_n(static_cast<int64_t>(tiles.begin.size()) - 1, options.threads, 1, [&](int64_t t) {

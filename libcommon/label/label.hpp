@@ -1,4 +1,4 @@
-// label.hpp — which domain, chain, residue and atom makes the density at a place, and what share of it is theirs.
+// label.hpp — finds the domain, chain, residue and atom that make the density at a place, and the share of each.
 #pragma once
 #include "molecule/hierarchy.hpp"
 #include <string>

@@ -1,7 +1,7 @@
-// mesh_labels.cpp — centroids out of the mesh, labels into it.
+// mesh_labels.cpp — takes centroids out of the mesh and puts labels into it.
 #include "label/mesh_labels.hpp"
 #include "base/error.hpp"
-#include "mesh/centroid.hpp"
+#include "mesh/tet_mesh.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,4 @@
-// mesh_labels.hpp — labels of a mesh: where they are taken, and triangles named as boundaries by the atoms that own
-// them.
+// mesh_labels.hpp — labels the elements and triangles of a mesh, and names boundaries by the atoms that own them.
 #pragma once
 #include "label/label.hpp"
 #include "mesh/tet_mesh.hpp"

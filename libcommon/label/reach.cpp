@@ -1,4 +1,4 @@
-// reach.cpp — bounds of all clusters over a box, relative to the largest.
+// reach.cpp — bounds all clusters over a box, relative to the largest.
 #include "label/reach.hpp"
 #include <algorithm>
 #include <cmath>

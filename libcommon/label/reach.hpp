@@ -1,4 +1,4 @@
-// reach.hpp — the clusters that matter in a box however small the field is there: far from the surface, where the
+// reach.hpp — finds the clusters that matter in a box however small the field is there: far from the surface the
 // cutoffs of the field leave everything out.
 #pragma once
 #include "density/field/field.hpp"

@@ -1,4 +1,4 @@
-// adjacency.cpp — faces are grouped by their three points.
+// adjacency.cpp — groups faces by their three points.
 #include "mesh/adjacency.hpp"
 #include "mesh/face_groups.hpp"
 #include <algorithm>

@@ -1,4 +1,4 @@
-// adjacency.hpp — faces shared by tetrahedra, and the boundary triangles that follow from them.
+// adjacency.hpp — finds the faces that tetrahedra share, and the boundary triangles that follow from them.
 #pragma once
 #include "geom/tet_measures.hpp"
 #include "mesh/tet_mesh.hpp"

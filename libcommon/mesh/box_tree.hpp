@@ -1,4 +1,4 @@
-// box_tree.hpp — the boxes that meet one: a tree of eights over boxes in the order that they come in.
+// box_tree.hpp — finds the boxes that meet a box: a tree of eights over boxes in their given order.
 #pragma once
 #include "geom/boxes.hpp"
 #include "par/par.hpp"

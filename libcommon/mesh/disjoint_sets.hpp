@@ -1,4 +1,4 @@
-// disjoint_sets.hpp — things joined with one another: each set is named by its first.
+// disjoint_sets.hpp — joins items into disjoint sets; a set is named by its first item.
 #pragma once
 #include <algorithm>
 #include <cstdint>

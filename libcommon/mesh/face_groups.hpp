@@ -1,4 +1,4 @@
-// face_groups.hpp — faces of tetrahedra, and triangles, brought together where they are on the same three points.
+// face_groups.hpp — groups the faces of tetrahedra and the triangles that lie on the same three points.
 #pragma once
 #include "mesh/tet_mesh.hpp"
 #include "par/par.hpp"

@@ -1,4 +1,4 @@
-// partition.cpp — METIS on the dual graph: of tetrahedra, or of compact clusters of them where there are many.
+// partition.cpp — partitions the dual graph of the tetrahedra, or of compact clusters of many, with METIS.
 #include "mesh/partition.hpp"
 #include "base/error.hpp"
 #include "geom/hilbert.hpp" // clusters follow the curve

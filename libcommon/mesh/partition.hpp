@@ -1,4 +1,4 @@
-// partition.hpp — tetrahedra in parts of equal size with few faces between them (METIS).
+// partition.hpp — divides tetrahedra into parts of equal size with few faces between them (METIS).
 #pragma once
 #include "mesh/tet_mesh.hpp"
 #include <functional>

@@ -1,4 +1,4 @@
-// quality.cpp — one pass over the tetrahedra, a map of regions for each chunk, chunks merged in order.
+// quality.cpp — measures all tetrahedra in one pass and merges the chunks in order.
 #include "mesh/quality.hpp"
 #include "geom/tet_measures.hpp"
 #include "par/par.hpp"

@@ -1,4 +1,4 @@
-// quality.hpp — shape of the tetrahedra: dihedral angles, Joe-Liu, edge ratio.
+// quality.hpp — summarizes the shape of the tetrahedra: dihedral angles, Joe and Liu's Q, edge ratio.
 #pragma once
 #include "mesh/tet_mesh.hpp"
 

@@ -1,4 +1,4 @@
-// region_summary.cpp — names in order, boundaries by label, volumes that keep what rounding loses.
+// region_summary.cpp — collects regions by label and adds volumes without losing what rounding drops.
 #include "mesh/region_summary.hpp"
 #include "geom/predicates.hpp"
 #include "mesh/adjacency.hpp"

@@ -1,4 +1,4 @@
-// region_summary.hpp — the regions of a mesh: how many tetrahedra, what volume, what boundary.
+// region_summary.hpp — summarizes the regions of a mesh: number of tetrahedra, volume, boundary.
 #pragma once
 #include "mesh/surface.hpp"
 

@@ -1,4 +1,4 @@
-// same_source.cpp — the sums of the structures, the values and decay rates of the surfaces.
+// same_source.cpp — compares checksums of structures, isovalues and decay rates.
 #include "mesh/same_source.hpp"
 #include "base/error.hpp"
 #include <cmath>

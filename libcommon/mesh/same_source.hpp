@@ -1,4 +1,4 @@
-// same_source.hpp — is this density, or structure, the one that the mesh was made from?
+// same_source.hpp — tells whether a mesh was made from this density or structure.
 #pragma once
 #include "grid/block_grid.hpp"
 #include "mesh/tet_mesh.hpp"

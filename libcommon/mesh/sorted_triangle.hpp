@@ -1,6 +1,6 @@
-// sorted_triangle.hpp — a triangle's corners ascending: what faces on the same three points have in common.
+// sorted_triangle.hpp — a triangle's corners in ascending order, the key of faces on the same three points.
 #pragma once
-#include "mesh/group.hpp"
+#include "mesh/group_by_key.hpp"
 #include "mesh/tet_mesh.hpp"
 #include <algorithm>
 #include <utility>

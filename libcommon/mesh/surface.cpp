@@ -1,8 +1,8 @@
-// surface.cpp — half edges paired by their ends, fans walked around each point.
+// surface.cpp — pairs half edges by their ends and walks the fans around each point.
 #include "mesh/surface.hpp"
 #include "geom/tet_measures.hpp"
 #include "mesh/disjoint_sets.hpp"
-#include "mesh/group.hpp"
+#include "mesh/group_by_key.hpp"
 #include <algorithm>
 #include <cmath>
 

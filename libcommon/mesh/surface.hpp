@@ -1,4 +1,4 @@
-// surface.hpp — topology of oriented triangles: are they closed 2-manifolds, how many pieces, what Euler number.
+// surface.hpp — computes the topology of oriented triangles: closed 2-manifolds, components, Euler number.
 #pragma once
 #include "mesh/tet_mesh.hpp"
 

@@ -1,4 +1,4 @@
-// tet_mesh.hpp — tetrahedra with their regions and boundary triangles: what the .vtu file holds.
+// tet_mesh.hpp — tetrahedra with regions and boundary triangles: what the .vtu file holds.
 #pragma once
 #include "base/large_array.hpp"
 #include "geom/vec.hpp"
@@ -41,5 +41,16 @@ struct TetMesh {
   std::vector<CellArray> cell_array; ///< labels of tetlabel, or of a foreign mesh
   std::vector<NamedText> named_text;
 };
+
+/// Centroid (Å) of a cell as cell arrays count them: tetrahedra first, then triangles.
+inline Vec3d cell_centroid(const TetMesh& m, size_t cell) {
+  const auto p = [&](int32_t v) { return m.point[v]; };
+  if (cell < m.tet.size()) {
+    const Tet& t = m.tet[cell];
+    return 0.25 * (p(t[0]) + p(t[1]) + p(t[2]) + p(t[3]));
+  }
+  const Tri& t = m.tri[cell - m.tet.size()];
+  return (p(t[0]) + p(t[1]) + p(t[2])) / 3.0;
+}
 
 } // namespace molmesh

@@ -1,4 +1,4 @@
-// triangle_match.cpp — faces and triangles grouped by their three points.
+// triangle_match.cpp — groups faces and triangles by their three points.
 #include "mesh/triangle_match.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/sorted_triangle.hpp"

@@ -1,4 +1,4 @@
-// triangle_match.hpp — which triangles of a mesh lie on which faces of its tetrahedra.
+// triangle_match.hpp — tells which triangles of a mesh lie on which faces of its tetrahedra.
 #pragma once
 #include "mesh/tet_mesh.hpp"
 

@@ -1,4 +1,4 @@
-// triangle_order.cpp — Morton codes of the centroids.
+// triangle_order.cpp — sorts by the Morton codes of the centroids.
 #include "mesh/triangle_order.hpp"
 #include "geom/morton.hpp"
 #include "par/par.hpp"

@@ -1,4 +1,5 @@
-// triangle_order.hpp — triangles along a space-filling curve: what is near on it is near in space.
+// triangle_order.hpp — orders triangles along a space-filling curve, so that neighbors in the list are near in
+// space.
 #pragma once
 #include "mesh/tet_mesh.hpp"
 

@@ -1,11 +1,11 @@
-// validity.cpp — the rules one after another, each over all of its items.
+// validity.cpp — checks rule after rule, each over all of its items.
 #include "mesh/validity.hpp"
 #include "geom/predicates.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/covering.hpp"
-#include "mesh/crossing.hpp"
-#include "mesh/duplicates.hpp"
+#include "mesh/surface_crossings.hpp"
 #include "mesh/triangle_match.hpp"
+#include "mesh/validity_covering.hpp"
+#include "mesh/validity_duplicates.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>

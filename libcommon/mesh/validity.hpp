@@ -1,4 +1,4 @@
-// validity.hpp — every point of I6: is this a conforming mesh whose regions are bounded by closed 2-manifolds?
+// validity.hpp — checks every point of I6: a conforming mesh whose regions are bounded by closed 2-manifolds.
 #pragma once
 #include "mesh/region_summary.hpp"
 

@@ -1,4 +1,4 @@
-// radii.cpp — the table, and the reader of a user's own.
+// radii.cpp — holds the table of radii and reads a user's own.
 #include "molecule/radii.hpp"
 #include "base/error.hpp"
 #include "molecule/words.hpp"

@@ -1,4 +1,4 @@
-// words.cpp — splitting and strict numbers.
+// words.cpp — splits lines into words and parses numbers strictly.
 #include "molecule/words.hpp"
 #include "base/error.hpp"
 #include <charconv>

@@ -1,4 +1,4 @@
-// arena.hpp — memory handed out piece by piece, which stays where it is.
+// arena.hpp — hands out memory piece by piece; pieces stay where they are.
 #pragma once
 #include "base/large_array.hpp"
 #include <cstddef>

@@ -1,4 +1,4 @@
-// helpers.cpp — idle threads wait for work to be shared.
+// helpers.cpp — keeps idle threads waiting until work is shared.
 #include "par/helpers.hpp"
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-// helpers.hpp — threads of a loop that have run out of items help those that still have one.
+// helpers.hpp — lets threads that have run out of items help those that still work on one.
 #pragma once
 #include <atomic>
 #include <condition_variable>

@@ -1,4 +1,4 @@
-// pages.hpp — memory of large arrays asked for on all threads.
+// pages.hpp — asks for the memory of large arrays on all threads.
 #pragma once
 #include "base/large_array.hpp"
 #include "par/par.hpp"

@@ -1,4 +1,4 @@
-// par.cpp — the default number of threads.
+// par.cpp — sets the default number of threads.
 #include "par/par.hpp"
 #ifdef _OPENMP
 #include <omp.h>

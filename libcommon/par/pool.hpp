@@ -1,4 +1,4 @@
-// pool.hpp — what a thread needs for its work, kept from one piece of work to the next.
+// pool.hpp — lends scratch memory to threads and keeps it for the next piece of work.
 #pragma once
 #include <memory>
 #include <mutex>

@@ -3,7 +3,7 @@
 #include "cuda/contour/contour.hpp"
 #include "cuda/contour/device_stages.hpp"
 #include "cuda/density/density.hpp"
-#include "cuda/density/search.hpp"
+#include "cuda/density/neighboring_search.hpp"
 #include "cuda/optimize/geometric_flow.hpp"
 #include "cuda/optimize/optimize.hpp"
 #include "cuda/par/host.hpp"

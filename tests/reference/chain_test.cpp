@@ -1,7 +1,7 @@
 // chain_test.cpp — meshes of a real structure: CGAL on the molecular surface, TetGen's fill of it.
 #include "contour/contour.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/crossing.hpp"
+#include "mesh/surface_crossings.hpp"
 #include "mesh/validity.hpp"
 #include "oracles.hpp"
 #include "structure.hpp"

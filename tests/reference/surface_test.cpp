@@ -1,5 +1,5 @@
 // surface_test.cpp — volumes, areas, topology and self-intersection by CGAL and TetGen beside our own.
-#include "mesh/crossing.hpp"
+#include "mesh/surface_crossings.hpp"
 #include "mesh/validity.hpp"
 #include "oracles.hpp"
 #include "unit/mesh/meshes.hpp"

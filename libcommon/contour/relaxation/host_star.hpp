@@ -11,9 +11,9 @@
 namespace molmesh::contour {
 
 /// As pattern_search needs it; quality counts as in Qualities.
-class WeightedSpokes {
+class WeightedStar {
 public:
-  static constexpr int most_places = Spokes::most_places;
+  static constexpr int most_places = StarQuality::most_places;
   void clear(Vec3d origin, double shape) {
     meshed_.clear(origin, shape);
     other_.clear(origin, shape);
@@ -46,7 +46,7 @@ public:
 private:
   static constexpr float none = 2; ///< better than any element
   float worst_other(Vec3d x, float above) { return unmeshed_weight * other_.worst(x, above / unmeshed_weight); }
-  Spokes meshed_, other_;
+  StarQuality meshed_, other_;
 };
 
 /// Of move_vertex and move_nearer; keeps its memory from star to star.
@@ -61,7 +61,7 @@ public:
     moving_.resize(elements_);
     meshed_.resize(elements_);
     const Vec3d x = r.e.position[vertex_];
-    spokes_.clear(x, r.shape);
+    star_quality_.clear(x, r.shape);
     length_ = 0;
     // In three steps, so that many elements and then corners are on their way from memory at once.
     tet_.resize(elements_);
@@ -82,13 +82,13 @@ public:
           moving = i;
       }
       meshed_[k] = r.classes.is_meshed(t);
-      spokes_.add(p, static_cast<int>(moving), meshed_[k]);
+      star_quality_.add(p, static_cast<int>(moving), meshed_[k]);
       moving_[k] = moving;
     }
     length_ /= 3. * double(elements_);
   }
   double length() const { return length_; }
-  WeightedSpokes& spokes() { return spokes_; }
+  WeightedStar& star_quality() { return star_quality_; }
   bool take(Vec3d x, float worst) {
     quality_.resize(8 * eights_.size());
     for (size_t k = 0; k < elements_; ++k)
@@ -119,7 +119,7 @@ private:
   size_t elements_ = 0;
   int32_t vertex_ = 0;
   double length_ = 0;
-  WeightedSpokes spokes_;
+  WeightedStar star_quality_;
   std::vector<Tet> tet_;
   std::vector<EightElements> eights_;
   std::vector<size_t> moving_;

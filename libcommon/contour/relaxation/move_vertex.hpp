@@ -64,7 +64,7 @@ struct NearSurfaceByTeam {
 };
 
 /// most_distance: of a surface vertex from the surface, in its spacings, if it was nearer. Star, of candidate c:
-/// spokes(), which pattern_search needs; length(), the mean of its edges at the vertex; and take(x, worst),
+/// star_quality(), which pattern_search needs; length(), the mean of its edges at the vertex; and take(x, worst),
 /// which puts the vertex there unless an element is no better than `worst`, in double precision, or not positive by
 /// the exact predicate; it may have constrain_all(constrain, y, n), as pattern_search's constrain.all.
 template <class Surface, class Star>
@@ -89,7 +89,7 @@ HD bool move_vertex(const RelaxView& r, const Surface& surface, double most_dist
   const auto accept = [](const Vec3d&) { return true; };
   float best = r.worst[c];
   const auto search = [&](const auto& bound) {
-    return pattern_search(star.spokes(), x, best, r.goal, star.length(), axis, axes, bound, accept);
+    return pattern_search(star.star_quality(), x, best, r.goal, star.length(), axis, axes, bound, accept);
   };
   bool moves = false;
   if constexpr (requires { star.constrain_all(constrain, &x, 1); })

@@ -150,7 +150,7 @@ HD bool move_nearer(const NearerView& v, const Surface& surface, int32_t c, Star
     for (int k = 0; k < places.size(); ++k) {
       Vec3d y = places[k];
       float off[TriangleFan::most];
-      if (constrain(y) && star.spokes().worst(y, floor) > floor && surface.probe(y, here, normal) &&
+      if (constrain(y) && star.star_quality().worst(y, floor) > floor && surface.probe(y, here, normal) &&
           std::fabs(here) <= slack * most && fan.measure(surface, y, enough, off) && star.take(y, floor)) {
         fan.keep(v, off);
         return true;

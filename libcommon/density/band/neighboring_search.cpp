@@ -1,7 +1,8 @@
-// neighboring_search.cpp — the blocks that bounds cannot decide, node by node, slab by slab; then the band between
-// them.
+// neighboring_search.cpp — decides blocks brick by brick and slab by slab, then finds the band between them.
 #include "density/band/neighboring_search.hpp"
-#include "density/band/node_search.hpp"
+#include "density/band/brick_search.hpp"
+#include "density/culling/bvh.hpp"
+#include "density/culling/kd_tree.hpp"
 #include "par/par.hpp"
 #include "par/pool.hpp"
 #include <algorithm>
@@ -21,8 +22,8 @@ public:
 
 private:
   SlabState slab_at(int32_t x) const;
-  void find(SlabState& slab, size_t node, Workspace& w);
-  void finish(const SlabState& before, SlabState& slab, const SlabState& after, size_t node, Workspace& w) const;
+  void find(SlabState& slab, size_t brick, Workspace& w);
+  void finish(const SlabState& before, SlabState& slab, const SlabState& after, size_t brick, Workspace& w) const;
   void give_away(const SlabState& slab, const FieldInfo& info);
   void forget(SlabState& slab);
   template <class Work>
@@ -32,8 +33,8 @@ private:
   const GridFrame& frame_;
   const SearchOptions& o_;
   const Arithmetic arithmetic_;
-  NodeList nodes_;
-  const NodeSearch node_{f_, frame_, o_, nodes_};
+  BrickList bricks_;
+  const BrickSearch brick_{f_, frame_, o_, bricks_};
   par::Pool<Workspace> workspaces_;
   size_t turn_ = 0; ///< of Workspace::begin
   std::atomic<int64_t> done_{0};
@@ -43,7 +44,7 @@ template <class Work>
 void Search::with_workspace(Work&& work) {
   const auto make = [this] {
     return std::make_unique<Workspace>(
-        Workspace{Selection(f_, budget_for(o_), o_.band_lower, o_.band_upper, arithmetic_)});
+        Workspace{BlockAtoms(f_, budget_for(o_), o_.band_lower, o_.band_upper, arithmetic_)});
   };
   workspaces_.with(make, [&](Workspace& w) {
     w.begin(turn_);
@@ -56,7 +57,7 @@ void Search::give_away(const SlabState& slab, const FieldInfo& info) {
   if (!o_.take)
     return;
   std::vector<BandBlocks> runs;
-  for (const NodeState& s : slab.node)
+  for (const BrickState& s : slab.brick)
     if (!s.band.empty())
       runs.push_back(s.band);
   if (!runs.empty())
@@ -67,62 +68,63 @@ void Search::give_away(const SlabState& slab, const FieldInfo& info) {
 /// Leaves a slab's memory to the next ones, as much to each thread.
 void Search::forget(SlabState& slab) {
   const std::vector<std::unique_ptr<Workspace>>& all = workspaces_.all();
-  for (size_t i = 0; i < slab.node.size(); ++i)
-    all[i % all.size()]->spares.forget(slab.node[i]);
+  for (size_t i = 0; i < slab.brick.size(); ++i)
+    all[i % all.size()]->spares.forget(slab.brick[i]);
   slab = {};
 }
 
 SlabState Search::slab_at(int32_t x) const {
   const auto at = [&](int32_t corner_x) {
-    return std::partition_point(nodes_.node.begin(), nodes_.node.end(),
-                                [=](const Node& n) { return n.corner.x < corner_x; });
+    return std::partition_point(bricks_.brick.begin(), bricks_.brick.end(),
+                                [=](const Brick& n) { return n.corner.x < corner_x; });
   };
   const auto begin = at(x);
-  return {x, begin - nodes_.node.begin(), std::vector<NodeState>(static_cast<size_t>(at(x + node_blocks) - begin))};
+  return {x, begin - bricks_.brick.begin(),
+          std::vector<BrickState>(static_cast<size_t>(at(x + brick_blocks) - begin))};
 }
 
-void Search::find(SlabState& slab, size_t node, Workspace& w) {
-  const Node& from = nodes_.node[static_cast<size_t>(slab.first) + node];
-  NodeState& s = slab.node[node];
+void Search::find(SlabState& slab, size_t brick, Workspace& w) {
+  const Brick& from = bricks_.brick[static_cast<size_t>(slab.first) + brick];
+  BrickState& s = slab.brick[brick];
   s.corner = from.corner;
-  node_.work_through(from, s, w);
+  brick_.work_through(from, s, w);
   if (o_.progress)
-    o_.progress(++done_, static_cast<int64_t>(nodes_.node.size()));
+    o_.progress(++done_, static_cast<int64_t>(bricks_.brick.size()));
 }
 
-void Search::finish(const SlabState& before, SlabState& slab, const SlabState& after, size_t node,
+void Search::finish(const SlabState& before, SlabState& slab, const SlabState& after, size_t brick,
                     Workspace& w) const {
-  NodeState& s = slab.node[node];
+  BrickState& s = slab.brick[brick];
   const FacedBits *below[27], *above[27];
   s.closed = s.inside;
   if (sides_around(before, slab, after, s, w.near_finished, below, above))
-    node_.finish(s, below, above, w);
+    brick_.finish(s, below, above, w);
 }
 
-/// Slab by slab of nodes along x, so that only a few hold the sides of all their points: one is found while the one
-/// two before goes into the band, then the one before is finished.
+/// Slab by slab of bricks along x, so that only a few hold the sides of all their points: one is found while the
+/// one two before goes into the band, then the one before is finished.
 Band Search::run(SearchCounts& counts) {
   Band band = empty_band(f_, frame_, o_);
-  nodes_ = o_.atoms == AtomSearch::kdtree ? nodes_by_tree(f_, frame_, o_.full, o_.threads)
-                                          : nodes_by_halving(f_, frame_, o_.full, o_.threads);
+  bricks_ = o_.atoms == AtomSearch::kdtree ? bricks_by_kd_tree(f_, frame_, o_.full, o_.threads)
+                                           : bricks_by_bvh(f_, frame_, o_.full, o_.threads);
   constexpr size_t many = size_t{1} << 22;
   if (!o_.take)
-    band.block.reserve(std::min(blocks_a_node * nodes_.node.size(), many)); // pages come when they are used
+    band.block.reserve(std::min(blocks_a_brick * bricks_.brick.size(), many)); // pages come when they are used
   const int32_t first = first_block(frame_).x, end = (frame_.lower.x + frame_.points.x + 7) >> 3;
   std::array<SlabState, slabs_at_work> slab;
-  for (int32_t x = first; x < end + 2 * node_blocks; x += node_blocks) {
+  for (int32_t x = first; x < end + 2 * brick_blocks; x += brick_blocks) {
     forget(slab.back());
     std::rotate(slab.begin(), slab.end() - 1, slab.end());
     slab[0] = slab_at(x);
     const SlabAppend append(slab[2], !o_.take, band);
-    const int64_t finds = slab[0].nodes();
+    const int64_t finds = slab[0].bricks();
     par::for_n(finds + append.parts(), o_.threads, 1, [&](int64_t i) {
       if (i >= finds)
         return append.copy(i - finds);
       with_workspace([&](Workspace& w) { find(slab[0], static_cast<size_t>(i), w); });
     });
     add_needed(slab[2], slab[1], slab[0]);
-    par::for_n(slab[1].nodes(), o_.threads, 1, [&](int64_t i) {
+    par::for_n(slab[1].bricks(), o_.threads, 1, [&](int64_t i) {
       with_workspace([&](Workspace& w) { finish(slab[2], slab[1], slab[0], static_cast<size_t>(i), w); });
     });
     give_away(slab[1], band.info);

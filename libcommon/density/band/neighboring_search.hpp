@@ -1,8 +1,13 @@
-// neighboring_search.hpp — the sparse density grid: neighboring search over blocks of 8³ points (§3.1 of Liao et
-// al. 2013) from seeds that bounds on G prove complete, active points, sides. Nothing is dense over the grid.
+// neighboring_search.hpp — finds the active set: every corner of a cell that meets the band around the isosurface.
+// §3.1 of Liao et al. 2013, over blocks of 8³ points. The paper starts from one active cell and floods its
+// neighbors, and would miss a component without a start. Here bounds on G decide for every block near the molecule
+// whether it lies below the band, above it, or is open (culling/block_bounds.cpp, docs/theory/field.md §5), so
+// there is no first active cell: the search grows from all open blocks to those neighbors that share a cell of the
+// band with them (BrickSearch::need_neighbors, add_needed). The same bounds say which faraway points are inside, in
+// place of a flood fill. Nothing is dense over the grid.
 #pragma once
 #include "density/band/search_counts.hpp"
-#include "density/culling/selection.hpp"
+#include "density/culling/block_atoms.hpp"
 #include "density/field/field.hpp"
 #include "grid/band.hpp"
 #include <functional>
@@ -13,7 +18,7 @@ namespace molmesh::density {
 /// How the atoms that matter are found.
 enum class AtomSearch {
   bvh,    ///< boxes of the hierarchy's clusters, tested while the grid is halved
-  kdtree, ///< a kd-tree over the clusters, asked by every node of the grid
+  kdtree, ///< a kd-tree over the clusters, asked by every brick of the grid
   all     ///< no search: every atom counts everywhere
 };
 

@@ -1,4 +1,4 @@
-// search_counts.hpp — what a search did, for the report.
+// search_counts.hpp — counts what a search did, for the report.
 #pragma once
 #include <cstdint>
 

@@ -1,36 +1,37 @@
-// workspace.hpp — what a thread of the search keeps from one node to the next, so that nothing is allocated twice.
+// workspace.hpp — keeps the memory of a thread of the search from one brick to the next.
 #pragma once
-#include "density/band/band_simd.hpp"
-#include "density/band/node_state.hpp"
+#include "density/band/active_set_simd.hpp"
+#include "density/band/brick_state.hpp"
 #include "density/band/search_counts.hpp"
-#include "density/culling/selection.hpp"
-#include "density/values/evaluate.hpp"
+#include "density/culling/block_atoms.hpp"
+#include "density/values/block_evaluation.hpp"
 #include "par/arena.hpp"
 #include <type_traits>
 #include <vector>
 
 namespace molmesh::density {
 
-/// What nodes that nobody needs any more leave to the next ones.
+/// What bricks that nobody needs any more leave to the next ones.
 class Spares {
 public:
-  NodePoints* sides() {
+  BrickPoints* sides() {
     if (!sides_.empty())
       return last_of(sides_);
-    constexpr size_t size = sizeof(NodePoints) / sizeof(float);
-    static_assert(alignof(NodePoints) <= 16 && sizeof(NodePoints) % 16 == 0 && size <= par::Arena<float>::largest &&
-                  std::is_trivially_destructible_v<NodePoints>); // as the arena has them
-    NodePoints* const sides = new (points_.take(size)) NodePoints;
+    constexpr size_t size = sizeof(BrickPoints) / sizeof(float);
+    static_assert(alignof(BrickPoints) <= 16 && sizeof(BrickPoints) % 16 == 0 &&
+                  size <= par::Arena<float>::largest &&
+                  std::is_trivially_destructible_v<BrickPoints>); // as the arena has them
+    BrickPoints* const sides = new (points_.take(size)) BrickPoints;
     points_.keep(size);
     return sides;
   }
   LargeArray<BandBlock> band() { return band_.empty() ? LargeArray<BandBlock>() : last_of(band_); }
-  void forget(NodeState& s) {
+  void forget(BrickState& s) {
     if (s.sides)
       sides_.push_back(s.sides);
     if (s.band.capacity() > 0 && band_.size() < most)
       band_.push_back(std::move(s.band));
-    s = NodeState{};
+    s = BrickState{};
   }
 
 private:
@@ -42,7 +43,7 @@ private:
     return t;
   }
   par::Arena<float> points_;
-  std::vector<NodePoints*> sides_;
+  std::vector<BrickPoints*> sides_;
   std::vector<LargeArray<BandBlock>> band_;
 };
 
@@ -50,11 +51,11 @@ private:
 constexpr size_t slabs_at_work = 3;
 
 struct Workspace {
-  Selection selection;
+  BlockAtoms block;
   Evaluator evaluator = {};
-  alignas(64) float value[blocks_a_node][512] = {}; ///< of the blocks of the node at work
-  NodeWords below = {}, above = {}, far_below = {}, far_above = {}, active = {};
-  NodeBits rows = {};
+  alignas(64) float value[blocks_a_brick][512] = {}; ///< of the blocks of the brick at work
+  BrickWords below = {}, above = {}, far_below = {}, far_above = {}, active = {};
+  BrickBits rows = {};
   Sides beyond = {};
   /// Values of the band, by the turn of the search that packed them.
   std::array<par::Arena<float>, slabs_at_work - 1> values = {};

@@ -72,7 +72,7 @@ HWY_INLINE V distance_beyond(V lo, V hi, float middle, float half) {
 int32_t near_clusters_simd(const LocalClusters& c, int32_t n, const LocalBox& b, int32_t* out) {
   int32_t found = 0;
   for (int32_t i = 0; i < n; i += lanes) {
-    const auto get = [&](const Floats& v) { return hn::LoadU(f, v.data() + i); };
+    const auto get = [&](const AlignedFloats& v) { return hn::LoadU(f, v.data() + i); };
     const V dx = distance_beyond(get(c.lo_x), get(c.hi_x), b.middle[0], b.half[0]);
     const V dy = distance_beyond(get(c.lo_y), get(c.hi_y), b.middle[1], b.half[1]);
     const V dz = distance_beyond(get(c.lo_z), get(c.hi_z), b.middle[2], b.half[2]);
@@ -94,13 +94,13 @@ HWY_INLINE V fall(V at, float middle, float half, V decay) {
 }
 
 /// log2 of the sum over one box of a unit's terms, however small.
-HWY_INLINE float bound_scaled(const LocalClusters& node, const int32_t* cluster, int32_t clusters,
+HWY_INLINE float bound_scaled(const LocalClusters& brick, const int32_t* cluster, int32_t clusters,
                               const LocalBox& b, V k) {
   const auto log2_term = [&](size_t a) {
-    V e = hn::LoadU(f, &node.atom_peak[a]);
-    e = hn::Sub(e, fall(hn::LoadU(f, &node.atom_x[a]), b.middle[0], b.half[0], k));
-    e = hn::Sub(e, fall(hn::LoadU(f, &node.atom_y[a]), b.middle[1], b.half[1], k));
-    return hn::Sub(e, fall(hn::LoadU(f, &node.atom_z[a]), b.middle[2], b.half[2], k));
+    V e = hn::LoadU(f, &brick.atom_peak[a]);
+    e = hn::Sub(e, fall(hn::LoadU(f, &brick.atom_x[a]), b.middle[0], b.half[0], k));
+    e = hn::Sub(e, fall(hn::LoadU(f, &brick.atom_y[a]), b.middle[1], b.half[1], k));
+    return hn::Sub(e, fall(hn::LoadU(f, &brick.atom_z[a]), b.middle[2], b.half[2], k));
   };
   V largest = hn::Set(f, -1e30f), sum = hn::Zero(f);
   for_atoms(cluster, clusters, [&](size_t a) { largest = hn::Max(largest, log2_term(a)); });
@@ -111,7 +111,7 @@ HWY_INLINE float bound_scaled(const LocalClusters& node, const int32_t* cluster,
 
 /// The 2³ boxes that two intervals along each axis make (sides = 2), as octants are numbered; or one.
 template <int sides>
-HWY_INLINE void bound_boxes(const LocalClusters& node, const NearUnits& u, const LocalBox* box, float decay,
+HWY_INLINE void bound_boxes(const LocalClusters& brick, const NearUnits& u, const LocalBox* box, float decay,
                             bool scaled, float* log2_upper, int32_t stride) {
   constexpr int boxes = sides * sides * sides;
   const V k = hn::Set(f, decay);
@@ -120,7 +120,7 @@ HWY_INLINE void bound_boxes(const LocalClusters& node, const NearUnits& u, const
                   clusters = u.begin[static_cast<size_t>(n) + 1] - begin, *const cluster = u.cluster.data() + begin;
     if (scaled) {
       for (int b = 0; b < boxes; ++b)
-        log2_upper[b * stride + n] = bound_scaled(node, cluster, clusters, box[b], k);
+        log2_upper[b * stride + n] = bound_scaled(brick, cluster, clusters, box[b], k);
       continue;
     }
     V sum[boxes];
@@ -128,8 +128,8 @@ HWY_INLINE void bound_boxes(const LocalClusters& node, const NearUnits& u, const
       s = hn::Zero(f);
     for_atoms(cluster, clusters, [&](size_t a) {
       V x[sides], y[sides], z[sides];
-      const V ax = hn::LoadU(f, &node.atom_x[a]), ay = hn::LoadU(f, &node.atom_y[a]),
-              az = hn::LoadU(f, &node.atom_z[a]), peak = hn::LoadU(f, &node.atom_peak[a]);
+      const V ax = hn::LoadU(f, &brick.atom_x[a]), ay = hn::LoadU(f, &brick.atom_y[a]),
+              az = hn::LoadU(f, &brick.atom_z[a]), peak = hn::LoadU(f, &brick.atom_peak[a]);
       for (int s = 0; s < sides; ++s) {
         x[s] = hn::Sub(peak, fall(ax, box[sides * sides * s].middle[0], box->half[0], k));
         y[s] = fall(ay, box[sides * s].middle[1], box->half[1], k);
@@ -155,14 +155,14 @@ HWY_INLINE void bound_boxes(const LocalClusters& node, const NearUnits& u, const
   }
 }
 
-void bound_units_simd(const LocalClusters& node, const NearUnits& u, const LocalBox& b, float decay, bool scaled,
+void bound_units_simd(const LocalClusters& brick, const NearUnits& u, const LocalBox& b, float decay, bool scaled,
                       float* log2_upper) {
-  bound_boxes<1>(node, u, &b, decay, scaled, log2_upper, 0);
+  bound_boxes<1>(brick, u, &b, decay, scaled, log2_upper, 0);
 }
 
-void bound_octants_simd(const LocalClusters& node, const NearUnits& u, const LocalBox* octant, float decay,
+void bound_octants_simd(const LocalClusters& brick, const NearUnits& u, const LocalBox* octant, float decay,
                         bool scaled, float* log2_upper, int32_t stride) {
-  bound_boxes<2>(node, u, octant, decay, scaled, log2_upper, stride);
+  bound_boxes<2>(brick, u, octant, decay, scaled, log2_upper, stride);
 }
 
 float power_terms_simd(const float* log2_sum, const float* exponent, int32_t n, float* term) {
@@ -230,13 +230,13 @@ void place_atoms(const ClusteredAtoms& from, const int32_t* list, size_t n, cons
 int32_t near_clusters(const LocalClusters& c, int32_t n, const LocalBox& box, int32_t* out) {
   return MOLMESH_DISPATCH(near_clusters_simd)(c, n, box, out);
 }
-void bound_units(const LocalClusters& node, const NearUnits& units, const LocalBox& box, float decay, bool scaled,
+void bound_units(const LocalClusters& brick, const NearUnits& units, const LocalBox& box, float decay, bool scaled,
                  float* log2_upper) {
-  MOLMESH_DISPATCH(bound_units_simd)(node, units, box, decay, scaled, log2_upper);
+  MOLMESH_DISPATCH(bound_units_simd)(brick, units, box, decay, scaled, log2_upper);
 }
-void bound_octants(const LocalClusters& node, const NearUnits& units, const LocalBox* octant, float decay,
+void bound_octants(const LocalClusters& brick, const NearUnits& units, const LocalBox* octant, float decay,
                    bool scaled, float* log2_upper, int32_t stride) {
-  MOLMESH_DISPATCH(bound_octants_simd)(node, units, octant, decay, scaled, log2_upper, stride);
+  MOLMESH_DISPATCH(bound_octants_simd)(brick, units, octant, decay, scaled, log2_upper, stride);
 }
 float power_terms(const float* log2_sum, const float* exponent, int32_t n, float* term) {
   return MOLMESH_DISPATCH(power_terms_simd)(log2_sum, exponent, n, term);

@@ -1,5 +1,5 @@
-// bounds_simd.hpp — which clusters and atoms matter in a box, in single precision, for the best instruction set
-// of this machine. Logarithms here are to base 2; κ comes as decay = κ·log2(e), Å⁻².
+// bounds_simd.hpp — bounds the sums of clusters and atoms over a box, in single precision, for the best instruction
+// set of this machine. Logarithms here are to base 2; κ comes as decay = κ·log2(e), Å⁻².
 #pragma once
 #include "base/aligned_vector.hpp"
 #include <cstddef>
@@ -8,20 +8,20 @@
 
 namespace molmesh::density {
 
-/// Half edges and middle of a box, Å, relative to the node's middle.
+/// Half edges and middle of a box, Å, relative to the brick's middle.
 struct LocalBox {
   float middle[3], half[3];
 };
 
-/// The clusters near a node, positions relative to its middle (Å), so that single precision suffices for bounds.
+/// The clusters near a brick, positions relative to its middle (Å), so that single precision suffices for bounds.
 /// Atoms in slots of 16 a cluster; unused slots have peak -1e30.
 struct LocalClusters {
-  std::vector<int32_t> cluster;              ///< index in Field
-  std::vector<int64_t> group;                ///< innermost group
-  Floats exponent;                           ///< its
-  Floats lo_x, lo_y, lo_z, hi_x, hi_y, hi_z; ///< box, padded to a multiple of 16
-  Floats cutoff2;                            ///< Å², padded likewise
-  Floats atom_x, atom_y, atom_z, atom_peak;  ///< [16 n], peak to base 2
+  std::vector<int32_t> cluster;                     ///< index in Field
+  std::vector<int64_t> group;                       ///< innermost group
+  AlignedFloats exponent;                           ///< its
+  AlignedFloats lo_x, lo_y, lo_z, hi_x, hi_y, hi_z; ///< box, padded to a multiple of 16
+  AlignedFloats cutoff2;                            ///< Å², padded likewise
+  AlignedFloats atom_x, atom_y, atom_z, atom_peak;  ///< [16 n], peak to base 2
 };
 
 /// Atoms in clusters, as Field has them: positions (Å) and κr² by atom, begin by cluster.
@@ -44,18 +44,18 @@ int32_t near_clusters(const LocalClusters& c, int32_t n, const LocalBox& box, in
 struct NearUnits {
   int32_t n = 0;
   std::vector<int32_t> begin;   ///< [n + 1] position in `cluster`
-  std::vector<int32_t> cluster; ///< index in the node's clusters
+  std::vector<int32_t> cluster; ///< index in the brick's clusters
   std::vector<int64_t> group;   ///< [n] innermost group
-  Floats exponent;              ///< [n + 16]
+  AlignedFloats exponent;       ///< [n + 16]
 };
 
 /// log2 of an upper bound over `box` of each unit's sum. log2_upper holds n + 16. Without `scaled`, bounds below
 /// 2^-122 are not told apart.
-void bound_units(const LocalClusters& node, const NearUnits& units, const LocalBox& box, float decay, bool scaled,
+void bound_units(const LocalClusters& brick, const NearUnits& units, const LocalBox& box, float decay, bool scaled,
                  float* log2_upper);
 /// The same for eight boxes of one size: octant[4·i + 2·j + k] has the i-th of two intervals along x, the j-th
 /// along y, the k-th along z. log2_upper[stride·octant + unit], stride at least n + 16.
-void bound_octants(const LocalClusters& node, const NearUnits& units, const LocalBox* octant, float decay,
+void bound_octants(const LocalClusters& brick, const NearUnits& units, const LocalBox* octant, float decay,
                    bool scaled, float* log2_upper, int32_t stride);
 
 /// term = 2^(exponent·log2_sum), from 2^-126 to 2^127; returns the sum of n of them. Writes a multiple of 16.

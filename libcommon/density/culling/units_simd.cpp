@@ -27,14 +27,14 @@ struct TermsAt {
 
 /// The atom of each unit with the largest term in the middle: of T its term is 1 everywhere (field.md §4). Returns
 /// the most clusters that a unit has.
-int32_t find_centers(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
+int32_t find_centers(const LocalClusters& brick, const NearUnits& from, const int32_t* list, int32_t n,
                      const TermsAt& middle, BlockUnits& to) {
   // The compiler cannot know that what is stored is none of these.
   float *log2_atom = to.log2_atom.data(), *const exponent = to.exponent.data(),
         *const log2_term = to.log2_term.data(), *const x = to.x.data(), *const y = to.y.data(),
         *const z = to.z.data();
-  const float *const atom_x = node.atom_x.data(), *const atom_y = node.atom_y.data(),
-                     *const atom_z = node.atom_z.data();
+  const float *const atom_x = brick.atom_x.data(), *const atom_y = brick.atom_y.data(),
+                     *const atom_z = brick.atom_z.data();
   int32_t* const slot = to.center_slot.data();
   const int32_t *const begin = from.begin.data(), *const cluster = from.cluster.data();
   int32_t most = 1;
@@ -44,7 +44,7 @@ int32_t find_centers(const LocalClusters& node, const NearUnits& from, const int
     V largest = hn::Set(f, -2e30f);
     auto where = hn::Zero(I());
     for_atoms(cluster + begin[at], clusters, [&](size_t a) {
-      const V term = middle(node, a);
+      const V term = middle(brick, a);
       hn::StoreU(term, f, log2_atom);
       log2_atom += lanes;
       const auto more = hn::Gt(term, largest);
@@ -84,15 +84,15 @@ private:
 
 /// What take_units does with one threshold, log2 of the largest change by an atom that is dropped.
 template <bool absolute, bool direct>
-HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
+HWY_INLINE bool take(const LocalClusters& brick, const NearUnits& from, const int32_t* list, int32_t n,
                      const LocalBox& b, float decay, const TermsAt& middle, const float* log2_upper,
                      float log2_least, BlockUnits& to) {
   const V sx = hn::Set(f, 2 * decay * b.half[0] / 3.5f), sy = hn::Set(f, 2 * decay * b.half[1] / 3.5f),
           sz = hn::Set(f, 2 * decay * b.half[2] / 3.5f), least = hn::Set(f, log2_least);
   V widest = hn::Zero(f), lost = widest;
   // The compiler cannot know that what is stored is none of these.
-  const float *log2_atom = to.log2_atom.data(), *const atom_x = node.atom_x.data(),
-              *const atom_y = node.atom_y.data(), *const atom_z = node.atom_z.data();
+  const float *log2_atom = to.log2_atom.data(), *const atom_x = brick.atom_x.data(),
+              *const atom_y = brick.atom_y.data(), *const atom_z = brick.atom_z.data();
   float *x_to = to.atom_x.data(), *y_to = to.atom_y.data(), *z_to = to.atom_z.data(),
         *constant_to = to.atom_constant.data();
   const int32_t *const begin = from.begin.data(), *const cluster = from.cluster.data();
@@ -165,14 +165,14 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
   to.n = n;
   to.roots = roots;
   to.dropped = absolute ? 1.001f * hn::GetLane(hn::SumOfLanes(f, lost)) : 0;
-  for (Floats* v : {&to.exponent, &to.log2_term, &to.x, &to.y, &to.z})
+  for (AlignedFloats* v : {&to.exponent, &to.log2_term, &to.x, &to.y, &to.z})
     std::fill_n(v->begin() + n, 16, 0.0f);
   const V twice = hn::Set(f, 2 * decay);
   const float bend = decay * (b.half[0] * b.half[0] + b.half[1] * b.half[1] + b.half[2] * b.half[2]);
   for (int32_t u = 0; u < n; u += lanes) {
     V away = hn::Zero(f);
     int axis = 0;
-    for (const Floats* v : {&to.x, &to.y, &to.z}) {
+    for (const AlignedFloats* v : {&to.x, &to.y, &to.z}) {
       const V center = hn::LoadU(f, v->data() + u);
       away = hn::MulAdd(hn::Set(f, b.half[axis]), hn::Abs(hn::Sub(center, hn::Set(f, b.middle[axis]))), away);
       ++axis;
@@ -187,26 +187,26 @@ HWY_INLINE bool take(const LocalClusters& node, const NearUnits& from, const int
   return hn::GetLane(hn::MaxOfLanes(f, widest)) <= log2_range;
 }
 
-bool take_units_simd(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
+bool take_units_simd(const LocalClusters& brick, const NearUnits& from, const int32_t* list, int32_t n,
                      const LocalBox& block, float decay, const float* log2_upper, float within, BlockUnits& to) {
   const TermsAt middle{hn::Set(f, block.middle[0]), hn::Set(f, block.middle[1]), hn::Set(f, block.middle[2]),
                        hn::Set(f, decay)};
-  const int32_t clusters = find_centers(node, from, list, n, middle, to);
+  const int32_t clusters = find_centers(brick, from, list, n, middle, to);
   const float log2_within = within > 0 ? hn::GetLane(log2(hn::Set(f, within))) : -1e30f;
   const auto safe = [&](float atoms) { return log2_within - hn::GetLane(log2(hn::Set(f, atoms))) - 1e-5f; };
   if (!log2_upper) { // relative to each unit
     const auto relative = to.direct ? take<false, true> : take<false, false>;
-    return relative(node, from, list, n, block, decay, middle, nullptr, safe(16.f * float(clusters)), to);
+    return relative(brick, from, list, n, block, decay, middle, nullptr, safe(16.f * float(clusters)), to);
   }
   // A threshold that mostly does; what it drops is summed. The last one cannot fail.
   const auto absolute = to.direct ? take<true, true> : take<true, false>;
   float least = log2_within - 2.5f;
-  bool holds = absolute(node, from, list, n, block, decay, middle, log2_upper, least, to);
+  bool holds = absolute(brick, from, list, n, block, decay, middle, log2_upper, least, to);
   if (to.dropped > within)
     for (const float last = safe(16.f * std::max(1.f, float(clusters) * float(n)));
          to.dropped > within && least > last;) {
       least = std::max(last, least - 1.5f);
-      holds = absolute(node, from, list, n, block, decay, middle, log2_upper, least, to);
+      holds = absolute(brick, from, list, n, block, decay, middle, log2_upper, least, to);
     }
   return holds;
 }
@@ -221,9 +221,9 @@ namespace molmesh::density {
 
 HWY_EXPORT(take_units_simd);
 
-bool take_units(const LocalClusters& node, const NearUnits& from, const int32_t* list, int32_t n,
+bool take_units(const LocalClusters& brick, const NearUnits& from, const int32_t* list, int32_t n,
                 const LocalBox& block, float decay, const float* log2_upper, float within, BlockUnits& to) {
-  return MOLMESH_DISPATCH(take_units_simd)(node, from, list, n, block, decay, log2_upper, within, to);
+  return MOLMESH_DISPATCH(take_units_simd)(brick, from, list, n, block, decay, log2_upper, within, to);
 }
 
 } // namespace molmesh::density

@@ -1,6 +1,7 @@
-// field.cpp — clusters and cutoff distances from a hierarchy.
+// field.cpp — divides atoms into clusters and flattens the hierarchy.
 #include "density/field/field.hpp"
 #include "base/error.hpp"
+#include "density/field/cutoff.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <array>
@@ -143,25 +144,6 @@ void add_clusters(Field& f, const Hierarchy& h, int threads) {
   });
 }
 
-/// Per level and group the logarithm of the largest its sum can be, anywhere; last that of G.
-std::vector<std::vector<double>> largest_sums(const Field& f) {
-  std::vector<std::vector<double>> largest(f.level.size() + 1);
-  for (size_t l = 0; l <= f.level.size(); ++l) {
-    largest[l].assign(l < f.level.size() ? f.level[l].exponent.size() : 1, -infinity);
-    if (l == 0)
-      for (size_t c = 0; c < f.group.size(); ++c) {
-        double& sum = largest[0][f.group[c]];
-        sum = log_add(sum, f.ln_peak[c]);
-      }
-    else
-      for (size_t g = 0; g < f.level[l - 1].exponent.size(); ++g) {
-        double& sum = largest[l][l < f.level.size() ? static_cast<size_t>(f.level[l - 1].parent[g]) : 0];
-        sum = log_add(sum, f.level[l - 1].exponent[g] * largest[l - 1][g]);
-      }
-  }
-  return largest;
-}
-
 /// Field::ln_highest: from the largest term, the largest exponents and the number of groups where that suffices.
 double highest_logarithm(const Field& f) {
   double top = *std::max_element(f.ln_peak.begin(), f.ln_peak.end()) + std::log(double(f.clusters())),
@@ -179,25 +161,6 @@ double highest_logarithm(const Field& f) {
     for (size_t g = 0; g < largest[l].size(); ++g)
       highest = std::max(highest, std::max(1.0, f.level[l].exponent[g]) * largest[l][g]);
   return highest;
-}
-
-/// For every innermost group the logarithm of the largest change of its sum that changes G by at most `allowed`.
-std::vector<double> allowed_change(const Field& f, double allowed) {
-  const bool steep = std::any_of(f.level.begin(), f.level.end(), [](const FieldLevel& l) {
-    return std::any_of(l.exponent.begin(), l.exponent.end(), [](double p) { return p > 1; });
-  });
-  const std::vector<std::vector<double>> largest = steep ? largest_sums(f) : std::vector<std::vector<double>>();
-  std::vector<double> outer, change;
-  for (size_t l = f.level.size(); l-- > 0;) {
-    change.resize(f.level[l].exponent.size());
-    for (size_t g = 0; g < change.size(); ++g) {
-      const double p = f.level[l].exponent[g];
-      const double t = l + 1 < f.level.size() ? outer[f.level[l].parent[g]] : std::log(allowed);
-      change[g] = p <= 1 ? t / p : t - std::log(p) - (p - 1) * largest[l][g];
-    }
-    outer = change;
-  }
-  return change;
 }
 
 double steepest_path(const Field& f) {
@@ -247,10 +210,7 @@ Field make_field(const Hierarchy& h, double decay, double far_error, int threads
   for (size_t l = 1; l < f.level.size(); ++l)
     for (const double p : f.level[l].exponent)
       f.plain_above = f.plain_above && p == 1;
-  const std::vector<double> change = allowed_change(f, far_error / static_cast<double>(f.clusters()));
-  f.cutoff2.reserve(f.group.size());
-  for (size_t c = 0; c < f.group.size(); ++c)
-    f.cutoff2.push_back(std::max(0.0, (f.ln_peak[c] - change[f.group[c]]) / decay));
+  set_cutoffs(f);
   return f;
 }
 

@@ -1,7 +1,7 @@
 // angles.cpp — the angles of elements of low quality, among which are the extremes.
 #include "optimize/mesh/angles.hpp"
 #include "geom/tet_measures.hpp"
-#include "mesh/worst.hpp"
+#include "mesh/worst_elements.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 

@@ -165,7 +165,7 @@ bool Editor::join(int32_t e, int i, int j) {
       fit.excess -= 0.5 * std::max(0., misfit(s.p[0], s.p[1], s.p[2]) - 1);
     return ends == 2;
   });
-  spokes_.clear(pb);
+  star_quality_.clear(pb);
   now_.clear();
   const auto add = [&](const std::vector<int32_t>& elements, int32_t from, int32_t other) {
     for (const int32_t t : elements) {
@@ -178,7 +178,7 @@ bool Editor::join(int32_t e, int i, int j) {
         p[n] = m_.point[c.v[n]];
       const int k = el.find(from);
       c.v[k] = b;
-      spokes_.add(p, k);
+      star_quality_.add(p, k);
       if (from == a)
         now_.push_back(c);
     }
@@ -187,10 +187,11 @@ bool Editor::join(int32_t e, int i, int j) {
   const size_t made = now_.size();
   add(star2_, b, a);
   Vec3d x = pb;
-  float best = spokes_.worst(pb, 0);
+  float best = star_quality_.worst(pb, 0);
   if (ka.kind == kb.kind && ka.frozen == kb.frozen) {
     Vec3d y = 0.5 * (pa + pb);
-    const float q = constrain(kb, pb, y, guard_.reach * length) ? spokes_.worst(y, std::max(best, 0.f)) : -1.f;
+    const float q =
+        constrain(kb, pb, y, guard_.reach * length) ? star_quality_.worst(y, std::max(best, 0.f)) : -1.f;
     if (q > best)
       best = q, x = y;
   }

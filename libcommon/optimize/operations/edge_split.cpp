@@ -36,7 +36,7 @@ bool Editor::halve(int32_t e, int i, int j) {
   const float before = worst(ring_.element), aim = before + 1e-8f + 0.02f * before;
   const float above = straighten ? demand(before) : before;
   now_.clear();
-  spokes_.clear(0.5 * (m_.point[a] + m_.point[b]));
+  star_quality_.clear(0.5 * (m_.point[a] + m_.point[b]));
   sails_.clear();
   const int32_t v = room_.vertex.back(), ends[2] = {a, b};
   for (const int32_t t : ring_.element) {
@@ -48,7 +48,7 @@ bool Editor::halve(int32_t e, int i, int j) {
       for (size_t n = 0; n < 4; ++n)
         p[n] = m_.point[c.v[n]];
       c.v[k] = v;
-      spokes_.add(p, k);
+      star_quality_.add(p, k);
       now_.push_back(c);
       for (size_t f = 0; f < 4; ++f)
         if (el.label[f] != 0 && el.v[f] != a && el.v[f] != b)
@@ -62,7 +62,7 @@ bool Editor::halve(int32_t e, int i, int j) {
   Vec3d x = 0.5 * (pa + pb);
   if (!constrain(kind, x, x, guard_.reach * length) || (!straighten && !sails_fit(x, fit)))
     return false;
-  float best = spokes_.worst(x, 0.25f * before);
+  float best = star_quality_.worst(x, 0.25f * before);
   if (!(best > 0.25f * before))
     return false; // too far from a gain to search for it
   if (straighten)

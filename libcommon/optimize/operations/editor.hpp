@@ -294,7 +294,7 @@ private:
   std::vector<int32_t> star_, star2_, old_, made_;
   std::vector<Candidate> now_;
   Ring ring_;
-  Spokes spokes_;
+  StarQuality star_quality_;
   std::vector<Sail> sails_;
   uint64_t saved_ = 0, restored_ = 0; ///< numbers of snapshots: of the last one, and of what was last brought back
   ChangeLog::Moment restored_then_;   ///< when it was

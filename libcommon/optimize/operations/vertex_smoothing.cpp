@@ -46,7 +46,7 @@ int basis_of(const Vertex& k, const Target* target, bool lifted, Vec3d x, Vec3d 
 // Of the sails with the vertex at x, where no element is as bad as `above`: what a search raises to make the
 // surface fit.
 float Editor::worth(Vec3d x, float above) {
-  return spokes_.worst(x, above) > above ? fit_of_sails(&x).worth() : 0;
+  return star_quality_.worst(x, above) > above ? fit_of_sails(&x).worth() : 0;
 }
 
 bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double length, const Fit& before,
@@ -74,7 +74,7 @@ bool Editor::search(const Vertex& k, Vec3d& x, float& best, float aim, double le
     return pattern_search(straightness, x, best, 1, length, basis, dimensions, bind, [](Vec3d) { return true; });
   }
   return pattern_search(
-      spokes_, x, best, aim, length, basis, dimensions, bind, [&](Vec3d y) { return sails_fit(y, before); },
+      star_quality_, x, best, aim, length, basis, dimensions, bind, [&](Vec3d y) { return sails_fit(y, before); },
       least_step);
 }
 
@@ -99,7 +99,7 @@ bool Editor::place_on_target(const Vertex& k, Vec3d& x, double length, const Fit
     const auto near = std::remove_if(place.begin(), there, [&](Vec3d y) { return !(norm(y - from) < length); });
     const auto places = static_cast<int>(near - place.begin());
     float q;
-    for (int i = 0; (i = spokes_.first_above(place.data(), i, places, best, q)) < places; ++i)
+    for (int i = 0; (i = star_quality_.first_above(place.data(), i, places, best, q)) < places; ++i)
       if (accept(place[i]))
         best = q, x = place[i];
   }
@@ -107,7 +107,7 @@ bool Editor::place_on_target(const Vertex& k, Vec3d& x, double length, const Fit
     return false;
   Vec3d basis[3];
   const int dimensions = basis_of(k, target_, false, x, basis);
-  pattern_search(spokes_, x, best, goal, length, basis, dimensions, bind, accept);
+  pattern_search(star_quality_, x, best, goal, length, basis, dimensions, bind, accept);
   return true;
 }
 
@@ -137,15 +137,15 @@ double Editor::mean_edge(const std::vector<int32_t>& star, int32_t v) const {
   return length / (3. * double(star.size()));
 }
 
-// Spokes and sails of v's star; the mean length of its edges, and how it fits now.
+// Quality and sails of v's star; the mean length of its edges, and how it fits now.
 void Editor::gather(const std::vector<int32_t>& star, int32_t v, double& length, Fit& before) {
-  spokes_.clear(m_.point[v]);
+  star_quality_.clear(m_.point[v]);
   for (const int32_t t : star) {
     const Element& e = m_.element[t];
     std::array<Vec3d, 4> p;
     for (size_t j = 0; j < 4; ++j)
       p[j] = m_.point[e.v[j]];
-    spokes_.add(p, e.find(v));
+    star_quality_.add(p, e.find(v));
   }
   length = mean_edge(star, v);
   before = gather_sails(star, v);

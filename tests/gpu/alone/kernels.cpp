@@ -29,51 +29,51 @@ int32_t pack_part(const float* packed, const uint64_t* stored, const uint64_t* a
 
 namespace {
 
-float judge(const SpokesView& s, int32_t k, Vec3f x) {
-  float field[SpokeGroup::fields], q;
-  for (int i = 0; i < SpokeGroup::fields; ++i)
-    field[i] = s.group[k / SpokeGroup::lanes].field[i][k % SpokeGroup::lanes];
-  spoke_quality(std::bit_cast<Spoke<float>>(field), x.x, x.y, x.z, q, s.shape);
+float judge(const StarView& s, int32_t k, Vec3f x) {
+  float field[StarElementGroup::fields], q;
+  for (int i = 0; i < StarElementGroup::fields; ++i)
+    field[i] = s.group[k / StarElementGroup::lanes].field[i][k % StarElementGroup::lanes];
+  star_element_quality(std::bit_cast<StarElement<float>>(field), x.x, x.y, x.z, q, s.shape);
   return q;
 }
 
 } // namespace
 
-void make_spokes(const SpokeCorners& from, Vec3d origin, double inverse, SpokeGroup& to) {
-  for (int l = 0; l < SpokeGroup::lanes; ++l) {
+void make_star_elements(const StarCorners& from, Vec3d origin, double inverse, StarElementGroup& to) {
+  for (int l = 0; l < StarElementGroup::lanes; ++l) {
     Vec3f corner[3];
-    for (int k = 0; k < SpokeCorners::fields; ++k)
+    for (int k = 0; k < StarCorners::fields; ++k)
       corner[k / 3][k % 3] = static_cast<float>((from.field[k][l] - origin[k % 3]) * inverse);
-    const auto field =
-        std::bit_cast<std::array<float, SpokeGroup::fields>>(make_spoke(corner[0], corner[1], corner[2]));
+    const auto field = std::bit_cast<std::array<float, StarElementGroup::fields>>(
+        make_star_element(corner[0], corner[1], corner[2]));
     for (size_t k = 0; k < field.size(); ++k)
       to.field[k][l] = field[k];
   }
 }
 
-float worst_spoke(const SpokesView& s, Vec3f x, float) {
+float worst_in_star(const StarView& s, Vec3f x, float) {
   float worst = 2;
   for (int32_t k = 0; k < s.count; ++k)
     worst = std::min(worst, judge(s, k, x));
   return worst;
 }
 
-void judge_spokes(const SpokesView& s, Vec3f x, float* quality) {
+void star_qualities(const StarView& s, Vec3f x, float* quality) {
   for (int32_t k = 0; k < s.count; ++k)
     quality[k] = judge(s, k, x);
 }
 
-void judge_around(const SpokesView& s, int32_t spoke, Vec3f x, float d, float (&out)[6]) {
+void judge_around(const StarView& s, int32_t star_element, Vec3f x, float d, float (&out)[6]) {
   for (int k = 0; k < 6; ++k) {
     Vec3f y = x;
     y[k / 2] = k % 2 ? y[k / 2] - d : y[k / 2] + d;
-    out[k] = judge(s, spoke, y);
+    out[k] = judge(s, star_element, y);
   }
 }
 
-int first_place_above(const SpokesView& s, const Places& places, int from, int n, float above, float& q) {
+int first_place_above(const StarView& s, const Places& places, int from, int n, float above, float& q) {
   for (int k = from; k < n; ++k)
-    if (q = worst_spoke(s, {places.x[k], places.y[k], places.z[k]}, above); q > above)
+    if (q = worst_in_star(s, {places.x[k], places.y[k], places.z[k]}, above); q > above)
       return k;
   return n;
 }

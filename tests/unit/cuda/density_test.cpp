@@ -1,5 +1,5 @@
 // density_test.cpp — the device's search, run by the host: I1 to I3 and I5, slabs, determinism.
-#include "cuda/density/search.hpp"
+#include "cuda/density/neighboring_search.hpp"
 #include "cuda/par/host.hpp"
 #include "density/density.hpp"
 #include "unit/density/completeness.hpp"
@@ -213,7 +213,7 @@ TEST_CASE("the molecule's tree finds exactly the clusters within their cutoff, i
   for (const std::vector<double>& exponents : {std::vector<double>{}, {0.3}, {0.3, 1}, {0.5, 0.8, 1}}) {
     const Hierarchy h = test::random_chains(4, 30, 20, exponents, 8);
     const density::Field f = density::make_field(h, 1, 1e-5);
-    const std::vector<cuda::TreeNode> tree = cuda::molecule_tree(f);
+    const std::vector<cuda::BvhNode> tree = cuda::bvh(f);
     cuda::FieldView v{};
     v.box = f.box.data();
     v.cutoff2 = f.cutoff2.data();

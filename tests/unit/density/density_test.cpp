@@ -1,7 +1,7 @@
 // density_test.cpp — the sparse grid against the field summed by brute force: I1 to I4.
 #include "base/error.hpp"
 #include "density/density.hpp"
-#include "density/values/block_simd.hpp"
+#include "density/values/block_sums_simd.hpp"
 #include "unit/density/completeness.hpp"
 #include "unit/refusal.hpp"
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include "base/error.hpp"
 #include "label/mesh_labels.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/carry.hpp"
+#include "mesh/attribute_transfer.hpp"
 #include "unit/mesh/meshes.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -122,7 +122,7 @@ TEST_CASE("Values of cells survive a change of the elements: nearest of the same
   label::Patches patches;
   label_mesh(m, {{"upper", {0, 1}}}, patches);
   const TetMesh before = m;
-  const CarriedArrays carried(m);
+  const AttributeTransfer carried(m);
   CHECK(m.cell_array.empty());
   CHECK(carried.names() == "patch, chain, chain_share, residue, residue_share, atom, atom_share");
   std::mt19937 random(3); // the same cells in another order

@@ -2,7 +2,7 @@
 #include "base/error.hpp"
 #include "isosurface/isosurface.hpp"
 #include "lattice_mesh.hpp"
-#include "mesh/worst.hpp"
+#include "mesh/worst_elements.hpp"
 #include "optimize/optimize.hpp"
 #include "optimize/schedule/schedule.hpp"
 #include "surface_shape.hpp"

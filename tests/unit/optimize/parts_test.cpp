@@ -1,4 +1,4 @@
-// parts_test.cpp — quality, spokes, targets and single operations against slow and plain answers.
+// parts_test.cpp — quality, star_quality, targets and single operations against slow and plain answers.
 #include "geom/star_quality.hpp"
 #include "geom/tet_measures.hpp"
 #include "geom/tet_quality_simd.hpp"
@@ -53,13 +53,13 @@ TEST_CASE("quality is the smallest weighted sine of the dihedral angles, or Joe 
   CHECK(angle_quality(25) == Approx(angle_quality(140)).epsilon(0.01));
 }
 
-TEST_CASE("spokes find the worst element wherever their vertex is") {
+TEST_CASE("star_quality find the worst element wherever their vertex is") {
   for (int n = 0; n < 100; ++n) {
-    Spokes spokes;
+    StarQuality star_quality;
     std::vector<std::array<Vec3d, 4>> tets;
     std::vector<size_t> moving;
     const Vec3d origin{50, -30, 20};
-    spokes.clear(origin);
+    star_quality.clear(origin);
     const int count = 1 + n % 30;
     for (int t = 0; t < count; ++t) {
       std::array<Vec3d, 4> p{origin, origin + random_point(), origin + random_point(), origin + random_point()};
@@ -69,9 +69,9 @@ TEST_CASE("spokes find the worst element wherever their vertex is") {
       static constexpr size_t order[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
       tets.push_back({p[order[at][0]], p[order[at][1]], p[order[at][2]], p[order[at][3]]});
       moving.push_back(at);
-      spokes.add(tets.back(), static_cast<int>(at));
+      star_quality.add(tets.back(), static_cast<int>(at));
     }
-    CHECK(spokes.size() == size_t(count));
+    CHECK(star_quality.size() == size_t(count));
     for (int k = 0; k < 10; ++k) {
       const Vec3d x = origin + random_point(0.02);
       float worst = 2;
@@ -80,23 +80,23 @@ TEST_CASE("spokes find the worst element wherever their vertex is") {
         p[moving[t]] = x;
         worst = std::min(worst, tet_quality(p[0], p[1], p[2], p[3]));
       }
-      CHECK(spokes.worst(x, -1.f) == Approx(worst).epsilon(2e-3).margin(1e-6));
+      CHECK(star_quality.worst(x, -1.f) == Approx(worst).epsilon(2e-3).margin(1e-6));
     }
     // Many places at once: the answer of one by one, to the last bit.
-    std::array<Vec3d, Spokes::most_places> place;
-    std::array<float, Spokes::most_places> worst;
+    std::array<Vec3d, StarQuality::most_places> place;
+    std::array<float, StarQuality::most_places> worst;
     for (size_t k = 0; k < place.size(); ++k) {
       place[k] = origin + random_point(0.05);
-      worst[k] = spokes.worst(place[k], -2.f);
+      worst[k] = star_quality.worst(place[k], -2.f);
     }
-    const int places = 1 + n % Spokes::most_places, from = n / 16 % places;
+    const int places = 1 + n % StarQuality::most_places, from = n / 16 % places;
     for (const float above : {-2.f, *std::max_element(worst.begin(), worst.end()), worst[0], worst[7]}) {
-      spokes.ascent(place[0], 1e-3);
+      star_quality.ascent(place[0], 1e-3);
       int first = from;
       while (first < places && !(worst[first] > above))
         ++first;
       float q = -3;
-      REQUIRE(spokes.first_above(place.data(), from, places, above, q) == first);
+      REQUIRE(star_quality.first_above(place.data(), from, places, above, q) == first);
       if (first < places)
         CHECK(q == worst[first]);
     }

@@ -2,7 +2,7 @@
 #include "geom/intersect.hpp"
 #include "geom/tet_measures.hpp"
 #include "lattice_mesh.hpp"
-#include "mesh/crossing.hpp"
+#include "mesh/surface_crossings.hpp"
 #include "optimize/crossings/sheets.hpp"
 #include "optimize/optimize.hpp"
 #include "optimize/schedule/schedule.hpp"

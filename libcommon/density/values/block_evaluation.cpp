@@ -1,0 +1,129 @@
+// block_evaluation.cpp — sums and raises the units of a block, up the levels.
+#include "density/values/block_evaluation.hpp"
+#include "density/values/block_sums_simd.hpp"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
+
+namespace molmesh::density {
+namespace {
+
+/// Numbers too small for the usual form count as 0 while this lives: they matter nowhere and are slow.
+class FlushSubnormals {
+#ifdef __SSE2__
+public:
+  FlushSubnormals() {
+    _mm_setcsr(before_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
+  }
+  ~FlushSubnormals() {
+    _mm_setcsr(before_);
+  }
+  FlushSubnormals(const FlushSubnormals&) = delete;
+  FlushSubnormals& operator=(const FlushSubnormals&) = delete;
+
+private:
+  const unsigned before_ = _mm_getcsr();
+#endif
+};
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr int points = 512;
+
+} // namespace
+
+/// out: G from the units and their factors.
+template <class T, class Units>
+void Evaluator::sum(const Field& f, const BlockAtoms& s, const Units& u, const BlockShape<T>& shape,
+                    Scratch<T>& scratch, T* out) {
+  [[maybe_unused]] const FlushSubnormals flush;
+  BlockRows<T>& rows = scratch.rows;
+  const auto n = static_cast<size_t>(s.atoms + s.units);
+  rows.x.resize(std::max(rows.x.size(), 8 * n));
+  rows.yz.resize(std::max(rows.yz.size(), 64 * n));
+  rows.scale.resize(std::max(rows.scale.size(), static_cast<size_t>(s.units) + 16));
+  make_rows(u, shape, rows);
+  if (f.plain_above)
+    return sum_units(u, rows, static_cast<T>(s.added), out);
+  std::fill_n(out, points, static_cast<T>(s.added));
+  OpenGroups groups(f);
+  scratch.level.assign(groups.levels() * points, 0);
+  const auto sum_of = [&](size_t l) { return l < groups.levels() ? &scratch.level[l * points] : out; };
+  size_t closed = 0;
+  const auto close = [&](size_t l, int64_t g) {
+    const double shift = s.arithmetic == Arithmetic::in_scaled ? s.group_shift[closed++] : 0;
+    raise_group(static_cast<T>(f.level[l].exponent[g]), static_cast<T>(shift), sum_of(l), sum_of(l + 1));
+  };
+  for (int32_t i = 0; i < u.n; ++i) {
+    groups.enter(s.group_of(i), close);
+    add_units(u, rows, i, i + 1, sum_of(1));
+  }
+  groups.finish(close);
+}
+
+void Evaluator::in_single(const Field& f, const BlockAtoms& s, double h, float* out) {
+  const double step = 2 * f.decay * h * std::numbers::log2e;
+  BlockShape<float> shape{{}, static_cast<float>(step), static_cast<float>(-0.5 * step * h)};
+  std::copy_n(s.box.middle, 3, shape.middle);
+  sum(f, s, s.block_units, shape, single_, out);
+}
+
+void Evaluator::in_double(const Field& f, const BlockAtoms& s, double h, float* out) {
+  const double step = 2 * f.decay * h * std::numbers::log2e;
+  exact_.resize(points);
+  sum(f, s, s.exact_units, BlockShape<double>{{}, step, -0.5 * step * h}, double_, exact_.data());
+  std::copy_n(exact_.begin(), points, out);
+}
+
+void Evaluator::by_logarithms(const Field& f, const BlockAtoms& s, double h, float* out) {
+  constexpr double ln2 = std::numbers::ln2;
+  const ExactUnits& units = s.exact_units;
+  OpenGroups groups(f);
+  std::vector<double> open(groups.levels());
+  for (int point = 0; point < points; ++point) {
+    const Vec3d at{(point >> 6) - 3.5, (point >> 3 & 7) - 3.5, (point & 7) - 3.5}, d = h * at;
+    std::fill(open.begin(), open.end(), -infinity);
+    const auto close = [&](size_t l, int64_t g) {
+      double& to = l + 1 < open.size() ? open[l + 1] : open[0];
+      to = log_add(to, f.level[l].exponent[g] * open[l]);
+      open[l] = -infinity;
+    };
+    for (int32_t n = 0; n < units.n; ++n) {
+      const auto u = static_cast<size_t>(n);
+      groups.enter(s.group_of(n), close);
+      double top = -infinity, sum = 0;
+      const auto term = [&](size_t a) {
+        return ln2 * (units.atom_constant[a] + dot(at, Vec3d{units.atom_x[a], units.atom_y[a], units.atom_z[a]}));
+      };
+      const auto begin = static_cast<size_t>(units.begin[u]), end = static_cast<size_t>(units.begin[u + 1]);
+      for (size_t a = begin; a < end; ++a)
+        top = std::max(top, term(a));
+      for (size_t a = begin; a < end; ++a)
+        sum += std::exp(term(a) - top);
+      const Vec3d center{units.x[u], units.y[u], units.z[u]};
+      const double ln_sum =
+          top + std::log(sum) + ln2 * units.log2_term[u] + f.decay * (2 * dot(d, center) - norm2(d));
+      double& to = open.size() > 1 ? open[1] : open[0];
+      to = log_add(to, units.exponent[u] * ln_sum);
+    }
+    groups.finish(close);
+    out[point] = static_cast<float>(std::exp(open[0]) + s.added);
+  }
+}
+
+void Evaluator::evaluate(const Field& f, const BlockAtoms& s, double h, float* out) {
+  switch (s.arithmetic) {
+  case Arithmetic::in_single:
+    return in_single(f, s, h, out);
+  case Arithmetic::in_double:
+  case Arithmetic::in_scaled:
+    return in_double(f, s, h, out);
+  case Arithmetic::in_logarithms:
+    return by_logarithms(f, s, h, out);
+  }
+}
+
+} // namespace molmesh::density
