@@ -9,7 +9,7 @@ namespace molmesh::cuda {
 void require_device();
 /// "NVIDIA H200, 132 multiprocessors, 139 GiB"; what require_device() throws where there is none.
 std::string device_name();
-/// Bytes of the host's memory that nobody uses.
+/// Bytes of the host's memory that are free.
 int64_t free_host_memory();
 
 } // namespace molmesh::cuda

@@ -115,7 +115,7 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
   if (o.take)
     s.take = look;
   Band band = find(f, frame, s, counts.search);
-  if (const BandBlocks left = band.block; !left.empty()) // nobody takes them, or this finder cannot give away
+  if (const BandBlocks left = band.block; !left.empty()) // without a sink, or with a finder that does not use it
     look(band.info, {&left, 1});
   if (band.active_points == 0)
     fail_without_band(o, frame.spacing, margin, enough());

@@ -8,15 +8,16 @@ namespace molmesh::density {
 struct Options {
   double spacing = 0.5;    ///< h, Å; used when grid_points is 0
   int64_t grid_points = 0; ///< along the longest axis
-  double margin = -1;      ///< Å beyond the outermost centres; negative: derived, never touched by the band
-  double decay = 1;        ///< κ, Å⁻²
+  double margin =
+      -1; ///< Å beyond the outermost centres; negative: just large enough that the band never touches the wall
+  double decay = 1;                                        ///< κ, Å⁻²
   double isovalue = 1, band_lower = 0.9, band_upper = 1.1; ///< in units of G
   double tolerance = 1e-4;                                 ///< ε of I1
   bool full_search = false;
   AtomSearch atoms = AtomSearch::bvh;
   int threads = 1;
   std::function<void(int64_t done, int64_t total)> progress;
-  BandSink take; ///< gets the blocks of the band, which then has none; empty: the band keeps them
+  BandSink take; ///< receives the band's blocks; the returned Band is then empty. Empty: the band keeps them
 };
 
 struct Counts {
@@ -27,9 +28,9 @@ struct Counts {
 /// Finds the band of a field: find_band, or what does the same on a device.
 using BandFinder = std::function<Band(const Field&, const GridFrame&, const SearchOptions&, SearchCounts&)>;
 
-/// Everything of the band but info.creator. Throws Error(failed) when the wall of a grid with the caller's margin
-/// cuts the surface or nothing reaches the band, Error(usage) when the grid is too large to index, the band too
-/// narrow for the tolerance (field.md §5) or a value too large for a float.
+/// Computes the band, all but info.creator. Throws Error(failed) if the wall of a grid with the caller's margin
+/// cuts the surface or no cell reaches the band, Error(usage) if the grid is too large to index, the band too
+/// narrow for the tolerance (docs/theory/field.md §5) or a value too large for a float.
 Band compute(const Hierarchy& h, const Options& options, Counts& counts, const BandFinder& find = find_band);
 
 } // namespace molmesh::density

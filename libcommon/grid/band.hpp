@@ -10,11 +10,11 @@ namespace molmesh {
 /// 8³ points: bit 8·j + k of word i.
 using Mask = std::array<uint64_t, 8>;
 
-/// A block with active points. 36 % of its points are active when h is a quarter of an Å: few others are stored.
+/// A block with active points. Few inactive points are stored (at h = 0.25 Å 36 % of the points are active).
 struct BandBlock {
   Vec3i corner;       ///< lowest index
   Mask active, above; ///< above: the side of inactive points
-  Mask stored;        ///< the active points, and some that looked like them to a part of the search
+  Mask stored;        ///< the active points, and some that seemed active before the neighbors were known
   const float* value; ///< G of the stored points, in order; belongs to the band
 };
 
@@ -25,11 +25,11 @@ using BlockValues = std::array<float, 512 + 16>;
 /// G of the active points of a block, in order: the block's own where it stores no other, else in `room`.
 const float* active_values(const BandBlock& block, BlockValues& room);
 
-/// What BlockGrid holds, in a third of its memory.
+/// The content of a BlockGrid in a third of its memory.
 struct Band {
   GridFrame frame;
   FieldInfo info;
-  LargeArray<BandBlock> block; ///< ascending; none where they have been given away as they were found
+  LargeArray<BandBlock> block; ///< ascending; empty if a sink has received them
   std::vector<Vec3i> inside;   ///< ascending
   int64_t active_points = 0;
   std::vector<LargeArray<float>> storage;

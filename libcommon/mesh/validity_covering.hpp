@@ -6,8 +6,8 @@
 namespace molmesh {
 
 struct Covering {
-  int64_t wrong = 0; ///< pieces of the skin, connected through edges, that are not so where they were looked at
-  int64_t face = -1; ///< where: of the first of them, as adjacency.hpp numbers faces
+  int64_t wrong = 0; ///< edge-connected pieces of the skin that fail the test
+  int64_t face = -1; ///< where the first of them fails, as adjacency.hpp numbers faces
 };
 
 /// skin: the faces with one tetrahedron, ascending; a closed surface, all tetrahedra positive. Each piece is looked

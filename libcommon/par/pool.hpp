@@ -6,18 +6,18 @@
 
 namespace molmesh::par {
 
-/// Lends a T to whoever works; as many as ever worked at once.
+/// Lends a T to each working thread; makes as many as work at once.
 template <class T>
 class Pool {
 public:
-  /// use(t), on a T that nobody else has meanwhile; make() is a new std::unique_ptr<T>. Every T lives as long as
-  /// the pool, use() may throw or not: others may read what it holds.
+  /// use(t), on a T that no other thread has meanwhile; make() is a new std::unique_ptr<T>. Every T lives as long
+  /// as the pool, use() may throw or not: others may read what it holds.
   template <class Make, class Use>
   void with(Make&& make, Use&& use) {
     const Loan loan(*this, make);
     use(*loan.t);
   }
-  /// When nobody works.
+  /// While no thread works.
   const std::vector<std::unique_ptr<T>>& all() const { return own_; }
 
 private:

@@ -15,15 +15,15 @@
 
 namespace molmesh::density {
 
-/// How the atoms that matter are found.
+/// How the clusters of atoms that matter near a brick are found.
 enum class AtomSearch {
   bvh,    ///< boxes of the hierarchy's clusters, tested while the grid is halved
   kdtree, ///< a kd-tree over the clusters, asked by every brick of the grid
   all     ///< no search: every atom counts everywhere
 };
 
-/// Takes blocks of the band as they are found, every block once, in runs of any order. They and what they point to
-/// are gone afterwards. info: the numbers that empty_band() knows.
+/// Receives the blocks of the band as they are found, each once, in runs in any order. Blocks and values are valid
+/// during the call alone. info: the numbers that empty_band() sets.
 using BandSink = std::function<void(const FieldInfo& info, std::span<const BandBlocks> runs)>;
 
 struct SearchOptions {
@@ -36,16 +36,17 @@ struct SearchOptions {
   BandSink take; ///< empty: the band keeps its blocks, and their memory grows with the surface
 };
 
-/// The field must be made with budget_for(options).far. The result has frame, values, sides and the numbers of
-/// `info` that it knows; the texts are the caller's. Same result for any number of threads.
+/// How the tolerance is shared.
 Budget budget_for(const SearchOptions& options);
 /// Comparing floats with these is comparing them with the options' doubles.
 struct FloatBand {
   float lower, upper;
 };
 FloatBand float_band(const SearchOptions& options);
-/// What a search starts from: the frame and the numbers of `info`, nothing found.
+/// The band before the search: the frame and the numbers of `info`, without blocks.
 Band empty_band(const Field& f, const GridFrame& frame, const SearchOptions& options);
+/// Finds the band: frame, values, sides and the numbers of `info`; the caller sets the texts. The field must be
+/// made with budget_for(options).far. Same result for any number of threads.
 Band find_band(const Field& f, const GridFrame& frame, const SearchOptions& options, SearchCounts& counts);
 
 } // namespace molmesh::density

@@ -11,7 +11,7 @@
 
 namespace molmesh::density {
 
-/// What bricks that nobody needs any more leave to the next ones.
+/// Memory of finished bricks, for the next ones.
 class Spares {
 public:
   BrickPoints* sides() {
@@ -61,7 +61,7 @@ struct Workspace {
   std::array<par::Arena<float>, slabs_at_work - 1> values = {};
   size_t turn = 0;
   par::Arena<float>& packed() { return values[turn % values.size()]; }
-  /// A new turn takes the room of the one whose slab has been given away.
+  /// A new turn overwrites the values of the slab that has been given away.
   void begin(size_t new_turn) {
     if (turn == new_turn)
       return;

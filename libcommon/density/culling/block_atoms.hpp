@@ -1,5 +1,5 @@
 // block_atoms.hpp — finds the atoms that matter in one block of 8³ grid points, and bounds on G over the block.
-// Derivations in field.md.
+// Derivations: docs/theory/field.md.
 #pragma once
 #include "density/culling/middles_simd.hpp"
 #include "density/field/field.hpp"
@@ -31,7 +31,8 @@ enum class Arithmetic { in_single, in_double, in_scaled, in_logarithms };
 /// overflow.
 Arithmetic arithmetic_for(const Field& f, double tolerance);
 
-/// Works through the blocks of a brick. One thread; refilled for each brick and block.
+/// Selects units and atoms block by block: enter() a brick, narrow() to a part of it, select() a block. For one
+/// thread; overwritten by the next call.
 class BlockAtoms {
 public:
   BlockAtoms(const Field& f, const Budget& budget, double lower, double upper, Arithmetic arithmetic);
@@ -48,7 +49,7 @@ public:
   void select_alone(int octant);
 
   Side side = Side::mixed;
-  Arithmetic arithmetic;        ///< that this block needs: the one asked for, or a safer one
+  Arithmetic arithmetic;        ///< of this block: the constructor's, or a safer one
   int64_t units = 0, atoms = 0; ///< kept
   double added = 0;             ///< half of the most that what is dropped may add to G anywhere in the block
   /// Kept units and atoms. A unit is a sum of atoms that is raised to one power: an innermost group, or one cluster
@@ -93,7 +94,7 @@ private:
   const double lower_, upper_, within_;
   const double steep_; ///< largest product of exponents up to the root, 1 or more
   const float rough_root_error_ = rough_root_error();
-  const Arithmetic least_;       ///< what was asked for
+  const Arithmetic least_;       ///< the constructor's
   double reach_ = 0;             ///< Å, the largest cutoff
   double largest_peak_ = 0;      ///< ln
   std::vector<double> steepest_; ///< largest exponent of each level, 1 or more

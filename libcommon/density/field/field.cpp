@@ -63,7 +63,7 @@ void add_levels(Field& f, const Hierarchy& h) {
   }
 }
 
-/// exp(), which is asked for the same few numbers again and again: atoms have few radii.
+/// exp() with a small cache: atoms have few radii, so the arguments repeat.
 class FewExponentials {
 public:
   double operator()(double x) {
