@@ -72,8 +72,7 @@ void set_domains(Grouping& g, const std::vector<DomainPart>& parts, const Struct
     residue.domain = none;
   for (const DomainPart& part : parts) {
     const int32_t domain = index.of(part.name);
-    const std::vector<Selected> selected =
-        structure.select(part.selection, part.where, false, Status::bad_input);
+    const std::vector<Selected> selected = structure.select(part.selection, part.where, false, Status::bad_input);
     bool any = false;
     for (size_t r = 0; r < g.residue.size(); ++r) {
       if (selected[r] == Selected::none)
@@ -86,7 +85,8 @@ void set_domains(Grouping& g, const std::vector<DomainPart>& parts, const Struct
                    "' that holds other atoms of its residue, expected whole residues");
       if (g.residue[r].domain != none && g.residue[r].domain != domain)
         fail_input(part.where + ": found atom " + structure.first_atom(static_cast<int64_t>(r)) + " in domains '" +
-                   part_of[r]->name + "' (" + part_of[r]->where + ") and '" + part.name + "', expected exactly one");
+                   part_of[r]->name + "' (" + part_of[r]->where + ") and '" + part.name +
+                   "', expected exactly one");
       g.residue[r].domain = domain;
       part_of[r] = &part;
     }

@@ -235,7 +235,8 @@ TEST_CASE("fields without an end are refused, not searched for it") {
   CHECK(refused(1.7, 1e-300, 1));
 }
 
-TEST_CASE("a hundred thousand atoms and ten thousand groups in one block are counted in more than 31 bits", "[slow]") {
+TEST_CASE("a hundred thousand atoms and ten thousand groups in one block are counted in more than 31 bits",
+          "[slow]") {
   Hierarchy h;
   h.level.push_back({"crowd", {}});
   for (int64_t i = 0; i < 216000; ++i)
