@@ -25,7 +25,7 @@ struct Distances {
 };
 
 /// From p, where log G / isovalue is f, to the first place on the other side along any of 2,000 directions, in
-/// spacings; `most` where that is farther. Where two sheets meet this is nearer than the foot along the gradient.
+/// spacings; `most` where that is farther. Where two layers meet this is nearer than the foot along the gradient.
 double nearest(const Isosurface& isosurface, Vec3d p, double f, double most) {
   constexpr int directions = 2000;
   constexpr double step = 0.01, golden_angle = 2.39996322972865332;
