@@ -79,7 +79,7 @@ bool is_hexadecimal(char c) {
 bool is_line_number(std::string_view line) {
   const std::string text = columns(line, element_at, 4);
   const std::string_view number = trimmed(text);
-  return !number.empty() && are_all(number, [](char c) { return is_digit(c); });
+  return !number.empty() && are_all(number, is_digit);
 }
 
 } // namespace
@@ -163,18 +163,22 @@ ResidueNumbers::Number ResidueNumbers::read(std::string_view field) {
     before_ = value;
     return Number{gemmi::SeqId(value, insertion), true};
   };
-  if (are_all(four, is_hexadecimal)) {
+  if (are_all(four, is_hexadecimal) && !is_digit(code)) {
     int value = 0;
     std::from_chars(four.data(), four.data() + four.size(), value, 16);
-    const bool counts_on = before_ > most_decimal
-                               ? value >= before_ && value - before_ <= most_missing
-                               : before_ > most_decimal - 10 && value > most_decimal && value - before_ <= 10;
-    if (counts_on && !is_digit(code)) {
+    const bool has_letter = !are_all(four, is_digit);
+    const bool is_small = std::any_of(four.begin(), four.end(), [](char c) { return c >= 'a'; });
+    // Digits alone may be decimal, capitals hybrid-36: these must follow the number before.
+    const bool follows = before_ > most_decimal
+                             ? value >= before_ && value - before_ <= most_missing
+                             : before_ > most_decimal - 10 && value > most_decimal && value - before_ <= 10;
+    if (value > most_decimal &&
+        (follows || (has_letter && is_digit(four[0])) || (is_small && before_ > most_decimal))) {
       ++hexadecimal_;
       return result(value, code);
     }
   }
-  if (are_all(four, [](char c) { return is_digit(c); }) && is_digit(code))
+  if (are_all(four, is_digit) && is_digit(code))
     return result(decimal_or(text, 0), ' ');
   if (number.size() == 4 && is_capital(number[0]) &&
       are_all(number, [](char c) { return is_digit(c) || is_capital(c); })) {
@@ -187,7 +191,7 @@ ResidueNumbers::Number ResidueNumbers::read(std::string_view field) {
   std::string_view digits = number;
   if (digits[0] == '-' || digits[0] == '+')
     digits.remove_prefix(1);
-  if (!digits.empty() && are_all(digits, [](char c) { return is_digit(c); }) && number != "-999") {
+  if (!digits.empty() && are_all(digits, is_digit) && number != "-999") {
     const int value = decimal_or(digits, 0);
     return result(number[0] == '-' ? -value : value, code);
   }

@@ -1,5 +1,6 @@
 // msgpack.cpp — one byte tells the kind, then come lengths and numbers, big-endian.
 #include "formats/pdb/msgpack.hpp"
+#include <algorithm>
 #include <bit>
 #include <stdexcept>
 #include <string>
@@ -8,12 +9,15 @@ namespace molmesh::formats::msgpack {
 namespace {
 
 constexpr int deepest = 32;
+constexpr int64_t most_values = 1'000'000; // a file has some ten a column
 
 class Reader {
 public:
   explicit Reader(std::string_view bytes) : rest_(bytes) {}
 
   Value value(int depth = 0) {
+    if (++values_ > most_values)
+      throw std::runtime_error("more than " + std::to_string(most_values) + " values");
     if (depth > deepest)
       throw std::runtime_error("values nested deeper than " + std::to_string(deepest));
     const auto code = static_cast<uint8_t>(take(1)[0]);
@@ -126,23 +130,24 @@ private:
     for (uint64_t i = 0; i < n; ++i) {
       const Value key = value(depth + 1);
       Value of_key = value(depth + 1);
-      if (key.kind == Value::Kind::text)
-        v.map.emplace_back(key.text, std::move(of_key));
+      if (key.kind == Value::Kind::text) {
+        v.key.push_back(key.text);
+        v.array.push_back(std::move(of_key));
+      }
     }
     return v;
   }
 
   std::string_view rest_;
+  int64_t values_ = 0;
 };
 
 } // namespace
 
-const Value& Value::operator[](std::string_view key) const {
+const Value& Value::operator[](std::string_view name) const {
   static const Value none;
-  for (const auto& [name, value] : map)
-    if (name == key)
-      return value;
-  return none;
+  const auto found = std::find(key.begin(), key.end(), name);
+  return found == key.end() ? none : array[static_cast<size_t>(found - key.begin())];
 }
 
 Value parse(std::string_view bytes) {

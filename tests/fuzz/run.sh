@@ -14,6 +14,7 @@ fuzz() { # fuzz READER: its seeds are the samples of its format and what an earl
   for folder in "tests/fuzz/corpus/$reader" "formats/$reader/samples/passed" "formats/$reader/samples/failed"; do
     [ -d "$folder" ] && seeds+=("$folder")
   done
+  [ "$reader" = pdb ] && seeds+=(tests/data/cases) # it chooses the format
   mkdir -p "build-sanitize/corpus/$reader" build-sanitize/found
   if "build-sanitize/bin/fuzz_$reader" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=2048 -print_final_stats=1 \
     -artifact_prefix="build-sanitize/found/$reader-" "build-sanitize/corpus/$reader" "${seeds[@]}" >"build-sanitize/$reader.log" 2>&1; then
