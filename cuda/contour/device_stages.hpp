@@ -64,7 +64,7 @@ public:
   }
   void relax() override {
     const std::unique_ptr<const Isosurface> surface = isosurface_.get();
-    TeamMover<Backend> mover(b_, *surface, threads_);
+    TeamMover<Backend> mover(b_, *surface);
     const int64_t known = complex_->view.vertices();
     auto lattice_class = b_.template array<uint8_t>(known);
     b_.for_n("lattice classes", known, contour::LatticeClasses{complex_->view, lattice_class.data()},
@@ -90,7 +90,6 @@ public:
     summary.relaxed_points = relaxed_;
     summary.face_points = elements_.face_points;
     summary.edge_points = elements_.edge_points;
-    summary.divided_edges = elements_.divided_edges;
   }
 
   int64_t runs() const { return maker_.runs(); }

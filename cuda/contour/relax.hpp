@@ -2,7 +2,6 @@
 // star to each thread, in the order and with the rounding of StarQuality.
 #pragma once
 #include "contour/relaxation/relax_passes.hpp"
-#include "contour/surface_distance/far_division.hpp"
 #include "contour/surface_distance/move_nearer.hpp"
 #include "cuda/contour/quick_division.hpp"
 #include "cuda/optimize/device_isosurface.hpp"
@@ -266,9 +265,7 @@ struct MoveNearerTeams {
 template <par::Launcher Backend>
 class TeamMover {
 public:
-  /// threads: of the host.
-  TeamMover(Backend& b, const Isosurface& surface, int threads)
-      : b_(b), on_host_(surface.view()), surface_(b, surface), threads_(threads) {}
+  TeamMover(Backend& b, const Isosurface& surface) : b_(b), surface_(b, surface) {}
   void judge(const contour::Qualities& all) {
     const auto tets = double(all.e.tets);
     b_.for_n("element qualities", all.e.tets, all, {tets * 20 + double(all.e.positions) * 25, 180. * tets, true});
@@ -292,15 +289,10 @@ public:
                  MoveNearerTeams{v, surface_.view(), active, fate, star_element_.data(), quality_.data()},
                  {double(n) * entries_ * 112});
   }
-  int64_t divide(std::vector<contour::FarPatch>& patches, const RelaxView& r) {
-    return contour::divide_far(patches, on_host_, r.goal, r.shape, threads_);
-  }
 
 private:
   Backend& b_;
-  IsosurfaceView on_host_;
   DeviceIsosurface<Backend> surface_;
-  int threads_;
   double entries_ = 0; ///< of a star, in the mean
   typename Backend::template Array<StarElement<float>> star_element_;
   typename Backend::template Array<float> quality_;

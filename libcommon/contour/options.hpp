@@ -37,7 +37,7 @@ struct Summary {
   double adapt = 0; ///< as given, or by default
   int halvings = 0; ///< of the spacing: finer_grid.hpp
   int64_t leaves = 0, surface_cells = 0, split_cells = 0, restored_points = 0, relaxed_points = 0, face_points = 0,
-          edge_points = 0, divided_edges = 0;
+          edge_points = 0;
   std::vector<double> molecule_volumes,
       cavity_volumes; ///< Å³ of each component, in the order of the octree's curve
   int64_t dropped_parts = 0, filled_cavities = 0;

@@ -51,7 +51,6 @@ void HostStages::count(Summary& summary) const {
   summary.relaxed_points = relaxed_;
   summary.face_points = dual_.elements.face_points;
   summary.edge_points = dual_.elements.edge_points;
-  summary.divided_edges = dual_.elements.divided_edges;
 }
 
 } // namespace molmesh::contour

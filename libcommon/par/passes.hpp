@@ -47,20 +47,6 @@ std::vector<T> downloaded(L& m, const typename L::template Array<T>& from, int64
   return to;
 }
 
-/// More elements, uninitialized, behind those that an array of a launcher has; in place where it has the room.
-template <Launcher L, class Array>
-void grow(L& m, Array& array, int64_t n) {
-  if constexpr (requires { array.resize(static_cast<size_t>(n)); }) {
-    array.resize(static_cast<size_t>(n));
-  } else {
-    using T = std::remove_cvref_t<decltype(*array.data())>;
-    auto more = m.template array<T>(n);
-    const auto had = static_cast<int64_t>(array.size());
-    m.for_n("copy", had, par::CopyItems<T>{array.data(), more.data()}, {2. * double(had) * sizeof(T)});
-    array = std::move(more);
-  }
-}
-
 /// The elements of all items, in their order.
 template <class T, Launcher L, class Item>
 List<L, T> gather(L& m, const char* name, int64_t n, const Item& item) {

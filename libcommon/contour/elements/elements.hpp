@@ -44,7 +44,7 @@ struct ElementArrays {
   Array<std::array<int32_t, 2>> tri_sides; ///< [tris] vertices of the complex behind and in front; equal on a wall
   Array<int32_t> boundary;                 ///< [tris] Boundary
   Array<Vec3d> position;                   ///< all vertices: those of the complex, then face, wall and edge points
-  int64_t face_points = 0, edge_points = 0, divided_edges = 0;
+  int64_t face_points = 0, edge_points = 0;
 
   ElementsView view() const {
     return {tet.data(),

@@ -3,7 +3,6 @@
 #include "base/error.hpp"
 #include "contour/relaxation/host_star.hpp"
 #include "contour/relaxation/relax_passes.hpp"
-#include "contour/surface_distance/far_division.hpp"
 #include "contour/surface_distance/move_nearer.hpp"
 #include "geom/tet_quality_simd.hpp"
 #include "isosurface/isosurface.hpp"
@@ -106,7 +105,7 @@ struct MeasureChunk {
 template <class Surface>
 class Mover {
 public:
-  Mover(par::HostLauncher& m, const Surface& surface, int threads) : m_(m), surface_(surface), threads_(threads) {}
+  Mover(par::HostLauncher& m, const Surface& surface) : m_(m), surface_(surface) {}
   void judge(const Qualities& all) {
     m_.for_n("element qualities", (all.e.tets + JudgeChunk::chunk - 1) / JudgeChunk::chunk, JudgeChunk{all});
   }
@@ -128,17 +127,13 @@ public:
     };
     m_.for_n("move nearer", n, MoveFirst<decltype(try_one)>{v.r, active, fate, try_one});
   }
-  int64_t divide(std::vector<FarPatch>& patches, const RelaxView& r) {
-    return divide_far(patches, surface_, r.goal, r.shape, threads_);
-  }
 
 private:
   par::HostLauncher& m_;
   const Surface& surface_;
-  int threads_;
 };
 
-/// Without a surface: vertices on it do not ask.
+/// Without a surface: vertices on it do not move.
 struct NoSurface {
   bool probe(Vec3d, double&, Vec3d&) const { return false; }
   void probe_eight(const EightPlaces&, int, EightProbes& out) const { out.known = 0; }
@@ -150,7 +145,7 @@ template <class Surface>
 int64_t relax_on(const Surface& surface, bool surface_moves, Elements& elements,
                  const LargeArray<uint8_t>& lattice_class, int threads) {
   par::HostLauncher launcher(threads);
-  Mover<Surface> mover(launcher, surface, threads);
+  Mover<Surface> mover(launcher, surface);
   return RelaxPasses<par::HostLauncher, Elements, Mover<Surface>>(launcher, elements, lattice_class.data(),
                                                                   static_cast<int64_t>(lattice_class.size()),
                                                                   surface_moves, mover)

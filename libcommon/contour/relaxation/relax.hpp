@@ -13,8 +13,7 @@ LargeArray<uint8_t> lattice_classes(const Complex& complex, int threads);
 /// stay. No vertex's worst element gets worse, where elements on the side that is not meshed count
 /// as unmeshed_weight says; all stay positive by the exact predicate; the same result for any number of threads.
 /// Then corners of surface triangles whose centroids are over 0.49 grid spacings from the surface move nearer: for
-/// that elements may fall to these limits, or to the star's worst where that is beyond. Where that is not enough
-/// surface edges are divided: elements, triangles and vertices come to be more, each new one behind the others.
+/// that elements may fall to these limits, or to the star's worst where that is beyond.
 /// Returns how often a vertex moved. lattice_class: lattice_classes of the complex; the lattice's own elements need
 /// no look. Empty: all are judged, on both sides.
 int64_t relax(Elements& elements, const LargeArray<uint8_t>& lattice_class, const Target* surface, int threads);

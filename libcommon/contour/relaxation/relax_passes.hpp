@@ -19,14 +19,14 @@ public:
   /// lattice_class: of the first `known` vertices. surface_moves: vertices on the surface do.
   RelaxPasses(Launcher& m, Elements& elements, const uint8_t* lattice_class, int64_t known, bool surface_moves,
               Mover& mover)
-      : m_(m), mover_(mover),
-        surface_moves_(surface_moves), arrays_{elements, m.template array<float>(numbered(elements.view().tets)),
-                                               m.filled(4 * elements.view().positions, uint8_t{0})},
-        stars_(m) {
+      : m_(m), mover_(mover), surface_moves_(surface_moves),
+        quality_(m.template array<float>(numbered(elements.view().tets))),
+        bound_(m.filled(4 * elements.view().positions, uint8_t{0})), stars_(m) {
     // 13.2° counts like it. Q is held to the least of the paper's improved meshes: raising it is tetsmooth's work.
     constexpr double largest_angle = 159.8, least_q = 0.1;
-    arrays_.show(r_);
-    const ElementsView& e = r_.e;
+    const ElementsView e = r_.e = elements.view();
+    r_.quality = quality_.data();
+    r_.bound = {bound_.data()};
     r_.goal = static_cast<float>(angle_quality(largest_angle));
     r_.shape = shape_weight_of(least_q, angle_quality(largest_angle));
     r_.classes = {lattice_class, known};
@@ -60,7 +60,7 @@ public:
           [&](const int32_t* active, int64_t n, Fate* fate) { mover_.move(r_, active, n, fate, distance); });
     }
     if (surface_moves_)
-      moved += NearerPasses<Launcher, Elements, Mover>(m_, mover_, r_, arrays_, stars_).run();
+      moved += NearerPasses<Launcher, Mover>(m_, mover_, r_, stars_).run();
     return moved;
   }
 
@@ -90,7 +90,8 @@ private:
   Mover& mover_;
   bool surface_moves_;
   RelaxView r_{};
-  RelaxArrays<Launcher, Elements> arrays_;
+  Array<float> quality_;
+  Array<uint8_t> bound_;
   StarPasses<Launcher> stars_;
 };
 

@@ -46,7 +46,7 @@ public:
 
   /// Of the candidates `vertex`, ascending; near: all elements at them.
   void gather_stars(RelaxView& r, Ids vertex, Ids near) {
-    if (static_cast<int64_t>(number_.size()) < r.e.positions) // at first, or there are more now
+    if (number_.size() == 0) // at first
       number_ = m_.filled(r.e.positions, int32_t{-1});
     else
       m_.for_n("forget candidates", vertex_.n, ForgetCandidates{vertex_.data(), number_.data()});

@@ -2,14 +2,13 @@
 // pass by pass, over a launcher.
 #pragma once
 #include "contour/relaxation/star_passes.hpp"
-#include "contour/surface_distance/divide_passes.hpp"
 #include "contour/surface_distance/nearer_items.hpp"
 
 namespace molmesh::contour {
 
 /// Mover: measure(e, off) measures all triangles; move_nearer(view, active, n, fate) lets those move who have the
-/// turn; divide(patches, view) divides edges and returns how many; begin as RelaxPasses has it.
-template <par::Launcher Launcher, class Elements, class Mover>
+/// turn; begin as RelaxPasses has it.
+template <par::Launcher Launcher, class Mover>
 class NearerPasses {
   template <class T>
   using Array = typename Launcher::template Array<T>;
@@ -17,9 +16,8 @@ class NearerPasses {
 
 public:
   /// stars: memory for those of this.
-  NearerPasses(Launcher& m, Mover& mover, const RelaxView& r, RelaxArrays<Launcher, Elements>& arrays,
-               StarPasses<Launcher>& stars)
-      : m_(m), mover_(mover), arrays_(arrays), stars_(stars), off_(m.template array<float>(r.e.tris)) {
+  NearerPasses(Launcher& m, Mover& mover, const RelaxView& r, StarPasses<Launcher>& stars)
+      : m_(m), mover_(mover), stars_(stars), off_(m.template array<float>(r.e.tris)) {
     constexpr double angle = 16;
     v_.r = r;
     v_.room = static_cast<float>(angle_quality(angle));
@@ -28,22 +26,9 @@ public:
 
   /// How often a vertex moved.
   int64_t run() {
-    constexpr int most_divisions = 2;
-    mover_.measure(v_.r.e, v_.off);
-    far_ = far_triangles();
-    int64_t moved = move_all();
-    for (int n = 0; n < most_divisions && far_.n > 0 && divide(); ++n)
-      moved += move_all();
-    return moved;
-  }
-
-private:
-  Ids far_triangles() {
-    return par::gather<int32_t>(m_, "far triangles", v_.r.e.tris, FarTriangles{v_.off, nullptr});
-  }
-
-  int64_t move_all() {
     constexpr int most_passes = 6, most_rounds = 20;
+    mover_.measure(v_.r.e, v_.off);
+    far_ = far_triangles(v_.r.e.tris, nullptr);
     int64_t moved = 0;
     for (int pass = 0; pass < most_passes && far_.n > 0; ++pass) {
       find_candidates(pass);
@@ -56,24 +41,15 @@ private:
       if (moves == 0)
         break;
       moved += moves;
-      far_ = par::gather<int32_t>(m_, "far triangles", far_.n, FarTriangles{v_.off, far_.data()});
+      far_ = far_triangles(far_.n, far_.data());
     }
     return moved;
   }
 
-  /// Of the triangles that are still far, edges; false where there is none to divide.
-  bool divide() {
-    find_candidates(1); // with those that may make room, of all elements
-    DividePasses<Launcher> passes(m_, v_.r, v_.off, stars_.near(), near_, stars_.number());
-    const int64_t divided = mover_.divide(passes.patches(), v_.r);
-    if (divided == 0)
-      return false;
-    passes.put(arrays_, off_);
-    arrays_.elements.divided_edges += divided;
-    arrays_.show(v_.r);
-    v_.off = off_.data();
-    far_ = far_triangles();
-    return true;
+private:
+  /// among: null: all n.
+  Ids far_triangles(int64_t n, const int32_t* among) {
+    return par::gather<int32_t>(m_, "far triangles", n, FarTriangles{v_.off, among});
   }
 
   /// The far triangles' corners; after the first pass, for the few that elements hold back, all vertices of
@@ -104,7 +80,6 @@ private:
 
   Launcher& m_;
   Mover& mover_;
-  RelaxArrays<Launcher, Elements>& arrays_;
   StarPasses<Launcher>& stars_;
   NearerView v_{};
   Array<float> off_;

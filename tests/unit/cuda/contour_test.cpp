@@ -73,8 +73,7 @@ public:
     const contour::Summary& b = summary;
     differ_ += a.leaves != b.leaves || a.surface_cells != b.surface_cells || a.split_cells != b.split_cells ||
                a.restored_points != b.restored_points || a.relaxed_points != b.relaxed_points ||
-               a.face_points != b.face_points || a.edge_points != b.edge_points ||
-               a.divided_edges != b.divided_edges;
+               a.face_points != b.face_points || a.edge_points != b.edge_points;
   }
   int64_t differ() const { return differ_; }
   const cuda::DeviceStages<cuda::HostBackend>& device() const { return device_; }
