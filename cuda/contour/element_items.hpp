@@ -1,5 +1,5 @@
-// element_items.hpp — faces and rings made twice: counted, and written where the counts' sums say. No appends, and
-// the order of the leaves and edges whatever the threads.
+// element_items.hpp — kernels that make the elements of faces and rings twice: counted, then written where the sums
+// of the counts say. Nothing is appended, so the order is that of leaves and edges.
 #pragma once
 #include "contour/complex/complex_passes.hpp"
 #include "contour/elements/interior_edges.hpp"

@@ -1,4 +1,4 @@
-// element_sinks.hpp — where the elements of each run go: into one array.
+// element_sinks.hpp — collects the elements of all runs in one array.
 #pragma once
 #include "contour/elements/elements.hpp"
 #include "cuda/contour/element_items.hpp"

@@ -1,5 +1,5 @@
-// relax.hpp — contour::relax on a Backend: the host's passes; a team looks for a vertex's place, an element of its
-// star to each thread, in the order and with the rounding of StarQuality.
+// relax.hpp — contour::relax on a Backend: the host's passes. A team searches a vertex's place, one element of its
+// star a thread, in the order and with the rounding of the host.
 #pragma once
 #include "contour/relaxation/relax_passes.hpp"
 #include "contour/surface_distance/move_nearer.hpp"

@@ -1,4 +1,4 @@
-// passes.hpp — count, scan, fill, and words by key, over a launcher.
+// passes.hpp — gathers what items have (count, scan, fill), places by key and unites sets, over a launcher.
 #pragma once
 #include "base/hd.hpp"
 #include "par/items.hpp"

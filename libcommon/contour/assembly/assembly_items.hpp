@@ -1,4 +1,4 @@
-// assembly_items.hpp — which elements are kept, where they go, and the numbers of their points. Host and device.
+// assembly_items.hpp — kernels that select and place the mesh's elements and number its points. Host and device.
 #pragma once
 #include "contour/elements/elements.hpp"
 #include "par/atomic_updates.hpp"

@@ -1,4 +1,5 @@
-// element_shape.hpp — how flat an element is: what is chosen between ways to make elements. Host and device.
+// element_shape.hpp — the least sine of an element's dihedral angles, by which flat elements are avoided. Host and
+// device.
 #pragma once
 #include "contour/elements/shape_simd.hpp"
 #include "geom/vec.hpp"

@@ -1,4 +1,4 @@
-// elements.cpp — faces, then rings, joined in the order of the octree's curve.
+// elements.cpp — makes the elements of faces, then of rings, and joins them in the order of the octree's curve.
 #include "contour/elements/elements.hpp"
 #include "contour/elements/interior_edges.hpp"
 #include "contour/elements/sign_change_edges.hpp"

@@ -1,5 +1,5 @@
-// face_shape.hpp — whether a dual edge pierces its face, how flat the face's elements are, and so whether it gets a
-// point. Host and device.
+// face_shape.hpp — decides whether a face gets a point: where the dual edge misses it, or where its elements are
+// flat. Host and device.
 #pragma once
 #include "contour/complex/edge_crossing.hpp"
 #include "contour/elements/element_shape.hpp"

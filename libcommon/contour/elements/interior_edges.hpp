@@ -1,4 +1,5 @@
-// interior_edges.hpp — one tetrahedron per edge of each face between two cells. Host and device.
+// interior_edges.hpp — the tetrahedra round interior edges, face by face: one for each edge of a face between two
+// cells. Section 4.1 of Liao et al. 2013. Host and device.
 #pragma once
 #include "contour/elements/batch.hpp"
 #include "contour/elements/face_shape.hpp"

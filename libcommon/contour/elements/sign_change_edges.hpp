@@ -1,5 +1,5 @@
 // sign_change_edges.hpp — the elements round one sign-change edge: pyramids over the ring of dual vertices, split
-// by the better diagonal or round a crossing point. Host and device.
+// by the better diagonal or round a crossing point. Section 4.1 of Liao et al. 2013. Host and device.
 #pragma once
 #include "contour/complex/edge_crossing.hpp"
 #include "contour/elements/batch.hpp"

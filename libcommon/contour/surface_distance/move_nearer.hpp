@@ -1,5 +1,4 @@
-// move_nearer.hpp — one vertex looks for a place from where its surface triangles are nearer to the isosurface.
-// Host and device.
+// move_nearer.hpp — moves one vertex to where its surface triangles are nearer to the isosurface. Host and device.
 #pragma once
 #include "contour/relaxation/move_vertex.hpp"
 #include "contour/surface_distance/nearer_items.hpp"

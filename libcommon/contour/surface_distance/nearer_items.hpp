@@ -1,5 +1,5 @@
-// nearer_items.hpp — surface triangles far from the isosurface: which they are, and who may move for them. Host and
-// device.
+// nearer_items.hpp — kernels that find the surface triangles far from the isosurface and the vertices that may move
+// for them. Host and device.
 #pragma once
 #include "contour/relaxation/relax_items.hpp"
 #include <cmath>
