@@ -49,9 +49,9 @@ TEST_CASE("uniform meshes have the Euler number of the trilinear isosurface") {
     const bool ties = trial % 2 != 0; // three values in ten at the isovalue: outside
     const auto grid_of = [&](float at_isovalue, std::mt19937_64 r) {
       return test::sample_grid({0, 0, 0}, {8, 8, 8}, 1, 3, [&](Vec3d x) {
-        const bool rim = std::min({x.x, x.y, x.z}) < 0.5 || std::max({x.x, x.y, x.z}) > 6.5;
+        const bool border = std::min({x.x, x.y, x.z}) < 0.5 || std::max({x.x, x.y, x.z}) > 6.5;
         const bool tie = ties && u(r) < 0.6;
-        return rim ? 0.2 : tie ? double(at_isovalue) : u(r);
+        return border ? 0.2 : tie ? double(at_isovalue) : u(r);
       });
     };
     const BlockGrid grid = grid_of(1, random), below = grid_of(std::nextafter(1.0f, 0.0f), random);

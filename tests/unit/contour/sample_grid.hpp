@@ -93,7 +93,7 @@ inline BlockGrid cube_grid(double half, double h, const std::function<double(Vec
 }
 
 /// A small grid of rough or smooth noise, rough with values exactly at the isovalue among them or without, by turns
-/// of `trial`; the rim is outside.
+/// of `trial`; the border is outside.
 inline BlockGrid random_grid(std::mt19937_64& random, int trial) {
   std::uniform_real_distribution<double> u(0, 2);
   const int n = 4 + trial % 4;
