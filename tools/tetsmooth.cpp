@@ -96,13 +96,13 @@ Status run_tool(const Options& o, cli::Run& run) {
                      {"face_swaps", c.face_swaps},
                      {"contractions", c.contractions},
                      {"splits", c.splits},
-                     {"hand_overs", c.hand_overs},
-                     {"nestings", c.nestings},
+                     {"hand_overs", c.retreats},
+                     {"nestings", c.cavity_shrinks},
                      {"quality_before", json(result.before)},
                      {"quality_after", json(result.after)}});
   if (grid && o.iterations > 0)
     run.counts["surface"] = json(result.fidelity);
-  if (result.in_vain)
+  if (result.rejected)
     run.note("as it came: the worst element was worse after " + std::to_string(result.rounds) + " rounds");
   else if (grid && o.iterations > 0 && 2 * result.fidelity.points_off > result.fidelity.points)
     run.note("off the isosurface: " + std::to_string(result.fidelity.points_off) + " of " +

@@ -5,6 +5,7 @@
 #include "geom/tet_quality.hpp"
 #include "isosurface/guard.hpp"
 #include "isosurface/isosurface_view.hpp"
+#include "optimize/acceptance/acceptance.hpp"
 #include "optimize/mesh/dynamic_mesh.hpp"
 
 namespace molmesh::cuda {
@@ -14,14 +15,14 @@ struct alignas(16) Corners {
   int32_t v[4];
 };
 /// A triangle on the curved surface, running as the isosurface's normal does.
-struct Sail {
+struct SurfaceTriangle {
   int32_t v[3];
 };
-/// Which faces of an element are sails: bit f, and bit 4 + f where face f runs against the normal.
-struct GatherSails {
+/// Which faces of an element are surface triangles: bit f, and bit 4 + f where face f runs against the normal.
+struct GatherSurfaceTriangles {
   const Corners* element;
   const uint8_t* faces;
-  HD int64_t operator()(int64_t i, Sail* out) const {
+  HD int64_t operator()(int64_t i, SurfaceTriangle* out) const {
     int64_t n = 0;
     for (int f = 0; f < 4; ++f)
       if (faces[i] >> f & 1) {
@@ -44,9 +45,9 @@ struct Star {
 /// The mesh while its connectivity stands still.
 struct FlowMesh {
   const Corners* element;
-  const Sail* sail;
+  const SurfaceTriangle* triangle;
   const optimize::Vertex* vertex;
-  Star elements, sails;
+  Star elements, triangles;
   bool has_surface;
   IsosurfaceView surface;
   Guard guard;
@@ -55,15 +56,15 @@ struct FlowMesh {
   bool worst_first;
   optimize::Walls walls;
 
-  HD float lack(float q) const { return molmesh::lack(q, goal, worst_first, guard); }
-  /// Whether a triangle at the point must be kept from crossing another sheet (DynamicMesh::crowded): the host's
+  HD float deficit(float q) const { return optimize::deficit(q, goal, worst_first, guard); }
+  /// Whether a triangle at the point must be kept from crossing another one (DynamicMesh::watched): the host's
   /// passes see to that, and know such triangles by their places.
   HD bool is_watched(int64_t v) const {
-    for (int64_t i = sails.begin[v]; i < sails.begin[v + 1]; ++i) {
-      int crowded = 0;
-      for (const int32_t corner : sail[sails.item[i]].v)
-        crowded += vertex[corner].crowded;
-      if (crowded >= 2)
+    for (int64_t i = triangles.begin[v]; i < triangles.begin[v + 1]; ++i) {
+      int watched = 0;
+      for (const int32_t corner : triangle[triangles.item[i]].v)
+        watched += vertex[corner].watched;
+      if (watched >= 2)
         return true;
     }
     return false;
@@ -73,7 +74,7 @@ struct FlowMesh {
 /// What a point must keep to: every element of its star above `worst`, which is what it was; their deficit and the
 /// misfit of its surface triangles no larger.
 struct Limits {
-  float worst, lack;
+  float worst, deficit;
   double misfit;
 };
 
@@ -124,20 +125,20 @@ struct OneMoved {
 /// that floating point cannot tell its sign.
 template <class Where>
 HD inline float worst_if_kept(const FlowMesh& m, int64_t v, const Where& at, const Limits& limits) {
-  float worst = 2, lack = 0;
+  float worst = 2, deficit = 0;
   for (int64_t i = m.elements.begin[v]; i < m.elements.begin[v + 1]; ++i) {
     const Corners& e = m.element[m.elements.item[i]];
     const float q = tet_quality(at(e.v[0]), at(e.v[1]), at(e.v[2]), at(e.v[3]));
     if (!(q > limits.worst && q > surely_positive))
       return -1;
     worst = q < worst ? q : worst;
-    lack += m.lack(q);
+    deficit += m.deficit(q);
   }
-  if (lack > limits.lack)
+  if (deficit > limits.deficit)
     return -1;
   if (m.vertex[v].kind == optimize::Kind::surface)
-    for (int64_t i = m.sails.begin[v]; i < m.sails.begin[v + 1]; ++i) {
-      const Sail& s = m.sail[m.sails.item[i]];
+    for (int64_t i = m.triangles.begin[v]; i < m.triangles.begin[v + 1]; ++i) {
+      const SurfaceTriangle& s = m.triangle[m.triangles.item[i]];
       if (misfit(m.surface, m.guard, m.most_tilt, at(s.v[0]), at(s.v[1]), at(s.v[2])) > limits.misfit)
         return -1;
     }
@@ -182,7 +183,7 @@ struct ProposeMove {
         l.worst = q;
         bad = int32_t(m.elements.item[i]);
       }
-      l.lack += m.lack(q);
+      l.deficit += m.deficit(q);
       const Vec3d sum = p[0] + p[1] + p[2] + p[3];
       const double volume = std::abs(dot(cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]));
       moment += volume * 0.25 * sum;
@@ -192,8 +193,8 @@ struct ProposeMove {
     }
     length /= 3. * double(m.elements.begin[v + 1] - m.elements.begin[v]);
     if (m.vertex[v].kind == optimize::Kind::surface)
-      for (int64_t i = m.sails.begin[v]; i < m.sails.begin[v + 1]; ++i) {
-        const Sail& s = m.sail[m.sails.item[i]];
+      for (int64_t i = m.triangles.begin[v]; i < m.triangles.begin[v + 1]; ++i) {
+        const SurfaceTriangle& s = m.triangle[m.triangles.item[i]];
         const double f = misfit(m.surface, m.guard, m.most_tilt, point[s.v[0]], point[s.v[1]], point[s.v[2]]);
         l.misfit = f > l.misfit ? f : l.misfit;
       }

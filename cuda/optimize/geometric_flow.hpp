@@ -61,12 +61,12 @@ public:
   int64_t run(optimize::DynamicMesh& mesh, const optimize::Pass& pass, int sweeps) {
     mesh_.update(mesh);
     const Stars<Backend> around(b_, mesh_.corners.data(), mesh_.elements, mesh_.points),
-        sails_around(b_, mesh_.sails.data(), mesh_.sails.n, mesh_.points);
+        triangles_around(b_, mesh_.triangles.data(), mesh_.triangles.n, mesh_.points);
     FlowMesh m{mesh_.corners.data(),
-               mesh_.sails.data(),
+               mesh_.triangles.data(),
                mesh_.vertex.data(),
                around.view(),
-               sails_around.view(),
+               triangles_around.view(),
                surface_ && pass.guard.lift == 0,
                {},
                pass.guard,

@@ -6,7 +6,7 @@
 namespace molmesh::cuda {
 namespace {
 
-uint8_t sail_faces(const optimize::DynamicMesh& m, const optimize::Element& e) {
+uint8_t surface_faces(const optimize::DynamicMesh& m, const optimize::Element& e) {
   unsigned faces = 0;
   for (size_t f = 0; e.alive() && f < 4; ++f)
     if (m.counts_here(e, f) && m.labels[e.label[f]].curved())
@@ -33,7 +33,7 @@ ElementChanges KnownMesh::element_changes(const optimize::DynamicMesh& m) {
   c.slot = renew(element_, m.element.size(), [&](size_t i) {
     const optimize::Element& e = m.element[i];
     return Element{e.alive() ? e.v : std::array<int32_t, 4>{-1, -1, -1, -1},
-                   with_sails_ ? sail_faces(m, e) : uint8_t{0}};
+                   with_surface_ ? surface_faces(m, e) : uint8_t{0}};
   });
   for (const uint32_t i : c.slot) {
     const auto& v = element_[i].v;

@@ -10,7 +10,8 @@ namespace molmesh::cuda {
 struct ElementChanges {
   std::vector<uint32_t> slot;
   std::vector<Corners> corners;
-  std::vector<uint8_t> faces; ///< that are sails, as GatherSails reads them; each sail in one element only
+  std::vector<uint8_t>
+      faces; ///< that are surface triangles, as GatherSurfaceTriangles reads them; each in one element only
 };
 struct PointChanges {
   std::vector<uint32_t> slot;
@@ -20,7 +21,7 @@ struct PointChanges {
 
 class KnownMesh {
 public:
-  KnownMesh(bool with_sails, int threads) : with_sails_(with_sails), threads_(threads) {}
+  KnownMesh(bool with_surface, int threads) : with_surface_(with_surface), threads_(threads) {}
   /// Slots in which the mesh is not as known, or of which nothing was; from now on it is.
   ElementChanges element_changes(const optimize::DynamicMesh& m);
   PointChanges point_changes(const optimize::DynamicMesh& m);
@@ -37,13 +38,13 @@ private:
     optimize::Vertex vertex;
     bool operator==(const Point& o) const {
       return at == o.at && vertex.kind == o.vertex.kind && vertex.frozen == o.vertex.frozen &&
-             vertex.label == o.vertex.label && vertex.crowded == o.vertex.crowded;
+             vertex.label == o.vertex.label && vertex.watched == o.vertex.watched;
     }
   };
   template <class Known, class AsItIs>
   std::vector<uint32_t> renew(std::vector<Known>& known, size_t n, const AsItIs& as_it_is) const;
 
-  bool with_sails_;
+  bool with_surface_;
   int threads_;
   std::vector<Element> element_;
   std::vector<Point> point_;

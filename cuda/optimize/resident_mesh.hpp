@@ -19,12 +19,12 @@ class ResidentMesh {
 
 public:
   /// threads: of the host, which looks for what has changed.
-  ResidentMesh(Backend& b, bool with_sails, int threads) : b_(b), known_(with_sails, threads) {}
+  ResidentMesh(Backend& b, bool with_surface, int threads) : b_(b), known_(with_surface, threads) {}
 
   /// As the mesh is now.
   void update(const optimize::DynamicMesh& m) {
     has_moved = {};
-    sails = {};
+    triangles = {};
     const int64_t had = std::exchange(elements, static_cast<int64_t>(m.element.size())),
                   had_points = std::exchange(points, static_cast<int64_t>(m.point.size()));
     if (4 * elements > int64_t{1} << 32)
@@ -35,7 +35,8 @@ public:
     const PointChanges p = known_.point_changes(m);
     send(p.slot, p.at, had_points, points, point);
     send(p.slot, p.vertex, had_points, points, vertex);
-    sails = par::gather<Sail>(b_, "sails", elements, GatherSails{corners.data(), faces_.data()});
+    triangles = par::gather<SurfaceTriangle>(b_, "surface triangles", elements,
+                                             GatherSurfaceTriangles{corners.data(), faces_.data()});
     has_moved = b_.filled(points, uint8_t{0});
   }
   /// What has moved, and the qualities of the elements there; they count as never tried.
@@ -66,7 +67,7 @@ public:
   Array<Vec3d> point;
   Array<optimize::Vertex> vertex;
   Array<uint8_t> has_moved; ///< [points] since the update
-  List<Sail> sails;
+  List<SurfaceTriangle> triangles;
 
 private:
   /// Into an array of n slots at least, of which there were `had`.

@@ -1,7 +1,6 @@
 // optimization.hpp — what was improved, and how near the surface is, as JSON for the run report (formats/report).
 #pragma once
-#include "optimize/mesh/angles.hpp"
-#include "optimize/mesh/fidelity.hpp"
+#include "optimize/mesh/measures.hpp"
 #include <nlohmann/json.hpp>
 
 namespace molmesh::optimize {

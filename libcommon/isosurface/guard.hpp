@@ -9,9 +9,10 @@ namespace molmesh {
 /// How far a surface triangle may be from the target.
 struct Guard {
   static constexpr double anywhere = 1e300;
-  double angle = 32;       ///< degrees between its normal and the target's at its centroid
-  double distance = 0.12;  ///< of its centroid, in spacings
-  double reach = 0.5;      ///< of a projection, in edge lengths: further, and pinches drop two points on one place
+  double angle = 32;      ///< degrees between its normal and the target's at its centroid
+  double distance = 0.12; ///< of its centroid, in spacings
+  /// Longest allowed projection, in edge lengths; longer ones merge two points where the surface is pinched.
+  double reach = 0.5;
   double lift = 0;         ///< how far one operation may take a surface point off the target, in spacings
   double leave = anywhere; ///< and how far all of them; of targets whose distances are exact
   bool operator==(const Guard&) const = default;
@@ -48,14 +49,6 @@ HD double misfit(const Surface& target, const Guard& guard, double most_tilt, Ve
   double misfit;
   misfit_at(area, norm(n), distance, along, guard.distance * target.spacing(), most_tilt, misfit);
   return misfit;
-}
-
-/// What an element below the goal lacks: goal / q - 1 when the worst matter most, (1 - q / goal)² when all do;
-/// nothing where only the worst element counts.
-HD inline float lack(float q, float goal, bool worst_first, const Guard& guard) {
-  return q >= goal || guard.lift > 0 ? 0
-         : worst_first               ? goal / (q > 1e-4f ? q : 1e-4f) - 1
-                                     : (1 - q / goal) * (1 - q / goal);
 }
 
 } // namespace molmesh

@@ -1,5 +1,4 @@
-// optimize.cpp — the order of passes: settle on the surface, raise the goal by steps, release the guard at the very
-// end.
+// optimize.cpp — the tables of rounds and searches, and the loops over them.
 #include "optimize/optimize.hpp"
 #include "base/error.hpp"
 #include "isosurface/reference_surface.hpp"
@@ -13,7 +12,8 @@
 namespace molmesh::optimize {
 namespace {
 
-// Of the labels that are curved; of all where none is: nothing is bound to these then, but they have a size.
+// Triangles with curved labels, or all triangles if no label is curved: nothing is bound to these then, but they
+// have a size.
 std::vector<uint8_t> curved_triangles(const DynamicMesh& m, const TetMesh& mesh) {
   if (std::none_of(m.labels.begin() + 1, m.labels.end(), [](const Label& l) { return l.curved(); }))
     return std::vector<uint8_t>(mesh.tri.size(), 1);
@@ -25,83 +25,219 @@ std::vector<uint8_t> curved_triangles(const DynamicMesh& m, const TetMesh& mesh)
   return take;
 }
 
-// The goal rises by steps: what is far below it gets room before its neighbors ask for it. The guard is released
+// The goal rises by steps: what is far below it gets room before its neighbors ask for it. The guard is relaxed
 // late, when few elements are left; where the surface has features far smaller than the grid, points may leave it
-// at the very end. Recovery brings them back to the isosurface; to a surface that came in nothing does.
-const Guard kept, released{Guard::widest_unbent, 0.24, 1, 0}, lifted{180, 1e3, 1, 0.15},
-    hardly_lifted{80, 0.24, 1, 0.15, 0.02};
-struct Stage {
-  double share; // of the goal's sine
-  int effort;
-  double cell;
+// at the very end. Searches bring them back to the isosurface; to a surface that came in nothing does.
+const Guard strict, relaxed{Guard::widest_unbent, 0.24, 1, 0}, may_leave_surface{180, 1e3, 1, 0.15},
+    may_leave_slightly{80, 0.24, 1, 0.15, 0.02}, bent{70, 0.24, 1, 0};
+
+struct Round {
+  double goal_share; // of the goal's sine
+  bool merges_and_splits;
+  double cell; // of the schedule
   bool worst_first;
   const Guard& guard;
   double least_step = finest_step; // where many elements are below the goal
+  bool fits_surface = false;       // bent triangles are made to fit after it
 };
-const Stage stages[] = {
-    {0.35, 0, 1, true, kept, 0.1}, {0.6, 0, 1, true, kept, 0.1}, {0.8, 1, 1, true, kept, 0.1},
-    {0.9, 1, 2, true, kept, 0.1},  {1, 1, 2, false, kept, 0.03}, {1, 1, 8, true, kept},
-    {0.8, 1, 8, true, released},   {1, 1, 8, false, released},   {0.5, 1, 32, true, lifted},
-    {1, 1, 32, true, released},    {0.97, 1, 32, true, lifted},  {1, 1, 32, false, released},
-    {0.97, 1, 32, true, lifted},
+// The surface is made to fit while elements may still be bad: what stands on it is repaired later, but a bent
+// triangle between good elements has nowhere to go. The last round is repeated.
+const std::vector<Round> rounds{
+    {0.35, false, 1, true, strict, 0.1},
+    {0.6, false, 1, true, strict, 0.1, true},
+    {0.8, true, 1, true, strict, 0.1, true},
+    {0.9, true, 2, true, strict, 0.1, true},
+    {1, true, 2, false, strict, 0.03, true},
+    {1, true, 8, true, strict},
+    {0.8, true, 8, true, relaxed},
+    {1, true, 8, false, relaxed},
+    {0.5, true, 32, true, may_leave_surface},
+    {1, true, 32, true, relaxed},
+    {0.97, true, 32, true, may_leave_surface},
+    {1, true, 32, false, relaxed},
+    {0.97, true, 32, true, may_leave_surface},
 };
-constexpr size_t refresh_offset = 4;
+// After this one points are put further out, for what chords enclose less, and elements keep the whole goal.
+constexpr size_t rounds_to_offset = 4;
 // Where that many elements are below the goal the first rounds take them in the mesh's order and search for places
 // by coarse steps alone: the rounds after find what is left to finer ones. Not without a density, where the surface
 // that came in hardly gives way: TetGen's mesh of 1TII came to 14.9 degrees, not 17.3.
 constexpr int64_t many_elements = 16384;
 // From this round on elements longer than parts, as a far box has, are worked on too, on one thread: they are few.
 constexpr size_t lattice_outgrown = 8;
-// What settling and straightening spoil takes this many rounds to heal: with fewer they may spoil nothing.
-constexpr int rounds_to_heal = 8;
+// What projection and fitting spoil takes this many rounds to repair: with fewer they may spoil nothing.
+constexpr int rounds_to_repair = 8;
 // Where two cells a part leave fewer than this, first passes take one: a single part would be one thread's work.
 constexpr int64_t fewest_parts = 8;
 
-// The surface is made to fit in the first rounds, while elements may still be bad: what stands on it is healed
-// later, but a bent triangle between good elements has nowhere to go.
-constexpr size_t straighten_first = 1, straighten_last = 4;
-constexpr double straighten_share = 0.1;
-const Guard straight{40, 0.24, 0.5, 0};
+constexpr double fitting_share = 0.1; // of the goal's sine
+const Guard fitting{40, 0.24, 0.5, 0};
 
-// Points off the isosurface come back where that can be mended; every repetition has other parts, and none of them
-// where none is left. Efforts begin anew after each that brings one back, and a large mesh has many of these.
-// Of many points the first ones bring most back, in smaller parts: more of these at once, and less to put by for
+// Points off the isosurface come back where elements can be repaired after. Rows are tried in turn while nothing
+// comes back, each time in other parts, and none of them where no point is left. After a point has come back, all
+// but the first begin anew, and a large mesh has many of these.
+constexpr int searches = 32;
+// Of many points the first searches bring most back, in smaller parts: more of these at once, and less to save for
 // each.
-constexpr int recoveries = 32, recoveries_of_many = 4;
-// What is tried, one after the other while nothing comes back.
-struct Attempt {
-  int effort; // Pass::effort
-  const Guard& guard = released;
-  double cell = 0.5;
-  float at_first = 1; // Pass::at_first
-};
-const Guard widened{70, 0.24, 1, 0};
-const Attempt via_70{5, widened, 1, 0.7F}, via_50{5, widened, 1, 0.5F}, wider_3{3, widened, 1},
-    wider_5{5, widened, 1};
-// Last by way of a lower goal.
-const std::vector<Attempt> attempts{{1}, {2}, {3}, {4}, {4, widened}, {5}, via_70, via_50};
-// Where the mesh ends in the surface, which then must not bend as it likes, a wider guard comes last, in larger
-// parts, either order of the worst for both efforts; before that points come back by way of a lower goal.
-const std::vector<Attempt> attempts_at_end{{1},    {2}, {3},     {4},     via_70,  via_70, via_50,
-                                           via_50, {5}, wider_3, wider_5, wider_5, wider_3};
+constexpr int searches_of_many = 4;
+constexpr double size_of_many = 0.35;
 
-Pass pass_of(const Attempt& attempt, float goal) {
-  Pass pass;
-  pass.goal = goal;
-  pass.effort = attempt.effort;
-  pass.cell = attempt.cell;
-  pass.guard = attempt.guard;
-  pass.at_first = attempt.at_first;
-  return pass;
-}
+using enum Moves;
+constexpr Scope of_points = Scope::points, of_elements = Scope::elements;
+const Strategy first{of_points, careful, relaxed}, climb{of_points, bold, relaxed, 0.5, 1, 300},
+    climb_in_necks{of_points, necks, relaxed, 0.5, 1, 300}, bend{of_points, bending, relaxed, 0.5, 1, 2000},
+    walk{of_points, bending, relaxed, 0.5, 1, 2000, 3000}, via_70{of_points, bending, bent, 1, 0.7F, 2000, 3000},
+    via_50{of_points, bending, bent, 1, 0.5F, 2000, 3000};
+// Last by way of a lower goal.
+const std::vector<Strategy> for_points{
+    first, climb, climb_in_necks, bend, {of_points, bending, bent, 0.5, 1, 2000}, walk, via_70, via_50};
+// Where the mesh ends in the surface, which then must not bend as it likes, a wider guard comes last, in larger
+// parts, either measure of the deficit first for both; before that points come back by way of a lower goal.
+const Strategy wide_climb{of_points, necks, bent, 1, 1, 300}, wide_walk{of_points, bending, bent, 1, 1, 2000, 3000};
+const std::vector<Strategy> for_points_at_end{first,     climb,     climb_in_necks, bend, via_70,
+                                              via_70,    via_50,    via_50,         walk, wide_climb,
+                                              wide_walk, wide_walk, wide_climb};
+// For the last elements below the goal.
+const std::vector<Strategy> for_elements{{of_elements, bold, relaxed, 0.5, 1, 300},
+                                         {of_elements, bold, relaxed, 0.5, 1, 300, 1000},
+                                         {of_elements, bold, relaxed, 1, 1, 300, 1000},
+                                         {of_elements, bold, bent, 1, 1, 300, 1000}};
 
 float goal_of(const Options& o) {
   return static_cast<float>(std::max(angle_quality(std::min(o.min_dihedral, Options::most_min_dihedral)),
                                      angle_quality(std::max(o.max_dihedral, Options::least_max_dihedral))));
 }
 
-// Of the last elements below the goal.
-const std::vector<Attempt> healing{{2}, {5}, {5, released, 1}, {5, widened, 1}};
+float share_of(double share, float goal) {
+  return static_cast<float>(share * share * goal);
+}
+
+/// The tables applied to one mesh.
+class Improvement {
+public:
+  Improvement(DynamicMesh& m, const Target& target, Isosurface* isosurface, const Options& options, Result& result)
+      : m_(m), isosurface_(isosurface), options_(options), result_(result),
+        // Edges of four spacings and more are those of merged cells.
+        schedule_(
+            m, &target,
+            std::clamp(21 * mean_surface_edge(m, options.threads), 32 * target.spacing(), 256 * target.spacing()),
+            options.threads),
+        goal_(goal_of(options)), usual_(std::min(goal_, goal_of({}))), at_first_(schedule_.worst()),
+        // Angles count, where needles would let them fall further.
+        no_worse_(std::min(goal_, static_cast<float>(std::min(angle_quality(result.before.min),
+                                                              angle_quality(result.before.max))))),
+        repairs_(options.iterations >= rounds_to_repair), small_(schedule_.parts_at_surface(2) < fewest_parts),
+        many_(isosurface && schedule_.below(goal_) >= many_elements) {}
+
+  void run_rounds(const FlowPass& flow) {
+    double cell_of_all = 0;
+    for (size_t k = 0; k < size_t(options_.iterations) && schedule_.worst() < goal_; ++k) {
+      const Round& round = rounds[std::min(k, rounds.size() - 1)];
+      Pass pass = pass_of(round);
+      pass.tiny_share = k == 0 ? 0.25f : 1.f; // clusters far smaller than the grid have to go as a whole
+      const float goal = pass.goal;
+      if (round.guard.lift > 0)
+        schedule_.watch_crossings(Schedule::everywhere);
+      int64_t done = flow ? flow(m_, isosurface_, pass) : 0;
+      result_.counts.moves += done;
+      if (k == lattice_outgrown)
+        cell_of_all = schedule_.cell_of_all(round.cell);
+      for (const double cell : {small_ ? std::min(round.cell, 1.) : round.cell, round.cell, cell_of_all})
+        if (cell > 0) {
+          pass.cell = cell;
+          done += count(schedule_.run(pass));
+        }
+      if (isosurface_ && repairs_ && round.fits_surface) {
+        pass.goal = share_of(fitting_share, goal_);
+        pass.guard = fitting;
+        count(schedule_.fit_surface(pass));
+      }
+      ++result_.rounds;
+      if (isosurface_)
+        project_after(k, goal);
+      if (done == 0 && k + 1 >= rounds.size())
+        break;
+    }
+    if (isosurface_ && result_.rounds == 0) // good enough as it came, and to stay so
+      project_with_offset(std::min(goal_, at_first_));
+  }
+
+  void search_points() {
+    const std::vector<Strategy>& rows = schedule_.ends_in_surface() ? for_points_at_end : for_points;
+    size_t row = 0;
+    for (int k = 0; k < searches && row < rows.size(); ++k) {
+      Strategy s = rows[row];
+      s.goal = usual_;
+      s.worst_first = k % 2 == 0;
+      if (many_ && k < searches_of_many) // what goes wrong is taken back: parts are small
+        s.part_size = size_of_many;
+      row = count(schedule_.search(s)) > 0 ? std::min<size_t>(row, 1) : row + 1;
+    }
+    for (int k = 0; goal_ > usual_ && k < 4; ++k) { // searches have repaired to the usual goal
+      Pass pass = pass_of({1, true, 8, k % 2 == 0, relaxed});
+      if (count(schedule_.run(pass)) == 0)
+        break;
+    }
+  }
+
+  void search_elements() {
+    for (Strategy s : for_elements)
+      if (repairs_) {
+        s.goal = goal_;
+        count(schedule_.search(s));
+      }
+  }
+
+  bool is_worse() { return schedule_.worst() < at_first_; }
+
+private:
+  int64_t count(const Counts& c) {
+    result_.counts += c;
+    return c.total();
+  }
+
+  Pass pass_of(const Round& round) const {
+    Pass pass;
+    // For better elements than by default no point leaves the isosurface.
+    pass.goal = share_of(round.goal_share, round.guard.lift > 0 ? usual_ : goal_);
+    pass.merges_and_splits = round.merges_and_splits;
+    pass.cell = round.cell;
+    pass.worst_first = round.worst_first;
+    pass.least_step = many_ ? round.least_step : finest_step;
+    pass.in_mesh_order = pass.least_step > finest_step;
+    pass.guard = isosurface_ || round.guard.lift == 0 ? round.guard : may_leave_slightly;
+    return pass;
+  }
+
+  void offset_points() {
+    isosurface_->set_offset(isosurface_->offset() + chord_offset(m_, *isosurface_, options_.threads));
+  }
+
+  void project_with_offset(float floor) {
+    count(schedule_.project(floor, strict));
+    offset_points();
+    count(schedule_.project(floor, strict));
+  }
+
+  void project_after(size_t round, float goal) {
+    if (round == 0) { // not before: what is squeezed between surface and grid is gone now
+      project_with_offset(repairs_ ? 1 : no_worse_);
+      schedule_.watch_crossings(Schedule::guarded); // nearer to the target, fewer are
+    }
+    if (round + 1 == rounds_to_offset)
+      offset_points();
+    const float floor = round < rounds_to_offset ? goal : goal_;
+    count(schedule_.project(repairs_ ? floor : std::max(floor, no_worse_), strict));
+  }
+
+  DynamicMesh& m_;
+  Isosurface* const isosurface_;
+  const Options& options_;
+  Result& result_;
+  Schedule schedule_;
+  const float goal_, usual_, at_first_, no_worse_;
+  const bool repairs_, small_, many_;
+};
 
 } // namespace
 
@@ -128,103 +264,16 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     input_surface = std::make_unique<ReferenceSurface>(mesh, curved_triangles(m, mesh));
   if (density && runs_against(m, *isosurface, options.threads))
     fail_input("most of the surface runs against the isosurface, expected the lower region's inside in its own");
-  const Target* target = density ? static_cast<const Target*>(isosurface.get()) : input_surface.get();
-  const double h = target->spacing(), edge = mean_surface_edge(m, options.threads); // 4 h and more in merged cells
-  Schedule schedule(m, target, std::clamp(21 * edge, 32 * h, 256 * h), options.threads);
-  const float goal = goal_of(options);
-  // For better elements than by default no point leaves the isosurface.
-  const float usual = std::min(goal, goal_of({}));
-
-  const auto settle = [&](float floor) {
-    result.counts += schedule.settle(floor, kept);
-    isosurface->set_offset(isosurface->offset() + chord_offset(m, *isosurface, options.threads));
-    result.counts += schedule.settle(floor, kept);
-  };
+  const Target& target = density ? static_cast<const Target&>(*isosurface) : *input_surface;
 
   begin("improve");
-  const float at_first = schedule.worst();
-  // Angles count, where needles would let them fall further.
-  const float no_worse = std::min(
-      goal, static_cast<float>(std::min(angle_quality(result.before.min), angle_quality(result.before.max))));
-  const bool heals = options.iterations >= rounds_to_heal;
-  const bool small = schedule.parts_at_surface(2) < fewest_parts;
-  const bool many = density && schedule.below(goal) >= many_elements;
-  double cell_of_all = 0;
-  for (int round = 0; round < options.iterations && schedule.worst() < goal; ++round) {
-    const Stage& stage = stages[std::min<size_t>(size_t(round), std::size(stages) - 1)];
-    Pass pass;
-    const auto rising = static_cast<float>(stage.share * stage.share * (stage.guard.lift > 0 ? usual : goal));
-    pass.goal = rising;
-    pass.effort = stage.effort;
-    pass.cell = stage.cell;
-    pass.worst_first = stage.worst_first;
-    pass.least_step = many ? stage.least_step : finest_step;
-    pass.in_mesh_order = pass.least_step > finest_step;
-    pass.guard = density || stage.guard.lift == 0 ? stage.guard : hardly_lifted;
-    pass.yield = round == 0 ? 0.25f : 1.f; // clusters far smaller than the grid have to go as a whole
-    if (stage.guard.lift > 0)
-      schedule.find_crowded(Schedule::everywhere);
-    int64_t done = 0;
-    if (flow) {
-      done = flow(m, isosurface.get(), pass);
-      result.counts.moves += done;
-    }
-    if (size_t(round) == lattice_outgrown)
-      cell_of_all = schedule.cell_of_all(stage.cell);
-    for (const double cell : {small ? std::min(stage.cell, 1.) : stage.cell, stage.cell, cell_of_all}) {
-      if (cell == 0)
-        continue;
-      pass.cell = cell;
-      const Counts c = schedule.run(pass);
-      result.counts += c;
-      done += c.total();
-    }
-    if (density && heals && size_t(round) >= straighten_first && size_t(round) <= straighten_last) {
-      pass.goal = static_cast<float>(straighten_share * straighten_share * goal);
-      pass.guard = straight;
-      result.counts += schedule.straighten(pass);
-    }
-    ++result.rounds;
-    if (density && round == 0) { // not before: what is squeezed between surface and grid is gone now
-      settle(heals ? 1 : no_worse);
-      schedule.find_crowded(Schedule::guarded); // nearer to the target, fewer are
-    }
-    if (density) {
-      if (size_t(round) + 1 == refresh_offset)
-        isosurface->set_offset(isosurface->offset() + chord_offset(m, *isosurface, options.threads));
-      const float floor = size_t(round) < refresh_offset ? rising : goal;
-      result.counts += schedule.settle(heals ? floor : std::max(floor, no_worse), kept);
-    }
-    if (done == 0 && size_t(round) + 1 >= std::size(stages))
-      break;
-  }
-  if (density && result.rounds == 0) // good enough as it came, and to stay so
-    settle(std::min(goal, at_first));
-  const std::vector<Attempt>& all = schedule.ends_in_surface() ? attempts_at_end : attempts;
-  size_t idle = 0;
-  for (int repeat = 0; density && repeat < recoveries && idle < all.size(); ++repeat) {
-    const Attempt& attempt = all[idle];
-    Pass pass = pass_of(attempt, usual);
-    pass.worst_first = repeat % 2 == 0;
-    if (many && repeat < recoveries_of_many) // what goes wrong is taken back: parts are small
-      pass.cell = 0.35;
-    const Counts c = schedule.recover(pass);
-    idle = c.total() > 0 ? std::min<size_t>(idle, 1) : idle + 1;
-    result.counts += c;
-  }
-  for (int repeat = 0; density && goal > usual && repeat < 4; ++repeat) { // recovery has mended to the usual goal
-    Pass pass = pass_of({1, released, 8}, goal);
-    pass.worst_first = repeat % 2 == 0;
-    const Counts c = schedule.run(pass);
-    result.counts += c;
-    if (c.total() == 0)
-      break;
-  }
-  if (heals)
-    for (const Attempt& attempt : healing)
-      result.counts += schedule.heal(pass_of(attempt, goal));
-  if (result.counts.total() == 0 || schedule.worst() < at_first) { // the file that came in, in its own order
-    result.in_vain = result.counts.total() > 0;
+  Improvement run(m, target, isosurface.get(), options, result);
+  run.run_rounds(flow);
+  if (density)
+    run.search_points();
+  run.search_elements();
+  if (result.counts.total() == 0 || run.is_worse()) { // the file that came in, in its own order
+    result.rejected = result.counts.total() > 0;
     result.counts = {};
     m = DynamicMesh(); // two at a time are too much memory
     if (density)

@@ -2,8 +2,7 @@
 #pragma once
 #include "grid/block_grid.hpp"
 #include "mesh/tet_mesh.hpp"
-#include "optimize/mesh/angles.hpp"
-#include "optimize/mesh/fidelity.hpp"
+#include "optimize/mesh/measures.hpp"
 #include "optimize/mesh/snapshot.hpp"
 #include "optimize/schedule/pass.hpp"
 #include <functional>
@@ -26,7 +25,7 @@ struct Options {
 struct Result {
   Counts counts;
   int rounds = 0;
-  bool in_vain = false; ///< the worst element would have become worse: the mesh is as it came
+  bool rejected = false; ///< the worst element would have become worse: the mesh is as it came
   Angles before, after;
   Fidelity fidelity; ///< after (with a density)
   /// [4 tets] The tetrahedron beyond each face, -1: none; empty where the mesh stayed as it came.

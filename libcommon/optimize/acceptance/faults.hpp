@@ -1,12 +1,31 @@
 // faults.hpp — what is wrong in a part: points off the target, bent triangles, elements below the goal.
 #pragma once
-#include "optimize/acceptance/low_elements.hpp"
-#include "optimize/mesh/vertex_numbers.hpp"
-#include "optimize/operations/editor.hpp"
+#include "optimize/acceptance/acceptance.hpp"
+#include "optimize/operations/region.hpp"
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace molmesh::optimize {
+
+/// The elements of a part below a goal, as operations go on.
+class LowElements {
+public:
+  /// slots: all that elements of the part may be in. log: of the region, kept.
+  LowElements(const DynamicMesh& m, const std::vector<int32_t>& slots, const ChangeLog& log, float goal);
+  /// In the order of the slots.
+  const std::vector<int32_t>& operator()();
+
+private:
+  const DynamicMesh& m_;
+  const std::vector<int32_t>& slots_;
+  const ChangeLog& log_;
+  const float goal_;
+  const SmallNumbers place_; ///< of the slots
+  ChangeLog::Moment seen_;
+  std::vector<std::pair<size_t, int32_t>> by_place_;
+  std::vector<int32_t> low_, written_;
+};
 
 struct Faults {
   int64_t off = 0, bent = 0, below = 0;
@@ -22,10 +41,10 @@ class FaultCount {
 public:
   static constexpr float share = 0.937f; ///< of the goal, 139.99°: elements under it are faults
 
-  /// Keeps the editor's log, and by it looks at what has been written alone.
-  FaultCount(Editor& editor, const DynamicMesh& m, const std::vector<int32_t>& slots, float goal)
-      : editor_(editor), m_(m), slots_(slots), low_(m, slots, editor.log, share * goal) {
-    editor.log.keep();
+  /// Of that guard and goal. Keeps the region's log, and by it looks at what has been written alone.
+  FaultCount(Region& r, const std::vector<int32_t>& slots, const Acceptance& accept)
+      : r_(r), slots_(slots), accept_(accept), low_(r.mesh, slots, r.log, share * accept.goal) {
+    r.log.keep();
   }
   Faults operator()();
   /// Faults::fewer_than, no more elements are below the goal, and the worst of such is no worse.
@@ -38,13 +57,13 @@ private:
   void find_misfits();
   bool in_part(int32_t v, int32_t element) const;
 
-  const Editor& editor_;
-  const DynamicMesh& m_;
+  const Region& r_;
   const std::vector<int32_t>& slots_;
+  const Acceptance accept_;
   LowElements low_;
   ChangeLog::Moment seen_; ///< by find_misfits()
   std::vector<int32_t> written_;
-  VertexNumbers surface_points_;
+  SmallNumbers surface_points_;
   struct PointOff {
     int32_t v, element; ///< of the part, at it when this was found
   };

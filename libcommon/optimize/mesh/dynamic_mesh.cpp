@@ -5,7 +5,6 @@
 #include "geom/tet_quality_simd.hpp"
 #include "mesh/face_groups.hpp"
 #include "mesh/sorted_triangle.hpp"
-#include "optimize/mesh/kinds.hpp"
 #include "par/pages.hpp"
 #include <algorithm>
 #include <map>
@@ -178,9 +177,9 @@ void require_slots(int64_t elements, int64_t vertices) {
 
 void DynamicMesh::resize(size_t elements, size_t vertices) {
   element.resize(elements, Element{});
-  restless.resize(size_t(stretches(elements)), 1);
-  worst.resize(restless.size(), 2);
-  labelled.resize(restless.size(), 0);
+  dirty.resize(size_t(chunks(elements)), 1);
+  worst.resize(dirty.size(), 2);
+  labelled.resize(dirty.size(), 0);
   point.resize(vertices);
   vertex.resize(vertices);
   incident.resize(vertices, -1);
@@ -208,13 +207,13 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   m.state.assign(points, 0);
   m.element.reserve(elements + elements / 4);
   m.element.resize(elements);
-  m.restless.assign(size_t(DynamicMesh::stretches(mesh.tet.size())), 0);
-  m.worst.assign(m.restless.size(), 2);
-  m.labelled.assign(m.restless.size(), 0);
+  m.dirty.assign(size_t(DynamicMesh::chunks(mesh.tet.size())), 0);
+  m.worst.assign(m.dirty.size(), 2);
+  m.labelled.assign(m.dirty.size(), 0);
   FirstFault fault;
-  constexpr int64_t chunk = DynamicMesh::stretch;
+  constexpr int64_t chunk = DynamicMesh::chunk;
   const auto tets = static_cast<int64_t>(mesh.tet.size());
-  par::for_n(DynamicMesh::stretches(mesh.tet.size()), threads, 8, [&](int64_t c) {
+  par::for_n(DynamicMesh::chunks(mesh.tet.size()), threads, 8, [&](int64_t c) {
     float worst = 2;
     const auto first = static_cast<size_t>(c * chunk), n = static_cast<size_t>(std::min(chunk, tets - c * chunk));
     prepare_pages(&m.element[first], n * sizeof(Element));

@@ -31,7 +31,7 @@ struct Vertex {
   Kind kind = Kind::interior;
   uint8_t frozen = 0;   ///< sliding, trace: bit a set when coordinate a is kept
   uint8_t label = 0;    ///< of a labelled face at the vertex (0 inside)
-  bool crowded = false; ///< another sheet of the surface is near, with no elements between
+  bool watched = false; ///< the surface is near itself here, with no elements between: CrossingGuard
 
   int axis() const { return std::countr_zero(frozen); } ///< trace: of the coordinate that is kept
 };
@@ -56,6 +56,9 @@ struct Element {
   }
   bool any_labelled() const { return (label[0] | label[1] | label[2] | label[3]) != 0; }
 };
+
+/// Of an element: the corners of its edges.
+inline constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
 /// Face of the element v, seen from outside it.
 inline std::array<int32_t, 3> outward_triangle(const std::array<int32_t, 4>& v, size_t face) {
@@ -88,25 +91,25 @@ struct DynamicMesh {
   LargeArray<Element> element;
   Array<Label> labels; ///< [0] is no label
   Walls walls;
-  /// [stretches] not 0 where the quality of an element may have changed since this was cleared.
-  Array<uint8_t> restless;
-  Array<float> worst; ///< [stretches] lowest quality where not restless; 2 where nothing is alive
-  /// [stretches] not 0 where a face of an element may be labelled.
+  /// [chunks] 1 if an element of this chunk changed since its worst quality was computed.
+  Array<uint8_t> dirty;
+  Array<float> worst; ///< [chunks] lowest quality where not dirty; 2 where nothing is alive
+  /// [chunks] not 0 where a face of an element may be labelled.
   Array<uint8_t> labelled;
-  static constexpr int64_t stretch = 512; ///< elements
-  static int64_t stretches(size_t elements) { return (static_cast<int64_t>(elements) + stretch - 1) / stretch; }
+  static constexpr int64_t chunk = 512; ///< elements
+  static int64_t chunks(size_t elements) { return (static_cast<int64_t>(elements) + chunk - 1) / chunk; }
 
   /// To so many slots; new ones are free.
   void resize(size_t elements, size_t vertices);
   /// Of the element's quality. From any thread.
-  void note_change(int32_t e) { std::atomic_ref(restless[e / stretch]).store(1, std::memory_order_relaxed); }
+  void note_change(int32_t e) { std::atomic_ref(dirty[e / chunk]).store(1, std::memory_order_relaxed); }
 
   /// A face of it is labelled. From any thread.
-  void note_label(int32_t e) { std::atomic_ref(labelled[e / stretch]).store(1, std::memory_order_relaxed); }
-  /// f(e) for the slots of stretch s.
+  void note_label(int32_t e) { std::atomic_ref(labelled[e / chunk]).store(1, std::memory_order_relaxed); }
+  /// f(e) for the slots of chunk s.
   template <class F>
-  void for_stretch(int64_t s, F&& f) const {
-    for (int64_t e = s * stretch, end = std::min(static_cast<int64_t>(element.size()), e + stretch); e < end; ++e)
+  void for_chunk(int64_t s, F&& f) const {
+    for (int64_t e = s * chunk, end = std::min(static_cast<int64_t>(element.size()), e + chunk); e < end; ++e)
       f(e);
   }
 
@@ -120,8 +123,8 @@ struct DynamicMesh {
     return lower != labels[e.label[face]].reversed;
   }
   /// Whether two of its corners are.
-  bool crowded(const std::array<int32_t, 3>& triangle) const {
-    return std::count_if(triangle.begin(), triangle.end(), [&](int32_t v) { return vertex[v].crowded; }) >= 2;
+  bool watched(const std::array<int32_t, 3>& triangle) const {
+    return std::count_if(triangle.begin(), triangle.end(), [&](int32_t v) { return vertex[v].watched; }) >= 2;
   }
   float quality(const std::array<int32_t, 4>& v) const {
     return tet_quality(point[v[0]], point[v[1]], point[v[2]], point[v[3]]);
@@ -144,5 +147,14 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads);
 /// across [4 tets]: the tetrahedron beyond each face, -1: none. `out` lends its memory; isovalue, source and
 /// creator stay as they are there.
 TetMesh extract(const DynamicMesh& mesh, int threads = 1, LargeArray<int32_t>* across = nullptr, TetMesh out = {});
+
+/// Of a triangle, a bit of its way: it points into the lower of the two regions, or into the mesh.
+inline constexpr uint8_t reversed = 1;
+
+/// Sets Label::axis, the walls and the vertices. label [tris]: indices into DynamicMesh::labels; way [tris].
+/// Sliding needs planes of distinct axes, surface one curved label that is a 2-manifold there without edges that
+/// bend by more than `sharp` degrees.
+void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label,
+               const std::vector<uint8_t>& way, double sharp, int threads);
 
 } // namespace molmesh::optimize

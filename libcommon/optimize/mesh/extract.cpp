@@ -26,7 +26,7 @@ std::vector<int64_t> labelled_faces(const DynamicMesh& m, int threads) {
   std::vector<std::vector<int64_t>> part(m.labelled.size());
   par::for_n(static_cast<int64_t>(part.size()), threads, 16, [&](int64_t s) {
     if (m.labelled[s])
-      m.for_stretch(s, [&](int64_t t) {
+      m.for_chunk(s, [&](int64_t t) {
         const Element& e = m.element[t];
         for (int64_t f = 0; f < 4 && e.alive(); ++f)
           if (m.counts_here(e, size_t(f)))

@@ -1,5 +1,5 @@
 // kinds.cpp — labels that are flat, vertices by the labels they are on, and sharp edges.
-#include "optimize/mesh/kinds.hpp"
+#include "optimize/mesh/dynamic_mesh.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
@@ -87,7 +87,7 @@ private:
 };
 
 /// What meets at the vertices of one curved label and one wall: the surface's trace on the wall passes through
-/// where two edges are of both labels, with one sheet of the surface and no other edge that is kept.
+/// where two edges are of both labels, with one fan of the surface and no other edge that is kept.
 class Traces {
 public:
   explicit Traces(size_t vertices) : edges_(vertices, no_candidate) {}
@@ -111,7 +111,7 @@ public:
       const size_t v = fan_[i].first;
       for (j = i; j < fan_.size() && fan_[j].first == v;)
         ++j;
-      // With elements on both sides the sheet and the wall to either side of it are fans; else all are one.
+      // With elements on both sides the surface and the wall to either side of it are fans; else all are one.
       if ((edges_[v] & 3) == 2 && j - i == (edges_[v] & one_of_three ? 3 : 1))
         f(v);
     }
@@ -231,7 +231,7 @@ void fix_kept_edges(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8
   }
 }
 
-// Where sheets touch elements may know but one of them: such vertices are fixed.
+// Where the surface touches itself elements may know but one fan: such vertices are fixed.
 void fix_touching(DynamicMesh& m, const TetMesh& mesh, Fans& fans, Traces& traces) {
   constexpr size_t none = SIZE_MAX;
   std::vector<size_t> fan(m.point.size(), none);

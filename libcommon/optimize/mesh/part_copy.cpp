@@ -1,31 +1,16 @@
 // part_copy.cpp — elements and vertices of a part, numbered anew in their order.
 #include "optimize/mesh/part_copy.hpp"
-#include "optimize/mesh/open_table.hpp"
+#include "base/open_table.hpp"
 #include "par/par.hpp"
 
 namespace molmesh::optimize {
 namespace {
 
-/// Small numbers of what is kept, in its order; -1 of all else.
-class Numbers {
-public:
-  explicit Numbers(const std::vector<int32_t>& kept) {
-    for (size_t k = 0; k < kept.size(); ++k)
-      number_[static_cast<uint32_t>(kept[k])] = static_cast<int32_t>(k);
-  }
-  int32_t operator()(int32_t id) const {
-    const int32_t* number = id < 0 ? nullptr : number_.find(static_cast<uint32_t>(id));
-    return number ? *number : -1;
-  }
-  std::vector<int32_t> operator()(std::vector<int32_t> ids) const {
-    for (int32_t& id : ids)
-      id = (*this)(id);
-    return ids;
-  }
-
-private:
-  OpenTable number_;
-};
+std::vector<int32_t> numbers_of(std::vector<int32_t> ids, const SmallNumbers& number) {
+  for (int32_t& id : ids)
+    id = number.find(id);
+  return ids;
+}
 
 } // namespace
 
@@ -43,7 +28,7 @@ PartCopy copy_part(const DynamicMesh& m, const Parts& parts, const PartRoom& roo
     if (const Element& e = m.element[t]; e.alive())
       vertex.insert(vertex.end(), e.v.begin(), e.v.end());
   par::sort_unique(vertex, 1);
-  const Numbers element_number(c.element), vertex_number(vertex);
+  const SmallNumbers element_number(c.element), vertex_number(vertex);
   c.mesh.labels = m.labels;
   c.mesh.walls = m.walls;
   c.mesh.resize(c.element.size(), vertex.size());
@@ -55,23 +40,23 @@ PartCopy copy_part(const DynamicMesh& m, const Parts& parts, const PartRoom& roo
     const auto v = size_t(vertex[k]);
     c.parts.owner.push_back(parts.owner[v]);
     if (parts.owner[v] != room.part)
-      continue; // another part's editor may be writing there, and no operation of this one asks
+      continue; // another thread may be writing there, and no operation of this part asks
     c.mesh.point[k] = m.point[v];
     c.mesh.vertex[k] = m.vertex[v];
-    c.mesh.incident[k] = element_number(m.incident[v]);
+    c.mesh.incident[k] = element_number.find(m.incident[v]);
   }
   for (size_t k = 0; k < c.element.size(); ++k) {
     Element e = m.element[c.element[k]];
     for (size_t i = 0; i < 4; ++i) {
-      e.v[i] = vertex_number(e.v[i]);
-      e.n[i] = element_number(e.n[i]);
+      e.v[i] = vertex_number.find(e.v[i]);
+      e.n[i] = element_number.find(e.n[i]);
       if (e.alive() && c.mesh.incident[e.v[i]] < 0)
         c.mesh.incident[e.v[i]] = static_cast<int32_t>(k); // of another part
     }
     c.mesh.element[k] = e;
   }
-  c.room = {room.part, element_number(room.element), vertex_number(room.vertex)};
-  c.slots = element_number(slots);
+  c.room = {room.part, numbers_of(room.element, element_number), numbers_of(room.vertex, vertex_number)};
+  c.slots = numbers_of(slots, element_number);
   return c;
 }
 

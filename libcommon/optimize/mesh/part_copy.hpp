@@ -1,8 +1,8 @@
 // part_copy.hpp — a part of a mesh by itself, where operations can be tried without changing it.
 #pragma once
 #include "optimize/mesh/dynamic_mesh.hpp"
+#include "optimize/mesh/parts.hpp"
 #include "optimize/mesh/snapshot.hpp"
-#include "optimize/schedule/parts.hpp"
 #include <algorithm>
 #include <cstdint>
 #include <vector>

@@ -1,6 +1,6 @@
 // snapshot.hpp — what the operations on one part may touch, how many were done, and all of it put by.
 #pragma once
-#include "optimize/crossings/sheets.hpp"
+#include "optimize/crossings/free_triangles.hpp"
 #include "optimize/mesh/change_log.hpp"
 #include "optimize/mesh/dynamic_mesh.hpp"
 #include <array>
@@ -13,10 +13,10 @@ namespace molmesh::optimize {
 /// Operations done.
 struct Counts {
   int64_t moves = 0, edge_removals = 0, surface_flips = 0, face_swaps = 0, contractions = 0, splits = 0,
-          hand_overs = 0, nestings = 0;
+          retreats = 0, cavity_shrinks = 0;
   Counts& operator+=(const Counts& o);
   int64_t total() const {
-    return moves + edge_removals + surface_flips + face_swaps + contractions + splits + hand_overs + nestings;
+    return moves + edge_removals + surface_flips + face_swaps + contractions + splits + retreats + cavity_shrinks;
   }
 };
 
@@ -26,7 +26,7 @@ struct PartRoom {
   std::vector<int32_t> element, vertex;
 };
 
-/// What Editor::restore() needs.
+/// What Region::restore() needs.
 struct Snapshot {
   struct Corner {
     int32_t id;
@@ -44,9 +44,9 @@ struct Snapshot {
   std::vector<Corner> corner;
   std::vector<Side> side; ///< faces of other parts' elements towards these
   PartRoom room;
-  Sheets sheets{1};
+  FreeTriangles free_triangles{1};
   Counts counts;
-  uint64_t number = 0; ///< of the editor's
+  uint64_t number = 0; ///< of the region's
   ChangeLog::Moment taken;
 };
 

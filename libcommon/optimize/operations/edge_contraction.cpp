@@ -1,20 +1,26 @@
 // edge_contraction.cpp — an edge shrinks to one of its ends; surfaces and walls keep their shape and topology.
-#include "optimize/operations/editor.hpp"
+#include "optimize/operations/moving_vertex.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 
 namespace molmesh::optimize {
+namespace {
 
 // For a vertex a on a labelled face: a and b have no neighbours in common but the ring's, on the surface none but
 // its two ends, and no triangle over an edge of both links but the ring's (Dey, Edelsbrunner, Guha and Nekhayev
-// 1999). Needs star_ = star of a, star2_ = star of b.
-bool Editor::surface_link_holds(int32_t a, int32_t b, const Ring& r) {
-  const auto on_ring = [&](int32_t v) { return std::find(r.vertex.begin(), r.vertex.end(), v) - r.vertex.begin(); };
-  const auto size = static_cast<std::ptrdiff_t>(r.vertex.size());
+// 1999). Needs the
+// stars of a and b in the workspace.
+bool link_holds(const Region& r, int32_t a, int32_t b) {
+  const Ring& ring = r.work.ring;
+  const std::vector<int32_t>&star = r.work.star, &other_star = r.work.other_star;
+  const auto on_ring = [&](int32_t v) {
+    return std::find(ring.vertex.begin(), ring.vertex.end(), v) - ring.vertex.begin();
+  };
+  const auto size = static_cast<std::ptrdiff_t>(ring.vertex.size());
   std::vector<int32_t> near_a, surface_a, surface_b;
   const auto surface_of = [&](const std::vector<int32_t>& elements, int32_t v, std::vector<int32_t>& out) {
     for (const int32_t t : elements) {
-      const Element& e = m_.element[t];
+      const Element& e = r.mesh.element[t];
       for (size_t f = 0; f < 4; ++f) {
         if (e.label[f] == 0 || e.v[f] == v)
           continue;
@@ -25,14 +31,14 @@ bool Editor::surface_link_holds(int32_t a, int32_t b, const Ring& r) {
     }
     par::sort_unique(out, 1);
   };
-  for (const int32_t t : star_)
-    for (const int32_t v : m_.element[t].v)
+  for (const int32_t t : star)
+    for (const int32_t v : r.mesh.element[t].v)
       if (v != a && v != b)
         near_a.push_back(v);
   std::sort(near_a.begin(), near_a.end());
   const auto beside_a = [&](int32_t v) { return std::binary_search(near_a.begin(), near_a.end(), v); };
-  for (const int32_t t : star2_) {
-    const Element& e = m_.element[t];
+  for (const int32_t t : other_star) {
+    const Element& e = r.mesh.element[t];
     if (e.find(a) >= 0)
       continue;
     for (size_t x = 0; x < 4; ++x) {
@@ -46,23 +52,23 @@ bool Editor::surface_link_holds(int32_t a, int32_t b, const Ring& r) {
           continue;
         const auto j = on_ring(e.v[y]);
         const auto gap = std::abs(i - j);
-        if (j == size || gap == 1 || (r.closed && gap == size - 1))
+        if (j == size || gap == 1 || (ring.closed && gap == size - 1))
           continue;
-        for (const int32_t u : star_)
-          if (m_.element[u].find(e.v[x]) >= 0 && m_.element[u].find(e.v[y]) >= 0)
+        for (const int32_t u : star)
+          if (r.mesh.element[u].find(e.v[x]) >= 0 && r.mesh.element[u].find(e.v[y]) >= 0)
             return false;
       }
     }
   }
-  surface_of(star_, a, surface_a);
-  surface_of(star2_, b, surface_b);
+  surface_of(star, a, surface_a);
+  surface_of(other_star, b, surface_b);
   std::vector<int32_t> common;
   std::set_intersection(surface_a.begin(), surface_a.end(), surface_b.begin(), surface_b.end(),
                         std::back_inserter(common));
-  return common.size() == r.border.size() && surface_a.size() > 3;
+  return common.size() == ring.border.size() && surface_a.size() > 3;
 }
 
-bool Editor::may_contract(const Vertex& a, const Vertex& b) const {
+bool may_contract(const Vertex& a, const Vertex& b) {
   if (a.kind == Kind::fixed || (a.kind != Kind::interior && b.kind == Kind::interior))
     return false;
   if (a.kind == Kind::trace)
@@ -70,25 +76,26 @@ bool Editor::may_contract(const Vertex& a, const Vertex& b) const {
   return a.kind != Kind::sliding || b.kind != Kind::sliding || (a.frozen & ~b.frozen) == 0;
 }
 
-// For a on a labelled face: the edge a b runs in all its labels, and its elements may go. Sets ring_.
-bool Editor::borders_allow(int32_t e, int32_t a, int32_t b) {
-  const Vertex& ka = m_.vertex[a];
-  if (!ring(e, a, b, ring_))
+// For a on a labelled face: the edge a b runs in all its labels, and its elements may go. Sets the ring.
+bool borders_allow(Region& r, int32_t e, int32_t a, int32_t b) {
+  Ring& ring = r.work.ring;
+  const Vertex& ka = r.mesh.vertex[a];
+  if (!r.ring(e, a, b, ring))
     return false;
   const bool trace = ka.kind == Kind::trace;
   const bool crease = trace || (ka.kind == Kind::sliding && (ka.frozen & (ka.frozen - 1)) != 0);
-  const auto& label = ring_.label;
+  const auto& label = ring.label;
   // Where a wall meets a surface with elements on both sides its triangle is between two of the wall's.
   if (label.size() == 3 ? !trace || label[1] == label[0] || label[1] == label[2]
                         : label.size() != 2 || (label[0] != label[1]) != crease)
     return false;
-  if (trace && std::any_of(ring_.border.begin(), ring_.border.end(), [&](int k) { // a loop of three may lie there
-        const Kind kind = m_.vertex[ring_.vertex[k]].kind;
+  if (trace && std::any_of(ring.border.begin(), ring.border.end(), [&](int k) { // a loop of three may lie there
+        const Kind kind = r.mesh.vertex[ring.vertex[k]].kind;
         return kind == Kind::trace || kind == Kind::fixed;
       }))
     return false;
-  for (const int32_t t : ring_.element) { // they go: the faces beyond them take their labels
-    const Element& el = m_.element[t];
+  for (const int32_t t : ring.element) { // they go: the faces beyond them take their labels
+    const Element& el = r.mesh.element[t];
     const size_t fa = size_t(el.find(a)), fb = size_t(el.find(b));
     if (el.label[fb] != 0 && (crease || el.label[fa] != 0 || el.n[fa] < 0))
       return false;
@@ -98,169 +105,175 @@ bool Editor::borders_allow(int32_t e, int32_t a, int32_t b) {
   return true;
 }
 
-bool Editor::is_tiny(int32_t e, int i, int j) const {
-  const auto p = [&](int k) { return m_.point[m_.element[e].v[k]]; };
-  return target_ && norm(p(i) - p(j)) < 0.1 * target_->spacing();
-}
-
-bool Editor::contract(int32_t e, int i, int j) {
-  const int32_t a = m_.element[e].v[i], b = m_.element[e].v[j];
-  const Vertex& ka = m_.vertex[a];
-  if (!may_contract(ka, m_.vertex[b]) || !star(a, star_))
+// The star of a gives way to the candidates. moved: b has, and is on the surface; its elements stay but for the
+// ring.
+bool finish_contraction(Region& r, int32_t a, int32_t b, bool moved) {
+  std::vector<int32_t>& other_star = r.work.other_star;
+  bool& watched = r.mesh.vertex[b].watched;
+  const bool was_watched = watched;
+  watched |= r.mesh.vertex[a].watched;
+  r.crossings.clear();
+  if (r.crossings.on() && moved)
+    r.crossings.add_at(other_star, b, a);
+  r.work.old = r.work.star;
+  if (!r.exchange(r.work.old, r.work.now, r.mesh.vertex[a].kind != Kind::interior, moved)) {
+    watched = was_watched;
     return false;
-  const bool tiny = yield < 1 && is_tiny(e, i, j);
-  const float before = worst(star_), above = (tiny ? yield : 1.f) * demand(before);
-  now_.clear();
-  for (const int32_t t : star_) {
-    const Element& el = m_.element[t];
-    if (el.find(b) >= 0)
-      continue;
-    Candidate c{el.v, el.region, 0, el.label};
-    c.v[el.find(a)] = b;
-    if (!judge(c, above))
-      return false;
-    now_.push_back(c);
   }
-  if (lack(now_) > (tiny ? 0.9f : 1.f) * lack(star_))
-    return false;
-  if (ka.kind != Kind::interior) {
-    const Fit fit = gather_sails(star_, a);
-    const Vec3d pb = m_.point[b];
-    std::erase_if(sails_, [&](const Sail& s) { return s.p[0] == pb || s.p[1] == pb || s.p[2] == pb; });
-    if (!sails_fit(pb, fit) || !borders_allow(e, a, b) || !star(b, star2_) || !surface_link_holds(a, b, ring_))
-      return false;
+  r.mesh.incident[a] = -1;
+  r.mesh.touched[b] = r.time;
+  r.room.vertex.push_back(a);
+  if (r.crossings.on() && !moved && watched && !was_watched && r.star(b, other_star)) {
+    r.crossings.clear(); // its other triangles may be watched now, too
+    r.crossings.add_at(other_star, b, -1);
   }
-  return finish_contraction(a, b, false);
+  r.crossings.note_moved();
+  return true;
 }
 
-// As contract(), but b moves too: both stars are judged at the best place for it.
-bool Editor::merge(int32_t e, int i, int j) {
-  const auto& v = m_.element[e].v;
-  Failures::Attempt attempt{.operation = Failures::Operation::merge, .a = v[i], .b = v[j]};
-  return !has_failed(attempt) && (join(e, i, j) || note_failure(attempt));
-}
-
-bool Editor::join(int32_t e, int i, int j) {
-  int32_t a = m_.element[e].v[i], b = m_.element[e].v[j];
-  if (!may_contract(m_.vertex[a], m_.vertex[b]))
+// As contract_edge(), but b moves too: both stars are judged at the best place for it.
+bool merge(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
+  auto& [star, other_star, old, now, ring, elements, triangles] = r.work;
+  int32_t a = r.mesh.element[e].v[i], b = r.mesh.element[e].v[j];
+  if (!may_contract(r.mesh.vertex[a], r.mesh.vertex[b]))
     std::swap(a, b);
-  const Vertex &ka = m_.vertex[a], &kb = m_.vertex[b];
+  const Vertex &ka = r.mesh.vertex[a], &kb = r.mesh.vertex[b];
   if (!may_contract(ka, kb) || ka.kind == Kind::trace || kb.kind == Kind::trace || kb.kind == Kind::fixed ||
-      !star(a, star_) || !star(b, star2_))
+      !r.star(a, star) || !r.star(b, other_star))
     return false;
-  const float before = std::min(worst(star_), worst(star2_)), above = demand(before);
-  const Vec3d pa = m_.point[a], pb = m_.point[b];
-  const double length = mean_edge(star2_, b);
-  Fit fit = gather_sails(star_, a);
-  const std::vector<Sail> sails_a = sails_;
-  const Fit fit_b = gather_sails(star2_, b);
+  const float before = std::min(r.worst(star), r.worst(other_star)), above = accept.demand(before);
+  const Vec3d pa = r.mesh.point[a], pb = r.mesh.point[b];
+  const double length = mean_edge(r, other_star, b);
+  Fit fit = gather_triangles(r, accept, star, a);
+  const std::vector<MovingTriangle> triangles_a = triangles;
+  const Fit fit_b = gather_triangles(r, accept, other_star, b);
   fit.worst = std::max(fit.worst, fit_b.worst);
   fit.excess += fit_b.excess;
-  sails_.insert(sails_.end(), sails_a.begin(), sails_a.end());
-  std::erase_if(sails_, [&](const Sail& s) { // those on the edge go
+  triangles.insert(triangles.end(), triangles_a.begin(), triangles_a.end());
+  std::erase_if(triangles, [&](const MovingTriangle& s) { // those on the edge go
     int ends = 0;
     for (const Vec3d& p : s.p)
       ends += (p == pa) + (p == pb);
     if (ends == 2) // found from either end
-      fit.excess -= 0.5 * std::max(0., misfit(s.p[0], s.p[1], s.p[2]) - 1);
+      fit.excess -= 0.5 * std::max(0., misfit_of(r, accept, s.p[0], s.p[1], s.p[2]) - 1);
     return ends == 2;
   });
-  star_quality_.clear(pb);
-  now_.clear();
-  const auto add = [&](const std::vector<int32_t>& elements, int32_t from, int32_t other) {
-    for (const int32_t t : elements) {
-      const Element& el = m_.element[t];
+  elements.clear(pb);
+  now.clear();
+  const auto add = [&](const std::vector<int32_t>& at, int32_t from, int32_t other) {
+    for (const int32_t t : at) {
+      const Element& el = r.mesh.element[t];
       if (el.find(other) >= 0)
         continue;
       Candidate c{el.v, el.region, 0, el.label};
       std::array<Vec3d, 4> p;
       for (size_t n = 0; n < 4; ++n)
-        p[n] = m_.point[c.v[n]];
+        p[n] = r.mesh.point[c.v[n]];
       const int k = el.find(from);
       c.v[k] = b;
-      star_quality_.add(p, k);
+      elements.add(p, k);
       if (from == a)
-        now_.push_back(c);
+        now.push_back(c);
     }
   };
-  add(star_, a, b);
-  const size_t made = now_.size();
-  add(star2_, b, a);
+  add(star, a, b);
+  const size_t made = now.size();
+  add(other_star, b, a);
   Vec3d x = pb;
-  float best = star_quality_.worst(pb, 0);
+  float best = elements.worst(pb, 0);
   if (ka.kind == kb.kind && ka.frozen == kb.frozen) {
     Vec3d y = 0.5 * (pa + pb);
     const float q =
-        constrain(kb, pb, y, guard_.reach * length) ? star_quality_.worst(y, std::max(best, 0.f)) : -1.f;
+        Bound{accept, {r, kb, pb, accept.guard.reach * length}}(y) ? elements.worst(y, std::max(best, 0.f)) : -1.f;
     if (q > best)
       best = q, x = y;
   }
-  if (!(best > 0.25f * before) || (!straighten && !sails_fit(x, fit)))
+  if (!(best > 0.25f * before) || (!accept.fits_surface() && !fits_at(r, accept, x, fit)))
     return false;
-  if (straighten)
-    best = worth(x, above);
-  search(kb, x, best, std::max(goal, above), length, fit, above);
-  if (straighten ? !sails_fit(x, fit) : best <= above)
+  if (accept.fits_surface())
+    best = worth_at(r, accept, x, above);
+  search_place(r, accept, kb, x, best, std::max(accept.goal, above), length, fit, above);
+  if (accept.fits_surface() ? !fits_at(r, accept, x, fit) : best <= above)
     return false;
-  if (ka.kind != Kind::interior && (!borders_allow(e, a, b) || !surface_link_holds(a, b, ring_)))
+  if (ka.kind != Kind::interior && (!borders_allow(r, e, a, b) || !link_holds(r, a, b)))
     return false;
-  m_.point[b] = x;
+  r.mesh.point[b] = x;
   bool good = true;
   for (size_t c = 0; c < made && good; ++c)
-    good = judge(now_[c], straighten ? above : before);
-  float sum = lack(now_), allowed = lack(star_);
+    good = r.judge(now[c], accept.fits_surface() ? above : before);
+  float sum = deficit_of(accept, now), allowed = deficit_of(r, accept, star);
   std::vector<float> q;
   std::vector<int32_t> kept;
-  for (size_t t = 0; t < star2_.size() && good; ++t) {
-    const Element& el = m_.element[star2_[t]];
+  for (size_t t = 0; t < other_star.size() && good; ++t) {
+    const Element& el = r.mesh.element[other_star[t]];
     if (el.find(a) >= 0)
       continue;
     Candidate c{el.v, el.region, 0, {}};
-    good = judge(c, straighten ? above : before);
-    kept.push_back(star2_[t]);
+    good = r.judge(c, accept.fits_surface() ? above : before);
+    kept.push_back(other_star[t]);
     q.push_back(c.q);
-    sum += lack(c.q), allowed += lack(el.q);
+    sum += accept.deficit_of(c.q), allowed += accept.deficit_of(el.q);
   }
   if (!good || sum > allowed) {
-    m_.point[b] = pb;
+    r.mesh.point[b] = pb;
     return false;
   }
-  if (!finish_contraction(a, b, kb.kind == Kind::surface)) {
-    m_.point[b] = pb;
+  if (!finish_contraction(r, a, b, kb.kind == Kind::surface)) {
+    r.mesh.point[b] = pb;
     return false;
   }
   for (size_t t = 0; t < kept.size(); ++t) {
-    m_.element[kept[t]].q = q[t];
-    touch(kept[t]);
-    note_change(kept[t]);
-    changed.push_back(kept[t]);
+    r.mesh.element[kept[t]].q = q[t];
+    r.touch(kept[t]);
+    r.note_change(kept[t]);
+    r.changed.push_back(kept[t]);
   }
-  return true;
+  return r.done(&Counts::contractions, "merge of an edge");
 }
 
-// star_ gives way to now_. moved: b has, and is on the surface; its elements are star2_, and stay but for the ring.
-bool Editor::finish_contraction(int32_t a, int32_t b, bool moved) {
-  old_ = star_;
-  bool& crowded = m_.vertex[b].crowded;
-  const bool was_crowded = crowded;
-  crowded |= m_.vertex[a].crowded;
-  clear_rim();
-  if (sheets_ && moved)
-    list_rim(star2_, b, a);
-  if (!replace(old_, now_, m_.vertex[a].kind != Kind::interior, moved)) {
-    crowded = was_crowded;
+} // namespace
+
+bool is_tiny(const Region& r, int32_t e, int i, int j) {
+  const auto p = [&](int k) { return r.mesh.point[r.mesh.element[e].v[k]]; };
+  return r.target && norm(p(i) - p(j)) < 0.1 * r.target->spacing();
+}
+
+bool contract_edge(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
+  auto& [star, other_star, old, now, ring, elements, triangles] = r.work;
+  const int32_t a = r.mesh.element[e].v[i], b = r.mesh.element[e].v[j];
+  const Vertex& ka = r.mesh.vertex[a];
+  if (!may_contract(ka, r.mesh.vertex[b]) || !r.star(a, star))
     return false;
+  const bool tiny = accept.tiny_share < 1 && is_tiny(r, e, i, j);
+  const float before = r.worst(star), above = (tiny ? accept.tiny_share : 1.f) * accept.demand(before);
+  now.clear();
+  for (const int32_t t : star) {
+    const Element& el = r.mesh.element[t];
+    if (el.find(b) >= 0)
+      continue;
+    Candidate c{el.v, el.region, 0, el.label};
+    c.v[el.find(a)] = b;
+    if (!r.judge(c, above))
+      return false;
+    now.push_back(c);
   }
-  m_.incident[a] = -1;
-  m_.touched[b] = time;
-  room_.vertex.push_back(a);
-  ++counts.contractions;
-  if (sheets_ && !moved && crowded && !was_crowded && star(b, star2_)) { // its other triangles may be now, too
-    clear_rim();
-    list_rim(star2_, b, -1);
+  if (deficit_of(accept, now) > (tiny ? 0.9f : 1.f) * deficit_of(r, accept, star))
+    return false;
+  if (ka.kind != Kind::interior) {
+    const Fit fit = gather_triangles(r, accept, star, a);
+    const Vec3d pb = r.mesh.point[b];
+    std::erase_if(triangles, [&](const MovingTriangle& s) { return s.p[0] == pb || s.p[1] == pb || s.p[2] == pb; });
+    if (!fits_at(r, accept, pb, fit) || !borders_allow(r, e, a, b) || !r.star(b, other_star) ||
+        !link_holds(r, a, b))
+      return false;
   }
-  move_rim();
-  return true;
+  return finish_contraction(r, a, b, false) && r.done(&Counts::contractions, "edge contraction");
+}
+
+bool merge_edge(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
+  const auto& v = r.mesh.element[e].v;
+  return r.unless_failed(accept, {.operation = FailedAttempts::Operation::merge, .a = v[i], .b = v[j]},
+                         [&] { return merge(r, accept, e, i, j); });
 }
 
 } // namespace molmesh::optimize

@@ -1,91 +1,96 @@
 // edge_split.cpp — a new vertex on an edge, where its elements are best.
-#include "optimize/operations/editor.hpp"
+#include "optimize/operations/moving_vertex.hpp"
 #include <algorithm>
 
 namespace molmesh::optimize {
 
-bool Editor::split(int32_t e, int i, int j) {
-  const auto& v = m_.element[e].v;
-  Failures::Attempt attempt{.operation = Failures::Operation::split, .a = v[i], .b = v[j], .element = e};
-  return !has_failed(attempt) && (halve(e, i, j) || note_failure(attempt));
-}
+namespace {
 
-bool Editor::halve(int32_t e, int i, int j) {
-  const int32_t a = m_.element[e].v[i], b = m_.element[e].v[j];
-  if (!ring(e, a, b, ring_))
+bool split(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
+  auto& [star, other_star, old, now, ring, elements, triangles] = r.work;
+  const int32_t a = r.mesh.element[e].v[i], b = r.mesh.element[e].v[j];
+  if (!r.ring(e, a, b, ring))
     return false;
-  if (room_.vertex.empty() || !has_room(ring_.element.size(), 2 * ring_.element.size())) {
-    elsewhere_ = true;
+  if (r.room.vertex.empty() || !r.has_room(ring.element.size(), 2 * ring.element.size())) {
+    r.looked_beyond = true;
     return false;
   }
-  if (target_ && norm(m_.point[a] - m_.point[b]) < 0.3 * target_->spacing())
+  if (r.target && norm(r.mesh.point[a] - r.mesh.point[b]) < 0.3 * r.target->spacing())
     return false;
   Vertex kind;
-  if (!ring_.border.empty()) {
-    if (ring_.border.size() != 2 || ring_.label[0] != ring_.label[1])
+  if (!ring.border.empty()) {
+    if (ring.border.size() != 2 || ring.label[0] != ring.label[1])
       return false;
-    const Label& label = m_.labels[ring_.label[0]];
-    kind.label = ring_.label[0];
-    kind.crowded = m_.vertex[a].crowded || m_.vertex[b].crowded;
+    const Label& label = r.mesh.labels[ring.label[0]];
+    kind.label = ring.label[0];
+    kind.watched = r.mesh.vertex[a].watched || r.mesh.vertex[b].watched;
     kind.kind = label.curved() ? Kind::surface : Kind::sliding;
     if (!label.curved())
       kind.frozen = static_cast<uint8_t>(1 << label.axis);
-    if (label.curved() && !target_)
+    if (label.curved() && !r.target)
       return false;
   }
-  const float before = worst(ring_.element), aim = before + 1e-8f + 0.02f * before;
-  const float above = straighten ? demand(before) : before;
-  now_.clear();
-  star_quality_.clear(0.5 * (m_.point[a] + m_.point[b]));
-  sails_.clear();
-  const int32_t v = room_.vertex.back(), ends[2] = {a, b};
-  for (const int32_t t : ring_.element) {
-    const Element& el = m_.element[t];
+  const float before = r.worst(ring.element), aim = before + 1e-8f + 0.02f * before;
+  const float above = accept.fits_surface() ? accept.demand(before) : before;
+  now.clear();
+  elements.clear(0.5 * (r.mesh.point[a] + r.mesh.point[b]));
+  triangles.clear();
+  const int32_t v = r.room.vertex.back(), ends[2] = {a, b};
+  for (const int32_t t : ring.element) {
+    const Element& el = r.mesh.element[t];
     for (const int32_t end : ends) {
       Candidate c{el.v, el.region, 0, {}};
       const int k = el.find(end);
       std::array<Vec3d, 4> p;
       for (size_t n = 0; n < 4; ++n)
-        p[n] = m_.point[c.v[n]];
+        p[n] = r.mesh.point[c.v[n]];
       c.v[k] = v;
-      star_quality_.add(p, k);
-      now_.push_back(c);
+      elements.add(p, k);
+      now.push_back(c);
       for (size_t f = 0; f < 4; ++f)
         if (el.label[f] != 0 && el.v[f] != a && el.v[f] != b)
-          add_sail(el, f, end);
+          add_triangle(r, el, f, end);
     }
   }
-  Fit fit = fit_of_sails();
+  Fit fit = fit_of_triangles(r, accept);
   fit.excess /= 2; // each triangle goes with either end
-  const Vec3d pa = m_.point[a], pb = m_.point[b];
+  const Vec3d pa = r.mesh.point[a], pb = r.mesh.point[b];
   const double length = norm(pb - pa);
   Vec3d x = 0.5 * (pa + pb);
-  if (!constrain(kind, x, x, guard_.reach * length) || (!straighten && !sails_fit(x, fit)))
+  if (!Bound{accept, {r, kind, x, accept.guard.reach * length}}(x) ||
+      (!accept.fits_surface() && !fits_at(r, accept, x, fit)))
     return false;
-  float best = star_quality_.worst(x, 0.25f * before);
+  float best = elements.worst(x, 0.25f * before);
   if (!(best > 0.25f * before))
     return false; // too far from a gain to search for it
-  if (straighten)
-    best = worth(x, above);
-  search(kind, x, best, std::max(goal, aim), length, fit, above);
-  if (straighten ? !sails_fit(x, fit) : best < aim)
+  if (accept.fits_surface())
+    best = worth_at(r, accept, x, above);
+  search_place(r, accept, kind, x, best, std::max(accept.goal, aim), length, fit, above);
+  if (accept.fits_surface() ? !fits_at(r, accept, x, fit) : best < aim)
     return false;
-  if (kind.kind == Kind::surface && !m_.walls.clear(x, apart_from_walls * spacing()))
+  if (kind.kind == Kind::surface && !r.mesh.walls.clear(x, apart_from_walls * r.spacing()))
     return false; // the middle may lie in a wall: it sets no measure
-  m_.vertex[v] = kind;
-  m_.point[v] = x;
-  for (Candidate& c : now_)
-    if (!judge(c, above))
+  r.mesh.vertex[v] = kind;
+  r.mesh.point[v] = x;
+  for (Candidate& c : now)
+    if (!r.judge(c, above))
       return false;
-  if (lack(now_) > lack(ring_.element))
+  if (deficit_of(accept, now) > deficit_of(r, accept, ring.element))
     return false;
-  old_ = ring_.element;
-  clear_rim();
-  if (!replace(old_, now_, !ring_.border.empty()))
+  old = ring.element;
+  if (!r.exchange(old, now, !ring.border.empty()))
     return false;
-  room_.vertex.pop_back();
-  ++counts.splits;
-  return true;
+  r.room.vertex.pop_back();
+  return r.done(&Counts::splits, "edge split");
+}
+
+} // namespace
+
+bool split_edge(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
+  const auto& v = r.mesh.element[e].v;
+  return r.unless_failed(accept,
+                         {.operation = FailedAttempts::Operation::split, .a = v[i], .b = v[j], .element = e},
+                         [&] { return split(r, accept, e, i, j); });
 }
 
 } // namespace molmesh::optimize

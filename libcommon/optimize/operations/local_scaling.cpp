@@ -5,7 +5,7 @@
 // vertices so that neighbours fit. All lie inside the shell and fill it once: nothing outside changes. The surface
 // keeps its triangles; where it runs through the shell, it runs on straight to its image. New elements are as small
 // as what is there, and only there.
-#include "optimize/operations/editor.hpp"
+#include "optimize/operations/local_scaling.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,7 @@ std::array<std::array<size_t, 4>, 3> frustum(const std::array<int32_t, 3>& v) {
 }
 
 // Vertices where the surface runs through the shell: where its triangles change region, or end.
-std::vector<int32_t> crossed(const std::vector<Piece::ShellTriangle>& shell) {
+std::vector<int32_t> crossed(const std::vector<Core::ShellTriangle>& shell) {
   std::vector<std::array<int32_t, 3>> side; // edge as its triangle runs, region
   for (const auto& s : shell)
     for (size_t i = 0; i < 3; ++i)
@@ -55,61 +55,60 @@ std::vector<int32_t> crossed(const std::vector<Piece::ShellTriangle>& shell) {
 
 } // namespace
 
-// Elements join the piece's beyond triangles that do not face c, or that the surface may not be left at, until
-// there are none; then those triangles are the shell.
-bool Editor::find_shell(Piece& piece, Vec3d c) {
+bool find_shell(const Region& r, Core& core, Vec3d c) {
   const auto ends_here = [&](const Element& e, size_t f) {
-    return e.n[f] < 0 && (piece.through ? m_.labels[e.label[f]].curved() : piece.has(outward_triangle(e.v, f)));
+    return e.n[f] < 0 && (core.through ? r.mesh.labels[e.label[f]].curved() : core.has(outward_triangle(e.v, f)));
   };
-  while (piece.element.size() <= most_elements) {
-    piece.shell.clear();
+  while (core.element.size() <= most_elements) {
+    core.shell.clear();
     std::vector<int32_t> more;
-    for (const int32_t t : piece.element) {
-      const Element& e = m_.element[t];
+    for (const int32_t t : core.element) {
+      const Element& e = r.mesh.element[t];
       for (size_t f = 0; f < 4; ++f) {
-        if (is_in(piece.element, e.n[f]) || ends_here(e, f))
+        if (is_in(core.element, e.n[f]) || ends_here(e, f))
           continue;
         const auto s = outward_triangle(e.v, f);
-        const Vec3d p = m_.point[s[0]], n = cross(m_.point[s[1]] - p, m_.point[s[2]] - p);
+        const Vec3d p = r.mesh.point[s[0]], n = cross(r.mesh.point[s[1]] - p, r.mesh.point[s[2]] - p);
         const double area = norm(n), height = dot(p - c, n) / area, side = std::sqrt(area);
         const bool surface = e.label[f] != 0;
-        const bool may_join = e.n[f] >= 0 && (piece.through || !surface) && owned(e.n[f]);
-        if ((piece.through && surface) || !(height > (may_join ? steep : steep_enough) * side)) {
+        const bool may_join = e.n[f] >= 0 && (core.through || !surface) && r.owned(e.n[f]);
+        if ((core.through && surface) || !(height > (may_join ? steep : steep_enough) * side)) {
           if (!may_join)
             return false;
           more.push_back(e.n[f]);
         }
-        piece.shell.push_back({s, e.region});
+        core.shell.push_back({s, e.region});
       }
     }
     if (more.empty())
       return true;
-    piece.element.insert(piece.element.end(), more.begin(), more.end());
-    par::sort_unique(piece.element, 1);
+    core.element.insert(core.element.end(), more.begin(), more.end());
+    par::sort_unique(core.element, 1);
   }
   return false;
 }
 
-// To `scale`, with shells smaller by about `ratio` each. False, and nothing changed, when that cannot be.
-bool Editor::shrink(const Piece& piece, Vec3d c, double scale, double ratio) {
+bool shrink(Region& r, const Core& core, Vec3d c, double scale, double ratio) {
+  std::vector<int32_t>& old = r.work.old;
+  std::vector<Candidate>& now = r.work.now;
   std::vector<int32_t> outer, inner; // of the shell; inside
-  const std::vector<int32_t> on_surface = crossed(piece.shell);
-  for (const auto& s : piece.shell)
+  const std::vector<int32_t> on_surface = crossed(core.shell);
+  for (const auto& s : core.shell)
     outer.insert(outer.end(), s.v.begin(), s.v.end());
   par::sort_unique(outer, 1);
   for (const int32_t v : on_surface)
-    if (m_.vertex[v].kind != Kind::surface)
+    if (r.mesh.vertex[v].kind != Kind::surface)
       return false;
-  for (const int32_t t : piece.element) {
-    const Element& e = m_.element[t];
+  for (const int32_t t : core.element) {
+    const Element& e = r.mesh.element[t];
     for (size_t i = 0; i < 4; ++i) {
       const bool inside = !is_in(outer, e.v[i]);
-      const Kind kind = m_.vertex[e.v[i]].kind;
-      if (inside && kind != Kind::interior && !(kind == Kind::surface && piece.has(e.v[i])))
+      const Kind kind = r.mesh.vertex[e.v[i]].kind;
+      if (inside && kind != Kind::interior && !(kind == Kind::surface && core.has(e.v[i])))
         return false;
       if (inside)
         inner.push_back(e.v[i]);
-      for (size_t f = 0; f < 4 && piece.through && !inside && !is_in(on_surface, e.v[i]); ++f)
+      for (size_t f = 0; f < 4 && core.through && !inside && !is_in(on_surface, e.v[i]); ++f)
         if (f != i && e.label[f] != 0)
           return false; // the surface touches the shell here, and would leave it
     }
@@ -117,56 +116,55 @@ bool Editor::shrink(const Piece& piece, Vec3d c, double scale, double ratio) {
   par::sort_unique(inner, 1);
   const auto layers = static_cast<size_t>(std::max(1., std::round(std::log(scale) / std::log(ratio))));
   const size_t fresh = layers * outer.size();
-  if (room_.vertex.size() < fresh || room_.element.size() < 3 * layers * piece.shell.size())
+  if (r.room.vertex.size() < fresh || r.room.element.size() < 3 * layers * core.shell.size())
     return false;
   const auto image = [&](int32_t w, size_t layer) {
     const auto i = static_cast<size_t>(std::lower_bound(outer.begin(), outer.end(), w) - outer.begin());
     if (layer == 0 || i == outer.size() || outer[i] != w)
       return w;
-    return room_.vertex[room_.vertex.size() - 1 - outer.size() * (layer - 1) - i];
+    return r.room.vertex[r.room.vertex.size() - 1 - outer.size() * (layer - 1) - i];
   };
   for (size_t layer = 1; layer <= layers; ++layer)
     for (const int32_t w : outer) {
-      m_.point[image(w, layer)] = c + std::pow(scale, double(layer) / double(layers)) * (m_.point[w] - c);
-      m_.vertex[image(w, layer)] = is_in(on_surface, w) ? m_.vertex[w] : Vertex{};
+      r.mesh.point[image(w, layer)] = c + std::pow(scale, double(layer) / double(layers)) * (r.mesh.point[w] - c);
+      r.mesh.vertex[image(w, layer)] = is_in(on_surface, w) ? r.mesh.vertex[w] : Vertex{};
     }
   const auto leaves_walls = [&](int32_t w, Vec3d from) {
-    return m_.vertex[w].kind == Kind::surface && !inside_walls(from, m_.point[w]);
+    return r.mesh.vertex[w].kind == Kind::surface && !r.inside_walls(from, r.mesh.point[w]);
   };
   bool out = false;
   for (const int32_t w : on_surface)
     for (size_t layer = 1; layer <= layers; ++layer)
-      out = out || leaves_walls(image(w, layer), m_.point[w]);
+      out = out || leaves_walls(image(w, layer), r.mesh.point[w]);
   std::vector<Vec3d> home;
   for (const int32_t w : inner) {
-    home.push_back(m_.point[w]);
-    m_.point[w] = c + scale * (home.back() - c);
+    home.push_back(r.mesh.point[w]);
+    r.mesh.point[w] = c + scale * (home.back() - c);
     out = out || leaves_walls(w, home.back());
   }
-  now_.clear();
-  for (const int32_t t : piece.element) {
-    now_.push_back({m_.element[t].v, m_.element[t].region, 0, {}});
-    for (int32_t& w : now_.back().v)
+  now.clear();
+  for (const int32_t t : core.element) {
+    now.push_back({r.mesh.element[t].v, r.mesh.element[t].region, 0, {}});
+    for (int32_t& w : now.back().v)
       w = image(w, layers);
   }
-  for (const auto& s : piece.shell)
+  for (const auto& s : core.shell)
     for (size_t layer = 1; layer <= layers; ++layer)
       for (const auto& corner : frustum(s.v)) {
-        now_.push_back({{}, s.region, 0, {}});
+        now.push_back({{}, s.region, 0, {}});
         for (size_t i = 0; i < 4; ++i)
-          now_.back().v[i] = image(s.v[corner[i] % 3], corner[i] < 3 ? layer - 1 : layer);
+          now.back().v[i] = image(s.v[corner[i] % 3], corner[i] < 3 ? layer - 1 : layer);
       }
-  old_ = piece.element;
-  clear_rim();
-  if (out || !std::all_of(now_.begin(), now_.end(), [&](Candidate& e) { return judge(e, 0); }) ||
-      !replace(old_, now_, piece.through, true)) {
+  old = core.element;
+  r.crossings.clear();
+  if (out || !std::all_of(now.begin(), now.end(), [&](Candidate& e) { return r.judge(e, 0); }) ||
+      !r.exchange(old, now, core.through, true)) {
     for (size_t i = 0; i < inner.size(); ++i)
-      m_.point[inner[i]] = home[i];
+      r.mesh.point[inner[i]] = home[i];
     return false;
   }
-  room_.vertex.resize(room_.vertex.size() - fresh);
-  ++counts.nestings;
-  return true;
+  r.room.vertex.resize(r.room.vertex.size() - fresh);
+  return r.done(&Counts::cavity_shrinks, "local scaling");
 }
 
 } // namespace molmesh::optimize

@@ -1,54 +1,58 @@
 // shrink_cavity.cpp — a closed surface smaller than the grid comes to the target's size and place, in shells of its
-// own surroundings (shells.cpp).
-#include "optimize/operations/editor.hpp"
+// own surroundings (local_scaling.hpp).
+#include "optimize/acceptance/surface_fit.hpp"
+#include "optimize/operations/local_scaling.hpp"
+#include "optimize/operations/operations.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
 
 namespace molmesh::optimize {
+namespace {
 
 constexpr size_t most_vertices = 24; // of the surface, which else has room
 
 // The closed surface that v is on and the elements at it. False where it is large or not all of this part.
-bool Editor::find_piece(int32_t v, Piece& piece) {
-  piece.vertex.push_back(v);
-  for (size_t i = 0; i < piece.vertex.size(); ++i) {
-    const int32_t w = piece.vertex[i];
-    if (piece.vertex.size() > most_vertices || m_.vertex[w].kind != Kind::surface || !star(w, star_))
+bool find_core(Region& r, int32_t v, Core& core) {
+  std::vector<int32_t>& star = r.work.star;
+  core.vertex.push_back(v);
+  for (size_t i = 0; i < core.vertex.size(); ++i) {
+    const int32_t w = core.vertex[i];
+    if (core.vertex.size() > most_vertices || r.mesh.vertex[w].kind != Kind::surface || !r.star(w, star))
       return false;
-    piece.element.insert(piece.element.end(), star_.begin(), star_.end());
-    for (const int32_t t : star_) {
-      const Element& e = m_.element[t];
+    core.element.insert(core.element.end(), star.begin(), star.end());
+    for (const int32_t t : star) {
+      const Element& e = r.mesh.element[t];
       for (size_t f = 0; f < 4; ++f)
         for (size_t k = 0; k < 4; ++k)
-          if (e.label[f] != 0 && e.v[f] != w && k != f && !piece.has(e.v[k]))
-            piece.vertex.push_back(e.v[k]);
+          if (e.label[f] != 0 && e.v[f] != w && k != f && !core.has(e.v[k]))
+            core.vertex.push_back(e.v[k]);
     }
   }
-  par::sort_unique(piece.element, 1);
+  par::sort_unique(core.element, 1);
   double volume = 0; // six times, negative where the molecule is around it
-  const Vec3d home = m_.point[v];
-  for (const int32_t w : piece.vertex)
-    piece.centre += m_.point[w] / double(piece.vertex.size());
-  for (const int32_t t : piece.element) {
-    const Element& e = m_.element[t];
+  const Vec3d home = r.mesh.point[v];
+  for (const int32_t w : core.vertex)
+    core.centre += r.mesh.point[w] / double(core.vertex.size());
+  for (const int32_t t : core.element) {
+    const Element& e = r.mesh.element[t];
     for (size_t f = 0; f < 4; ++f)
-      if (const auto s = outward_triangle(e.v, f); piece.has(s) && m_.counts_here(e, f)) {
-        const auto p = [&](size_t k) { return m_.point[s[k]] - home; };
-        volume += (m_.outward(e, f) ? 1 : -1) * dot(p(0), cross(p(1), p(2)));
+      if (const auto s = outward_triangle(e.v, f); core.has(s) && r.mesh.counts_here(e, f)) {
+        const auto p = [&](size_t k) { return r.mesh.point[s[k]] - home; };
+        volume += (r.mesh.outward(e, f) ? 1 : -1) * dot(p(0), cross(p(1), p(2)));
       }
   }
-  piece.hole = volume < 0;
+  core.hole = volume < 0;
   return true;
 }
 
-// How small the piece has to be, and where, to lie on the target around `to`: as large as it may.
-bool Editor::fit_piece(const Piece& piece, Vec3d& to, double& scale) const {
-  const double h = target_->spacing();
+// How small it has to be, and where, to lie on the target around `to`: as large as it may.
+bool fit_core(const Region& r, const Core& core, Vec3d& to, double& scale) {
+  const double h = r.target->spacing();
   const auto most_off = [&](Vec3d at, double s) {
     double most = 0;
-    for (const int32_t w : piece.vertex)
-      most = std::max(most, off_at(at + s * (m_.point[w] - piece.centre)).value_or(1e30));
+    for (const int32_t w : core.vertex)
+      most = std::max(most, off_at(r, at + s * (r.mesh.point[w] - core.centre)).value_or(1e30));
     return most;
   };
   double best = 1e30;
@@ -72,16 +76,18 @@ bool Editor::fit_piece(const Piece& piece, Vec3d& to, double& scale) const {
   return scale < 0.9;
 }
 
-bool Editor::nest(int32_t v, double ratio) {
-  Piece piece;
-  if (!target_ || !find_piece(v, piece))
+} // namespace
+
+bool shrink_cavity(Region& r, int32_t v, double ratio) {
+  Core core;
+  if (!r.target || !find_core(r, v, core))
     return false;
-  Vec3d to = piece.centre;
+  Vec3d to = core.centre;
   double scale = 1;
-  if (!target_->pocket(piece.centre, piece.hole, to) || !fit_piece(piece, to, scale))
+  if (!r.target->pocket(core.centre, core.hole, to) || !fit_core(r, core, to, scale))
     return false;
-  const Vec3d c = piece.centre + (to - piece.centre) / (1 - scale);
-  return find_shell(piece, c) && shrink(piece, c, scale, ratio);
+  const Vec3d c = core.centre + (to - core.centre) / (1 - scale);
+  return find_shell(r, core, c) && shrink(r, core, c, scale, ratio);
 }
 
 } // namespace molmesh::optimize

@@ -1,29 +1,30 @@
-// step_to_surface.cpp — a vertex on its way to the target: a step that leaves its elements room to be mended.
-#include "optimize/operations/editor.hpp"
+// step_to_surface.cpp — a vertex on its way to the target: a step that leaves its elements room to be repaired.
+#include "optimize/operations/moving_vertex.hpp"
 #include <algorithm>
 
 namespace molmesh::optimize {
 
-bool Editor::approach(int32_t v, float floor) {
-  const Vertex& vertex = m_.vertex[v];
-  if (!follows_target(vertex.kind) || !target_ || !star(v, star_))
+bool step_to_surface(Region& r, const Acceptance& accept, int32_t v, float floor) {
+  const Vertex& vertex = r.mesh.vertex[v];
+  if (!follows_target(vertex.kind) || !r.target || !r.star(v, r.work.star))
     return false;
-  const Vec3d from = m_.point[v];
-  const double length = mean_edge(star_, v), furthest = 1.5 * length;
+  const Vec3d from = r.mesh.point[v];
+  const double length = mean_edge(r, r.work.star, v), furthest = 1.5 * length;
+  const OnTarget on_target{r, vertex, from, length};
   Vec3d to;
   double nearest = furthest;
   for (int k = 0; k < 27; ++k) {
     const Vec3d d{k / 9 - 1., k / 3 % 3 - 1., k % 3 - 1.};
-    for (double r = 0.05; r < 1.5; r *= 1.5) {
-      Vec3d y = from + r * length / std::max(norm(d), 1.) * d;
-      if (put_on_target(vertex, from, y, length) && norm(y - from) < nearest)
+    for (double step = 0.05; step < 1.5; step *= 1.5) {
+      Vec3d y = from + step * length / std::max(norm(d), 1.) * d;
+      if (on_target(y) && norm(y - from) < nearest)
         nearest = norm(y - from), to = y;
     }
   }
   if (!(nearest < furthest))
     return false;
-  const float above = std::min(floor, worst(star_)) * 0.999999f;
-  return step_to(v, to, 0.7, 0.05, above);
+  const float above = std::min(floor, r.worst(r.work.star)) * 0.999999f;
+  return step_towards(r, accept, v, to, 0.7, 0.05, above);
 }
 
 } // namespace molmesh::optimize

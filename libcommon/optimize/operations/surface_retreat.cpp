@@ -1,39 +1,50 @@
 // surface_retreat.cpp — a surface vertex that finds no place on the target leaves the surface: the elements on its
 // wrong side change sides.
-#include "optimize/operations/editor.hpp"
+#include "optimize/operations/moving_vertex.hpp"
 #include <algorithm>
 
 namespace molmesh::optimize {
+namespace {
+
+/// What goes to the other side.
+struct Side {
+  std::vector<int32_t> element;
+  int32_t to = -1, fresh = -1; ///< region they come to; vertex that is new on the surface, or -1
+  uint8_t label = 0;
+  bool grows = false; ///< the inside does
+  Fit before;         ///< of the triangles at the vertex
+};
 
 // What goes with v: the elements on its wrong side. The shell they show to the others becomes the surface; it may
-// hold one inner vertex, which is new on the surface. False where the surface would touch itself. Needs star_.
-bool Editor::find_side(int32_t v, Side& side) const {
+// hold one inner vertex, which is new on the surface. False where the surface would touch itself. Needs the star.
+bool find_side(const Region& r, const Acceptance& accept, int32_t v, Side& side) {
+  const std::vector<int32_t>& star = r.work.star;
   double distance;
   Vec3d normal;
-  if (!target_->probe(m_.point[v], distance, normal))
+  if (!r.target->probe(r.mesh.point[v], distance, normal))
     return false;
   int32_t inside = -1, outside = -1;
-  std::vector<int32_t> rim;
-  for (const int32_t t : star_) {
-    const Element& e = m_.element[t];
+  std::vector<int32_t> around; // the vertices across v's triangles
+  for (const int32_t t : star) {
+    const Element& e = r.mesh.element[t];
     for (size_t f = 0; f < 4; ++f) {
       if (e.label[f] == 0 || e.v[f] == v)
         continue;
       if (e.n[f] < 0)
         return false;
-      (m_.outward(e, f) ? inside : outside) = e.region;
+      (r.mesh.outward(e, f) ? inside : outside) = e.region;
       side.label = e.label[f];
       for (const int32_t w : e.v)
-        rim.push_back(w == v || w == e.v[f] ? -1 : w);
-      if (m_.outward(e, f))
-        side.before.add(misfit_face(e, f));
+        around.push_back(w == v || w == e.v[f] ? -1 : w);
+      if (r.mesh.outward(e, f))
+        side.before.add(misfit_of(r, accept, e, f));
     }
   }
   side.grows = distance < 0;
   side.to = side.grows ? inside : outside;
-  const auto on_rim = [&](int32_t w) { return std::find(rim.begin(), rim.end(), w) != rim.end(); };
-  for (const int32_t t : star_) {
-    const Element& e = m_.element[t];
+  const auto is_around = [&](int32_t w) { return std::find(around.begin(), around.end(), w) != around.end(); };
+  for (const int32_t t : star) {
+    const Element& e = r.mesh.element[t];
     if (e.region == side.to)
       continue;
     const int k = e.find(v);
@@ -41,90 +52,92 @@ bool Editor::find_side(int32_t v, Side& side) const {
       return false;
     side.element.push_back(t);
     for (const int32_t w : e.v)
-      if (w != v && w != side.fresh && !on_rim(w)) {
-        if (side.fresh >= 0 || m_.vertex[w].kind != Kind::interior)
+      if (w != v && w != side.fresh && !is_around(w)) {
+        if (side.fresh >= 0 || r.mesh.vertex[w].kind != Kind::interior)
           return false;
         side.fresh = w;
       }
-    Ring around;
+    Ring ring;
     for (int i = 0; i < 4; ++i)
       for (int j = i + 1; j < 4; ++j)
-        if (i != k && j != k && on_rim(e.v[i]) && on_rim(e.v[j]) && e.label[6 - i - j - k] == 0 &&
-            (!ring(t, e.v[i], e.v[j], around) || !around.border.empty()))
+        if (i != k && j != k && is_around(e.v[i]) && is_around(e.v[j]) && e.label[6 - i - j - k] == 0 &&
+            (!r.ring(t, e.v[i], e.v[j], ring) || !ring.border.empty()))
           return false; // an edge of the shell that is on the surface already
   }
   return !side.element.empty();
 }
 
-bool Editor::hand_over(int32_t v) {
+} // namespace
+
+bool retreat_surface(Region& r, const Acceptance& accept, int32_t v) {
+  auto& [star, other_star, old, now, ring, elements, triangles] = r.work;
   Side side;
-  if (m_.vertex[v].kind != Kind::surface || !target_ || !star(v, star_) || !find_side(v, side))
+  if (r.mesh.vertex[v].kind != Kind::surface || !r.target || !r.star(v, star) || !find_side(r, accept, v, side))
     return false;
-  side.before.excess += std::max(0., off(v) - 1);
+  side.before.excess += std::max(0., off(r, v) - 1);
   const int32_t u = side.fresh;
-  const Vec3d home = u < 0 ? Vec3d{} : m_.point[u];
+  const Vec3d home = u < 0 ? Vec3d{} : r.mesh.point[u];
   const auto back = [&] {
     if (u >= 0)
-      m_.point[u] = home;
+      r.mesh.point[u] = home;
     return false;
   };
-  now_.clear();
+  now.clear();
   if (u >= 0) {
-    if (!star(u, star2_))
+    if (!r.star(u, other_star))
       return false;
-    const float above = demand(worst(star2_));
+    const float above = accept.demand(r.worst(other_star));
     double length = 0;
-    for (const int32_t t : star2_)
-      for (const int32_t w : m_.element[t].v)
-        length += norm(m_.point[w] - home) / (3. * double(star2_.size()));
-    if (!target_->project(m_.point[u], length) || !inside_walls(home, m_.point[u]))
+    for (const int32_t t : other_star)
+      for (const int32_t w : r.mesh.element[t].v)
+        length += norm(r.mesh.point[w] - home) / (3. * double(other_star.size()));
+    if (!r.target->project(r.mesh.point[u], length) || !r.inside_walls(home, r.mesh.point[u]))
       return back();
-    for (const int32_t t : star2_) {
-      now_.push_back({m_.element[t].v, 0, 0, {}});
-      if (!judge(now_.back(), above))
+    for (const int32_t t : other_star) {
+      now.push_back({r.mesh.element[t].v, 0, 0, {}});
+      if (!r.judge(now.back(), above))
         return back();
     }
   }
   Fit after;
   for (const int32_t t : side.element) {
-    const Element& e = m_.element[t];
+    const Element& e = r.mesh.element[t];
     const auto s = outward_triangle(e.v, size_t(e.find(v)));
-    const auto p = [&](size_t i) { return m_.point[s[i]]; };
-    after.add(side.grows ? misfit(p(0), p(1), p(2)) : misfit(p(0), p(2), p(1)));
+    const auto p = [&](size_t i) { return r.mesh.point[s[i]]; };
+    after.add(side.grows ? misfit_of(r, accept, p(0), p(1), p(2)) : misfit_of(r, accept, p(0), p(2), p(1)));
   }
-  if (!fits(after, side.before))
+  if (!accept.fits(after, side.before))
     return back();
-  for (size_t i = 0; i < now_.size(); ++i) {
-    m_.element[star2_[i]].q = now_[i].q;
-    note_change(star2_[i]);
+  for (size_t i = 0; i < now.size(); ++i) {
+    r.mesh.element[other_star[i]].q = now[i].q;
+    r.note_change(other_star[i]);
   }
   for (const int32_t t : side.element) {
-    Element& e = m_.element[t];
+    Element& e = r.mesh.element[t];
     e.region = side.to;
     for (size_t f = 0; f < 4; ++f) {
-      Element& beyond = m_.element[e.n[f]];
-      note_side(e.n[f], beyond.face_towards(t));
+      Element& beyond = r.mesh.element[e.n[f]];
+      r.note_side(e.n[f], beyond.face_towards(t));
       if (e.v[f] == v)
-        m_.note_label(t), m_.note_label(e.n[f]);
+        r.mesh.note_label(t), r.mesh.note_label(e.n[f]);
       for (size_t g = 0; g < 4; ++g)
         if (beyond.n[g] == t)
           beyond.label[g] = e.label[f] = e.v[f] == v ? side.label : uint8_t{0};
     }
   }
-  m_.vertex[v] = {};
+  r.mesh.vertex[v] = {};
   if (u >= 0)
-    m_.vertex[u] = {Kind::surface, 0, side.label};
-  changed.insert(changed.end(), star_.begin(), star_.end());
+    r.mesh.vertex[u] = {Kind::surface, 0, side.label};
+  r.changed.insert(r.changed.end(), star.begin(), star.end());
   if (u >= 0)
-    changed.insert(changed.end(), star2_.begin(), star2_.end());
-  for (const auto* list : {&star_, &star2_})
+    r.changed.insert(r.changed.end(), other_star.begin(), other_star.end());
+  for (const auto* list : {&star, &other_star})
     for (const int32_t t : *list)
-      if (list == &star_ || u >= 0) {
-        log.add(t);
-        touch(t);
+      if (list == &star || u >= 0) {
+        r.log.add(t);
+        r.touch(t);
       }
-  ++counts.hand_overs;
-  return true;
+  return r.done(&Counts::retreats, "surface retreat");
 }
 
 } // namespace molmesh::optimize

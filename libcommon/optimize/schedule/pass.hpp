@@ -7,19 +7,14 @@ namespace molmesh::optimize {
 
 /// What a pass does with an element below its goal.
 struct Pass {
-  float goal = 0;  ///< quality
-  double cell = 1; ///< size of the parts, in the schedule's cells
-  bool worst_first = true;
+  float goal = 0;          ///< quality
+  double cell = 1;         ///< size of the parts, in the schedule's cells
+  bool worst_first = true; ///< deficit()
   /// Elements in the mesh's order, those under half of the goal before the others; else the worst ones first.
   bool in_mesh_order = false;
   double least_step = finest_step; ///< of searches for a vertex's place, pattern_search()
-  /// 1: merges and splits too. Of recover(): 2: what cannot be mended is shaken; 3: the surface follows necks; 4:
-  /// where it has elements on both sides it may bend while they are mended; 5: and what shaking cannot mend
-  /// wanders.
-  int effort = 0;
-  /// Of recover(): points come back to this share of the goal, and the elements around are mended after.
-  float at_first = 1;
-  float yield = 1; ///< Editor::yield
+  bool merges_and_splits = false;  ///< operations that cost more
+  float tiny_share = 1;            ///< Acceptance::tiny_share
   Guard guard;
   bool operator==(const Pass&) const = default;
 };

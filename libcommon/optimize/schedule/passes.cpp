@@ -1,6 +1,10 @@
-// passes.cpp — what a pass works on, and the order of operations on one element.
-#include "optimize/schedule/choose.hpp"
-#include "optimize/schedule/element_pass.hpp"
+// passes.cpp — what a pass works on, and in which order.
+#include "optimize/acceptance/faults.hpp"
+#include "optimize/acceptance/surface_fit.hpp"
+#include "optimize/operations/on_element.hpp"
+#include "optimize/schedule/schedule.hpp"
+#include "optimize/search/search_part.hpp"
+#include "par/choose.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 
@@ -12,82 +16,21 @@ constexpr double most_halved = 2;            // cells; larger parts are for the 
 constexpr size_t worth_halving = 4096;       // elements
 constexpr double fewest_parts_in_effect = 4; // parts of equal shares come to as many
 
-bool improve_element(Editor& editor, const DynamicMesh& m, int32_t t, const Pass& pass) {
-  const auto element = [&]() -> const Element& { return m.element[t]; };
-  if (pass.yield < 1)
-    for (const auto& [i, j] : edges)
-      if (editor.is_tiny(t, i, j) && (editor.contract(t, i, j) || editor.contract(t, j, i)))
-        return true;
-  for (const auto& [i, j] : edges)
-    if (editor.remove_edge(t, i, j))
-      return true;
-  for (int f = 0; f < 4; ++f)
-    if (editor.swap_face(t, f))
-      return true;
-  const float q = element().q;
-  bool done = false;
-  for (size_t i = 0; i < 4; ++i) {
-    done |= editor.smooth(element().v[i]);
-    if (element().q >= pass.goal)
-      return true;
-  }
-  if (element().q > 1.05f * q)
-    return true;
-  for (const auto& [i, j] : edges)
-    if (editor.contract(t, i, j) || editor.contract(t, j, i))
-      return true;
-  if (pass.effort >= 1) {
-    for (const auto& [i, j] : edges)
-      if (editor.merge(t, i, j))
-        return true;
-    for (const auto& [i, j] : edges)
-      if (editor.split(t, i, j))
-        return true;
-  }
-  return done;
-}
-
-void straighten_element(Editor& editor, const DynamicMesh& m, int32_t t) {
-  const auto vertex = [&](int i) { return m.element[t].v[i]; };
-  for (int f = 0; f < 4; ++f) {
-    if (!editor.bent(t, size_t(f)))
-      continue;
-    const auto any_edge = [&](auto&& operation) {
-      return std::any_of(std::begin(edges), std::end(edges),
-                         [&](const auto& e) { return e[0] != f && e[1] != f && operation(e[0], e[1]); });
-    };
-    if (any_edge([&](int i, int j) { return editor.remove_edge(t, i, j); }))
-      return;
-    for (int i = 0; i < 4; ++i)
-      if (i != f)
-        editor.smooth(vertex(i));
-    if (!editor.bent(t, size_t(f)))
-      return;
-    if (any_edge([&](int i, int j) {
-          return editor.contract(t, i, j) || editor.contract(t, j, i) || editor.merge(t, i, j);
-        }) ||
-        any_edge([&](int i, int j) { return editor.split(t, i, j); }))
-      return;
-  }
-  for (int i = 0; i < 4; ++i)
-    if (editor.off(vertex(i)) > 1)
-      editor.smooth(vertex(i));
-}
-
-void sort_worst_first(const DynamicMesh& m, std::vector<int32_t>& list) {
-  std::sort(list.begin(), list.end(), [&](int32_t a, int32_t b) {
-    const float qa = m.element[a].q, qb = m.element[b].q;
-    return qa != qb ? qa < qb : a < b;
-  });
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 namespace {
 
 // What is near in the mesh's order is near in space, and still in the caches.
 void sort_in_mesh_order(const DynamicMesh& m, std::vector<int32_t>& list, float first_below) {
   par::sort_unique(list, 1);
   std::stable_partition(list.begin(), list.end(), [&](int32_t t) { return m.element[t].q < first_below; });
+}
+
+Acceptance acceptance_of(const Pass& pass) {
+  Acceptance a(pass.guard);
+  a.goal = pass.goal;
+  a.worst_first = pass.worst_first;
+  a.tiny_share = pass.tiny_share;
+  a.least_step = pass.least_step;
+  return a;
 }
 
 // The elements at a surface vertex: all of them hang together by their faces.
@@ -131,8 +74,8 @@ Counts Schedule::run(const Pass& pass) {
 
 std::vector<int32_t> Schedule::low_elements(float goal, bool tried_too) {
   find_worst();
-  return choose(
-      static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::stretch,
+  return par::choose(
+      static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::chunk,
       [&](int64_t s) { return m_.worst[s] < goal; },
       [&](int64_t e) {
         const Element& el = m_.element[e];
@@ -161,68 +104,66 @@ Counts Schedule::work_off(const std::vector<int32_t>& items, const Pass& pass, i
   if (items.empty())
     return {};
   set_parts(shift, cell);
-  return for_parts(items, parts_of(items), pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
-    editor.goal = pass.goal;
-    editor.worst_first = pass.worst_first;
-    editor.yield = pass.yield;
-    editor.least_step = pass.least_step;
+  const Acceptance accept = acceptance_of(pass);
+  return for_parts(items, parts_of(items), [&](Region& r, std::vector<int32_t>& list) {
     for (int32_t sweep = 1; sweep <= sweeps && !list.empty(); ++sweep) {
-      editor.time = start + sweep;
+      r.time = start + sweep;
       if (pass.in_mesh_order)
         sort_in_mesh_order(m_, list, pass.goal / 2);
       else
         sort_worst_first(m_, list);
-      editor.changed.clear();
+      r.changed.clear();
       for (const int32_t e : list)
-        if (worthwhile(e, pass.goal) && !improve_element(editor, m_, e, pass))
-          m_.element[e].tried = editor.time;
+        if (worthwhile(e, pass.goal) && !improve_element(r, accept, e, pass.merges_and_splits))
+          m_.element[e].tried = r.time;
       list.clear();
-      for (const int32_t e : editor.changed)
+      for (const int32_t e : r.changed)
         if (worthwhile(e, pass.goal))
           list.push_back(e);
     }
   });
 }
 
-Counts Schedule::straighten(const Pass& pass) {
+Counts Schedule::fit_surface(const Pass& pass) {
+  Acceptance accept(pass.guard);
+  accept.goal = pass.goal;
+  accept.worst_first = pass.worst_first;
+  accept.aim = Aim::fit;
   set_parts(passes_++, pass.cell * cell_);
   constexpr int32_t sweeps = 4;
   const int32_t start = time_;
   time_ += sweeps;
   PartRoom none;
-  const Editor look(m_, target_, nullptr, parts_, stamp_, none, pass.guard);
-  std::vector<int32_t> items = choose(
-      static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::stretch,
+  const Region look(m_, target_, nullptr, parts_, stamp_, none);
+  std::vector<int32_t> items = par::choose(
+      static_cast<int64_t>(m_.element.size()), threads_, DynamicMesh::chunk,
       [&](int64_t s) { return m_.labelled[s] != 0; },
       [&](int64_t t) {
         const Element& e = m_.element[t];
         bool bent = false;
         for (size_t i = 0; e.alive() && !bent && i < 4; ++i)
-          bent = e.label[i] != 0 && look.bent(static_cast<int32_t>(t), i);
+          bent = e.label[i] != 0 && is_bent(look, accept, static_cast<int32_t>(t), i);
         return bent;
       });
   for (const int32_t v : points_off())
     add_star(m_, v, items);
   par::sort_unique(items, threads_);
-  return for_parts(items, parts_of(items), pass.guard, [&](Editor& editor, std::vector<int32_t>& list) {
-    editor.goal = pass.goal;
-    editor.worst_first = pass.worst_first;
-    editor.straighten = true;
+  return for_parts(items, parts_of(items), [&](Region& r, std::vector<int32_t>& list) {
     for (int32_t sweep = 1; sweep <= sweeps && !list.empty(); ++sweep) {
-      editor.time = start + sweep;
+      r.time = start + sweep;
       par::sort_unique(list, 1);
-      editor.changed.clear();
+      r.changed.clear();
       for (const int32_t e : list)
         if (m_.element[e].alive())
-          straighten_element(editor, m_, e);
-      list.swap(editor.changed);
+          fit_element(r, accept, e);
+      list.swap(r.changed);
     }
   });
 }
 
 std::vector<int32_t> Schedule::surface_points() const {
-  return choose(static_cast<int64_t>(m_.point.size()), threads_,
-                [&](int64_t v) { return m_.incident[v] >= 0 && follows_target(m_.vertex[v].kind); });
+  return par::choose(static_cast<int64_t>(m_.point.size()), threads_,
+                     [&](int64_t v) { return m_.incident[v] >= 0 && follows_target(m_.vertex[v].kind); });
 }
 
 std::vector<int32_t> Schedule::points_off() const {
@@ -241,19 +182,85 @@ std::vector<int32_t> Schedule::points_off() const {
   return points;
 }
 
-Counts Schedule::settle(float floor, const Guard& guard) {
-  set_parts(settles_++, cell_);
+Counts Schedule::project(float floor, const Guard& guard) {
+  set_parts(projections_++, cell_);
   const std::vector<int32_t> items = surface_points();
   std::vector<int32_t> part;
   for (const int32_t v : items)
     part.push_back(parts_.owner[v]);
   const int32_t time = ++time_;
-  return for_parts(items, part, guard,
-                   [&](Editor& editor, std::vector<int32_t>& list) {
-                     editor.time = time;
-                     editor.settle(list, floor);
+  const Acceptance accept(guard);
+  return for_parts(items, part,
+                   [&](Region& r, std::vector<int32_t>& list) {
+                     r.time = time;
+                     project_to_surface(r, accept, list, floor);
                    },
                    {.slots_per_item = 0}); // nothing new comes
+}
+
+// A body thinner than the grid is off with most of its points: trials at each would take minutes, and bring some
+// back.
+bool Schedule::is_hopeless(size_t points_off) const {
+  constexpr size_t few = 64, share = 4;
+  return points_off > few && share * points_off > surface_points().size();
+}
+
+// One vertex for each place to search at; empty where there is none, or too many.
+std::vector<int32_t> Schedule::places_to_search(const Strategy& s) {
+  if (s.scope == Scope::points) {
+    std::vector<int32_t> points = points_off();
+    return is_hopeless(points.size()) ? std::vector<int32_t>{} : points;
+  }
+  constexpr size_t most = 64; // many are no business of long searches
+  const std::vector<int32_t> low = low_elements(FaultCount::share * s.goal, true);
+  std::vector<int32_t> points;
+  for (const int32_t t : low)
+    points.push_back(m_.element[t].v[0]);
+  par::sort_unique(points, 1);
+  return low.size() > most ? std::vector<int32_t>{} : points;
+}
+
+Counts Schedule::search(const Strategy& s) {
+  constexpr size_t room_for_shells = 3072; // elements, shrink_cavity
+  const int32_t time = ++time_;
+  const std::vector<int32_t> points = places_to_search(s);
+  if (points.empty())
+    return {};
+  watch_crossings(everywhere); // points leave the surface meanwhile
+  set_parts_around(points, passes_++, s.part_size * cell_);
+  const std::vector<int32_t> items = elements_of_parts();
+  std::vector<std::vector<int32_t>> places(static_cast<size_t>(parts_.count())); // of each part
+  for (const int32_t v : points)
+    if (const int32_t part = parts_.owner[v]; part >= 0)
+      places[part].push_back(v);
+  std::vector<uint8_t> failed(places.size());
+  failed_searches_.begin(s);
+  Strategy bold = s;
+  bold.moves = Moves::bold;
+  const Counts counts = for_parts(items, parts_of(items),
+                                  [&](Region& r, std::vector<int32_t>& list) {
+                                    const auto part = static_cast<size_t>(r.part());
+                                    int32_t touched = 0;
+                                    for (const int32_t t : list)
+                                      for (const int32_t v : m_.element[t].v)
+                                        touched = std::max(touched, m_.touched[v]);
+                                    if (failed_searches_.knows(places[part], s, touched))
+                                      return;
+                                    const bool searched = s.moves == Moves::necks &&
+                                                          failed_searches_.knows(places[part], bold, touched);
+                                    std::vector<int32_t> slots = list;
+                                    slots.insert(slots.end(), r.room.element.begin(), r.room.element.end());
+                                    r.time = time;
+                                    search_part(r, slots, s, searched, helpers_);
+                                    failed[part] = r.counts.total() == 0;
+                                  },
+                                  {.slots_per_item = 0.25,
+                                   .slots = s.scope == Scope::points ? room_for_shells : PartShares{}.slots,
+                                   .weight = [&](int32_t part) { return places[part].size(); }});
+  for (size_t part = 0; part < places.size(); ++part)
+    if (failed[part])
+      failed_searches_.note(places[part], s, time);
+  return counts;
 }
 
 } // namespace molmesh::optimize

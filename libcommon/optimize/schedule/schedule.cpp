@@ -1,8 +1,7 @@
 // schedule.cpp — which parts there are, what they reserve, and the work of one part after the other.
 #include "optimize/schedule/schedule.hpp"
-#include "optimize/crossings/crowded.hpp"
-#include "optimize/schedule/choose.hpp"
-#include "optimize/schedule/element_pass.hpp"
+#include "optimize/crossings/facing_triangles.hpp"
+#include "par/choose.hpp"
 #include "par/pages.hpp"
 #include <algorithm>
 #include <atomic>
@@ -11,11 +10,11 @@
 namespace molmesh::optimize {
 
 Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads)
-    : m_(mesh), target_(target), cell_(cell), threads_(threads), sheets_(1) {
+    : m_(mesh), target_(target), cell_(cell), threads_(threads), free_triangles_(1) {
   const auto with_room = [&](auto& v, size_t n) { par::reserve_pages(v, n, n / 4, threads_); };
   with_room(stamp_, m_.element.size());
   with_room(parts_.owner, m_.point.size());
-  find_crowded(guarded);
+  watch_crossings(guarded);
 }
 
 int64_t Schedule::parts_at_surface(double cell) {
@@ -28,36 +27,37 @@ int64_t Schedule::parts_at_surface(double cell) {
   return std::count(met.begin(), met.end(), uint8_t{1});
 }
 
-void Schedule::find_crowded(double apart) {
-  if (!target_ || watching_)
+void Schedule::watch_crossings(double apart) {
+  if (!target_ || watching_everywhere_)
     return;
-  watching_ = apart == everywhere;
-  std::vector<SheetTriangle> triangle = end_triangles(m_, threads_);
+  watching_everywhere_ = apart == everywhere;
+  std::vector<FreeTriangle> triangle = find_free_triangles(m_, threads_);
   ends_in_surface_ = !triangle.empty();
-  const std::vector<uint8_t> crowded =
-      watching_ ? std::vector<uint8_t>(triangle.size(), 1)
-                : facing(m_.point, triangle, *target_,
-                         {.apart = apart * target_->spacing(), .kept = guarded / 2 * target_->spacing()}, threads_);
+  const std::vector<uint8_t> watched =
+      watching_everywhere_
+          ? std::vector<uint8_t>(triangle.size(), 1)
+          : facing(m_.point, triangle, *target_,
+                   {.apart = apart * target_->spacing(), .kept = guarded / 2 * target_->spacing()}, threads_);
   for (Vertex& v : m_.vertex)
-    v.crowded = false;
+    v.watched = false;
   for (size_t t = 0; t < triangle.size(); ++t)
-    if (crowded[t])
+    if (watched[t])
       for (const int32_t v : triangle[t].v)
-        m_.vertex[v].crowded = true;
-  sheets() = Sheets(cell_for(triangle));
-  std::erase_if(triangle, [&](const SheetTriangle& t) { return !m_.crowded(t.v); });
-  sheets_.reserve(triangle.size(), threads_);
-  add([this, all = SheetChanges{std::move(triangle), {}}] { sheets_.merge(all); });
+        m_.vertex[v].watched = true;
+  free_triangles() = FreeTriangles(cell_for(triangle));
+  std::erase_if(triangle, [&](const FreeTriangle& t) { return !m_.watched(t.v); });
+  free_triangles_.reserve(triangle.size(), threads_);
+  add([this, all = FreeTriangleChanges{std::move(triangle), {}}] { free_triangles_.merge(all); });
 }
 
-Sheets& Schedule::sheets() {
+FreeTriangles& Schedule::free_triangles() {
   if (adding_.valid())
     adding_.get();
-  return sheets_;
+  return free_triangles_;
 }
 
 void Schedule::add(std::function<void()> work) {
-  sheets();
+  free_triangles();
   if (threads_ > 1)
     adding_ = std::async(std::launch::async, std::move(work));
   else
@@ -65,12 +65,12 @@ void Schedule::add(std::function<void()> work) {
 }
 
 void Schedule::find_worst() {
-  par::for_n(static_cast<int64_t>(m_.restless.size()), threads_, 16, [&](int64_t s) {
-    if (!m_.restless[s])
+  par::for_n(static_cast<int64_t>(m_.dirty.size()), threads_, 16, [&](int64_t s) {
+    if (!m_.dirty[s])
       return;
-    m_.restless[s] = 0;
+    m_.dirty[s] = 0;
     float worst = 2;
-    m_.for_stretch(s, [&](int64_t e) {
+    m_.for_chunk(s, [&](int64_t e) {
       if (const Element& el = m_.element[e]; el.alive())
         worst = std::min(worst, el.q);
     });
@@ -162,7 +162,7 @@ int32_t Schedule::part_of(const Element& e) const {
 }
 
 std::vector<int32_t> Schedule::elements_of_parts() const {
-  return choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
+  return par::choose(static_cast<int64_t>(m_.element.size()), threads_, [&](int64_t t) {
     const Element& e = m_.element[t];
     return e.alive() && part_of(e) >= 0;
   });
@@ -175,15 +175,15 @@ std::vector<int32_t> Schedule::parts_of(const std::vector<int32_t>& elements) co
   return part;
 }
 
-// Items of one part, in order, go to one editor with slots of its own.
+// Items of one part, in order, go to one region with slots of its own.
 Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item,
-                           const Guard& guard, const Work& work, const PartShares& shares) {
+                           const Work& work, const PartShares& shares) {
   struct Job {
     PartRoom room;
     std::vector<int32_t> items;
     size_t weight = 0;
     Counts counts;
-    SheetChanges sheets;
+    FreeTriangleChanges changes;
     uint32_t clock = 0;
   };
   std::vector<int32_t> job_of(static_cast<size_t>(parts_.count()), -1);
@@ -230,7 +230,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
   }
   std::stable_sort(largest_first.begin(), largest_first.end(),
                    [](const Job* a, const Job* b) { return a->weight > b->weight; });
-  Sheets& sheets_now = sheets();
+  FreeTriangles& free_now = free_triangles();
   std::atomic<size_t> next{0};
   par::for_n(jobs.empty() ? 0 : threads_, threads_, 1, [&](int64_t) {
     for (const par::Helpers::Busy busy(helpers_);;) {
@@ -238,30 +238,29 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
       if (j >= jobs.size())
         break;
       Job& job = *largest_first[j];
-      Editor editor(m_, target_, ends_in_surface_ ? &sheets_now : nullptr, parts_, stamp_, job.room, guard,
-                    last_stamp_);
-      work(editor, job.items);
-      job.counts = editor.counts;
-      job.sheets = editor.take_sheet_changes();
-      job.clock = editor.clock();
+      Region r(m_, target_, ends_in_surface_ ? &free_now : nullptr, parts_, stamp_, job.room, last_stamp_);
+      work(r, job.items);
+      job.counts = r.counts;
+      job.changes = r.crossings.take_changes();
+      job.clock = r.clock();
     }
     helpers_.help();
   });
   par::for_n(static_cast<int64_t>(jobs.size()), threads_, 1,
-             [&](int64_t j) { sheets_now.move_along(jobs[j].sheets); });
+             [&](int64_t j) { free_now.move_along(jobs[j].changes); });
   Counts sum;
-  std::vector<SheetChanges> changes;
+  std::vector<FreeTriangleChanges> changes;
   for (Job& job : jobs) {
     sum += job.counts;
     last_stamp_ = std::max(last_stamp_, job.clock);
-    changes.push_back(std::move(job.sheets));
+    changes.push_back(std::move(job.changes));
     free_element_.insert(free_element_.end(), job.room.element.begin(), job.room.element.end());
     free_vertex_.insert(free_vertex_.end(), job.room.vertex.begin(), job.room.vertex.end());
   }
   if (ends_in_surface_)
     add([this, changes = std::move(changes)] {
-      for (const SheetChanges& of_part : changes)
-        sheets_.merge(of_part);
+      for (const FreeTriangleChanges& of_part : changes)
+        free_triangles_.merge(of_part);
     });
   return sum;
 }

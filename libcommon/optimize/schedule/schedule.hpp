@@ -1,8 +1,8 @@
 // schedule.hpp — passes over the bad elements, part by part.
 #pragma once
-#include "optimize/operations/editor.hpp"
+#include "optimize/operations/region.hpp"
 #include "optimize/schedule/pass.hpp"
-#include "optimize/search/vain.hpp"
+#include "optimize/search/failed_searches.hpp"
 #include "par/helpers.hpp"
 #include <algorithm>
 #include <cstdint>
@@ -28,19 +28,15 @@ public:
   Counts run(const Pass& pass);
   /// Surface triangles that do not keep the guard, and surface vertices off the target: made to fit, where no
   /// element falls under the goal.
-  Counts straighten(const Pass& pass);
-  /// Surface vertices off the target: put on it, or off the surface, where the elements around can be brought over
-  /// the goal afterwards. Nothing else changes.
-  Counts recover(const Pass& pass);
-  /// Elements that are left below the goal, few of them: shaken and, of an effort over 4, made to wander, as
-  /// recover() has it, with parts around each. No more points are off and no more triangles bent.
-  Counts heal(const Pass& pass);
-  /// Puts surface vertices on the target where no element falls under `floor`; floor ≥ 1: to less than half its
-  /// quality.
-  Counts settle(float floor, const Guard& guard);
-  /// Where the mesh ends in a curved surface it is kept from crossing itself: near sheets that face each other
+  Counts fit_surface(const Pass& pass);
+  /// Parts around the few places that a strategy is for, each searched. Nothing else changes.
+  Counts search(const Strategy& strategy);
+  /// Puts surface vertices on the target where no element falls under `floor`; floor ≥ 1 means: an element may lose
+  /// at most half its quality.
+  Counts project(float floor, const Guard& guard);
+  /// Where the mesh ends in a curved surface it is kept from crossing itself: near triangles that face each other
   /// within that many spacings and what they are off the target now and may be later; or everywhere, from now on.
-  void find_crowded(double apart);
+  void watch_crossings(double apart);
   static constexpr double everywhere = 1e300;
   /// Each triangle stays within a quarter of a spacing (Guard::distance), or what it is off.
   static constexpr double guarded = 0.5;
@@ -56,18 +52,19 @@ public:
 private:
   std::vector<int32_t> surface_points() const; ///< those on traces too; ascending
   std::vector<int32_t> points_off() const;     ///< of these, off the target
-  bool is_hopeless(size_t points_off) const;   ///< recover()
-  using Work = std::function<void(Editor&, std::vector<int32_t>&)>;
+  bool is_hopeless(size_t points_off) const;
+  std::vector<int32_t> places_to_search(const Strategy& s);
+  using Work = std::function<void(Region&, std::vector<int32_t>&)>;
   /// It is below the goal, and has changed since it was last tried.
   bool worthwhile(int32_t element, float goal) const;
   /// Worthwhile, or all below the goal.
   std::vector<int32_t> low_elements(float goal, bool tried_too = false);
   bool in_few_parts(const std::vector<int32_t>& items, int shift, double cell);
   Counts work_off(const std::vector<int32_t>& items, const Pass& pass, int shift, double cell);
-  Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Guard& guard,
-                   const Work& work, const PartShares& shares = {});
+  Counts for_parts(const std::vector<int32_t>& items, const std::vector<int32_t>& part_of_item, const Work& work,
+                   const PartShares& shares = {});
   PointBox bounds() const;
-  void find_worst(); ///< DynamicMesh::worst of the restless stretches
+  void find_worst(); ///< DynamicMesh::worst of the dirty chunks
   void set_lattice(int shift, double cell, const PointBox& box);
   void set_parts(int shift, double cell); ///< its cells
   /// A cube of about that size around each of the points, of which there are some, where there is room for it
@@ -82,21 +79,21 @@ private:
   const Target* target_;
   double cell_;
   int threads_;
-  bool watching_ = false; ///< find_crowded(everywhere)
+  bool watching_everywhere_ = false; ///< watch_crossings(everywhere)
   bool ends_in_surface_ = false;
-  int passes_ = 0, settles_ = 0;
+  int passes_ = 0, projections_ = 0;
   int32_t time_ = 0, since_ = 0; ///< sweeps so far; when this kind of pass began
   Pass last_;
-  Vain vain_; ///< recover()
+  FailedSearches failed_searches_;
   Parts parts_;
   par::Helpers helpers_;        ///< threads that wait for the last parts
-  std::vector<uint32_t> stamp_; ///< of the editors
+  std::vector<uint32_t> stamp_; ///< of the regions
   uint32_t last_stamp_ = 0;
   /// As they are when all that was given to add() is in.
-  Sheets& sheets();
-  /// work() on sheets_, beside the passes that do not ask for them.
+  FreeTriangles& free_triangles();
+  /// work() on free_triangles_, beside the passes that do not ask for them.
   void add(std::function<void()> work);
-  Sheets sheets_; ///< where the mesh ends in curved surfaces
+  FreeTriangles free_triangles_; ///< where the mesh ends in curved surfaces
   std::future<void> adding_;
   std::vector<int32_t> free_element_, free_vertex_;
 };

@@ -21,11 +21,11 @@ float worst(const optimize::DynamicMesh& m) {
   return w;
 }
 
-double lacking(const optimize::DynamicMesh& m, const optimize::Pass& pass) {
+double total_deficit(const optimize::DynamicMesh& m, const optimize::Pass& pass) {
   double sum = 0;
   for (const optimize::Element& e : m.element)
     if (e.alive())
-      sum += lack(m.quality(e.v), pass.goal, pass.worst_first, pass.guard);
+      sum += optimize::deficit(m.quality(e.v), pass.goal, pass.worst_first, pass.guard);
   return sum;
 }
 
@@ -53,7 +53,7 @@ TEST_CASE("flow: the worst element rises, none is inverted, what is bound stays 
   CHECK(moves > 100);
   CHECK(flow.visited() >= moves);
   CHECK(worst(m) >= worst(before));
-  CHECK(lacking(m, pass) < 0.9 * lacking(before, pass));
+  CHECK(total_deficit(m, pass) < 0.9 * total_deficit(before, pass));
   int64_t moved = 0, wrong = 0, off = 0, stale = 0;
   for (const optimize::Element& e : m.element) {
     if (!e.alive())

@@ -56,7 +56,7 @@ TEST_CASE("in a far box most points off the isosurface come back in one pass") {
   REQUIRE(pushed > 64);
   optimize::Schedule schedule(m, &surface, 32 * surface.spacing(), 1);
   const float worst = schedule.worst();
-  schedule.recover(test::recovery_pass(0.35));
+  schedule.search(test::recovery(0.35));
   CHECK(schedule.worst() >= worst);
   const int64_t left = optimize::measure_fidelity(m, surface, 1).points_off;
   CAPTURE(pushed, left);

@@ -136,7 +136,7 @@ void ruffle(optimize::DynamicMesh& m) {
   }
 }
 
-TEST_CASE("a ruffled surface is straightened, and nothing else suffers") {
+TEST_CASE("a ruffled surface is made to fit, and nothing else suffers") {
   const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
   const Isosurface surface_of(grid, 1);
   optimize::DynamicMesh m = optimize::build(lattice_mesh(three_atoms, {0, 0, 0}, h, n), 180, 1);
@@ -151,7 +151,7 @@ TEST_CASE("a ruffled surface is straightened, and nothing else suffers") {
   pass.goal = 0.002f;
   pass.guard.angle = 40;
   for (int k = 0; k < 3; ++k)
-    schedule.straighten(pass);
+    schedule.fit_surface(pass);
   const optimize::Fidelity after = optimize::measure_fidelity(m, surface_of, 1);
   CHECK(after.turned <= before.turned / 10);
   CHECK(after.points_off < before.points_off / 5);
@@ -186,7 +186,7 @@ TEST_CASE("a few rounds improve, and nothing becomes worse for want of more") {
     optimize::Options few;
     few.iterations = rounds;
     const optimize::Result r = optimize::improve(mesh, &grid, few);
-    CHECK_FALSE(r.in_vain);
+    CHECK_FALSE(r.rejected);
     CHECK(r.after.min > r.before.min);
     CHECK(r.after.max < r.before.max);
     CHECK(r.after.below_25 < r.before.below_25);

@@ -60,12 +60,11 @@ TEST_CASE("the surface follows a passage of hundredths of a spacing") {
   const int64_t shape = surface_shape(mesh).euler();
   REQUIRE(optimize::measure_fidelity(m, surface, 1).points_off > 3);
   optimize::Schedule schedule(m, &surface, 32 * h, 1);
-  schedule.find_crowded(optimize::Schedule::everywhere);
-  optimize::Pass pass = recovery_pass(1);
+  schedule.watch_crossings(optimize::Schedule::everywhere);
   optimize::Counts counts;
-  for (pass.effort = 1; pass.effort <= 3; ++pass.effort)
-    counts += schedule.recover(pass);
-  CHECK(counts.nestings > 0);
+  for (const optimize::Moves moves : {optimize::Moves::careful, optimize::Moves::bold, optimize::Moves::necks})
+    counts += schedule.search(recovery(1, moves));
+  CHECK(counts.cavity_shrinks > 0);
   float worst = 2;
   for (const optimize::Element& e : m.element)
     worst = e.alive() ? std::min(worst, e.q) : worst;
@@ -82,22 +81,21 @@ TEST_CASE("a surface that touches itself is left alone where it does") {
   const Field tube = pierced_ball(0.6 * h, 2 * h, {0.6, 0, 0.8}),
               field = pierced_ball(0.05 * h, 2 * h, {0.6, 0, 0.8});
   const BlockGrid grid = lattice_grid(tube, {0, 0, 0}, h, n);
-  TetMesh mesh = lattice_mesh(tube, {0, 0, 0}, h, n, 2); // ambiguous cells: points that two sheets share
+  TetMesh mesh =
+      lattice_mesh(tube, {0, 0, 0}, h, n, 2); // ambiguous cells: points that two pieces of the surface share
   optimize::improve(mesh, &grid, {});
   optimize::DynamicMesh m = optimize::build(mesh, 180, 1);
   const Isosurface surface(lattice_grid(field, {0, 0, 0}, h, n), 1);
   optimize::Schedule schedule(m, &surface, 32 * h, 1);
-  optimize::Pass pass = recovery_pass(1);
   const std::vector<Vec3d> before = m.point;
   std::vector<size_t> fixed;
   for (size_t v = 0; v < m.vertex.size(); ++v)
     if (m.vertex[v].kind == optimize::Kind::fixed)
       fixed.push_back(v);
   REQUIRE(fixed.size() > 8); // not the box's corners alone
-  for (const int effort : {1, 2, 3, 3}) {
-    pass.effort = effort;
-    schedule.recover(pass);
-  }
+  for (const optimize::Moves moves :
+       {optimize::Moves::careful, optimize::Moves::bold, optimize::Moves::necks, optimize::Moves::necks})
+    schedule.search(recovery(1, moves));
   CHECK_NOTHROW(optimize::build(optimize::extract(m), 180, 1));
   for (const size_t v : fixed)
     CHECK(m.point[v] == before[v]);

@@ -1,9 +1,9 @@
 // numbers_test.cpp — numbers of vertices, of neighbours, and the extreme angles, each by the slow way.
+#include "base/open_table.hpp"
 #include "lattice_mesh.hpp"
 #include "mesh/adjacency.hpp"
-#include "optimize/mesh/angles.hpp"
 #include "optimize/mesh/dynamic_mesh.hpp"
-#include "optimize/mesh/vertex_numbers.hpp"
+#include "optimize/mesh/measures.hpp"
 #include "optimize/optimize.hpp"
 #include <catch2/catch.hpp>
 #include <map>
@@ -19,7 +19,7 @@ std::mt19937 random_bits(5);
 } // namespace
 
 TEST_CASE("vertices are numbered in the order they are met") {
-  optimize::VertexNumbers number;
+  SmallNumbers number;
   for (int round = 0; round < 20; ++round) {
     number.clear();
     std::map<int32_t, size_t> slow;

@@ -1,8 +1,8 @@
 // part_copy_test.cpp — what an operation does to the copy of a part it does to the part.
 #include "isosurface/isosurface.hpp"
 #include "lattice_mesh.hpp"
+#include "optimize/operations/on_element.hpp"
 #include "optimize/optimize.hpp"
-#include "optimize/schedule/element_pass.hpp"
 #include "recovery_pass.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -40,14 +40,14 @@ TEST_CASE("a part and its copy change alike") {
   slots.insert(slots.end(), room.element.begin(), room.element.end());
   std::vector<uint32_t> stamp(m.element.size());
   const optimize::Pass pass = recovery_pass(1);
-  optimize::Editor editor(m, &surface, nullptr, parts, stamp, room, pass.guard);
-  REQUIRE(editor.alone());
+  optimize::Region region(m, &surface, nullptr, parts, stamp, room);
+  REQUIRE(region.is_alone());
 
-  optimize::PartCopy copy = editor.copy(slots);
+  optimize::PartCopy copy = region.copy(slots);
   REQUIRE(copy.slots.size() == slots.size());
   REQUIRE(copy.mesh.element.size() < elements);
   std::vector<uint32_t> stamp_of_copy(copy.mesh.element.size());
-  optimize::Editor like(editor, copy, stamp_of_copy);
+  optimize::Region like(region, copy, stamp_of_copy);
   const auto alike = [&] {
     for (size_t k = 0; k < slots.size(); ++k) {
       const optimize::Element &e = m.element[slots[k]], &c = copy.mesh.element[copy.slots[k]];
@@ -60,18 +60,18 @@ TEST_CASE("a part and its copy change alike") {
     return true;
   };
   CHECK(alike());
-  for (optimize::Editor* e : {&editor, &like})
-    e->goal = pass.goal;
+  optimize::Acceptance accept(pass.guard);
+  accept.goal = pass.goal;
   for (size_t k = 0; k < slots.size(); ++k) {
     if (!m.element[slots[k]].alive() || m.element[slots[k]].q >= pass.goal)
       continue;
-    const bool done = optimize::improve_element(editor, m, slots[k], pass);
-    CHECK(optimize::improve_element(like, copy.mesh, copy.slots[k], pass) == done);
+    const bool done = optimize::improve_element(region, accept, slots[k], true);
+    CHECK(optimize::improve_element(like, accept, copy.slots[k], true) == done);
   }
-  CHECK(editor.counts.moves > 20);
-  CHECK(editor.counts.splits + editor.counts.contractions > 0);
-  CHECK(editor.counts.edge_removals > 0);
-  CHECK(like.counts.total() == editor.counts.total());
+  CHECK(region.counts.moves > 20);
+  CHECK(region.counts.splits + region.counts.contractions > 0);
+  CHECK(region.counts.edge_removals > 0);
+  CHECK(like.counts.total() == region.counts.total());
   CHECK(alike());
   for (size_t t = 0; t < elements; ++t) // what is beyond the part keeps its vertices
     if (!std::binary_search(slots.begin(), slots.end() - 200, static_cast<int32_t>(t)))

@@ -7,7 +7,7 @@
 #include "isosurface/reference_surface.hpp"
 #include "lattice_mesh.hpp"
 #include "optimize/mesh/dynamic_mesh.hpp"
-#include "optimize/operations/editor.hpp"
+#include "optimize/operations/region.hpp"
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>

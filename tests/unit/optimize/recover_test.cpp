@@ -1,6 +1,7 @@
 // recover_test.cpp — points that were pushed off the isosurface come back or leave it; what fails leaves no trace.
 #include "lattice_mesh.hpp"
 #include "optimize/acceptance/faults.hpp"
+#include "optimize/operations/operations.hpp"
 #include "optimize/optimize.hpp"
 #include "optimize/schedule/schedule.hpp"
 #include "push_off.hpp"
@@ -43,16 +44,16 @@ TEST_CASE("points pushed off the isosurface are recovered, no element is the wor
   const optimize::Fidelity before = optimize::measure_fidelity(c.m, c.surface, 1);
   REQUIRE(before.points_off > 10);
   optimize::Schedule schedule(c.m, &c.surface, 32 * h, 1);
-  const optimize::Pass pass = recovery_pass(0.5);
+  const optimize::Strategy strategy = recovery(0.5);
   const float worst = schedule.worst();
-  const int64_t below = schedule.below(optimize::FaultCount::share * pass.goal);
+  const int64_t below = schedule.below(optimize::FaultCount::share * strategy.goal);
   for (int k = 0; k < 4; ++k)
-    schedule.recover(pass);
+    schedule.search(strategy);
   const optimize::Fidelity after = optimize::measure_fidelity(c.m, c.surface, 1);
   CHECK(after.points_off == 0);
   CHECK(after.turned <= before.turned);
   CHECK(schedule.worst() >= worst);
-  CHECK(schedule.below(optimize::FaultCount::share * pass.goal) <= below);
+  CHECK(schedule.below(optimize::FaultCount::share * strategy.goal) <= below);
   CHECK(surface_shape(optimize::extract(c.m)).euler() == 2);
   CHECK_NOTHROW(optimize::build(optimize::extract(c.m), 180, 1));
 }
@@ -89,15 +90,15 @@ TEST_CASE("points where the isosurface is not known count as off, and come back"
   REQUIRE(optimize::measure_fidelity(c.m, c.surface, 1).points_off == lost);
   optimize::Schedule schedule(c.m, &c.surface, 32 * h, 1);
   for (int k = 0; k < 4; ++k)
-    schedule.recover(recovery_pass(0.5));
+    schedule.search(recovery(0.5));
   CHECK(optimize::measure_fidelity(c.m, c.surface, 1).points_off == 0);
 }
 
 TEST_CASE("one pass has room around every point, wherever the lattice of the parts lies") {
   Case c;
   optimize::Schedule schedule(c.m, &c.surface, 32 * h, 1);
-  const optimize::Pass pass =
-      recovery_pass(0.3); // a fifth of the molecule's surface is near a side of a lattice of such cells
+  const optimize::Strategy strategy =
+      recovery(0.3); // a fifth of the molecule's surface is near a side of a lattice of such cells
   int pushed = 0;
   for (size_t v = 0; v < c.m.point.size() && pushed < 60; ++v) {
     double distance;
@@ -112,7 +113,7 @@ TEST_CASE("one pass has room around every point, wherever the lattice of the par
     }
     REQUIRE(optimize::measure_fidelity(c.m, c.surface, 1).points_off == 1);
     ++pushed;
-    schedule.recover(pass);
+    schedule.search(strategy);
     REQUIRE(optimize::measure_fidelity(c.m, c.surface, 1).points_off == 0);
   }
   CHECK(pushed > 20);
@@ -152,43 +153,45 @@ TEST_CASE("what is restored is as it was saved") {
   for (size_t v = 0; v < owner.size(); ++v)
     owner[v] = v < size_t(points) && c.m.point[v].x > h * n / 2;
   std::vector<uint32_t> stamp(c.m.element.size());
-  optimize::Editor editor(c.m, &c.surface, nullptr, parts, stamp, room, recovery_guard);
+  optimize::Region region(c.m, &c.surface, nullptr, parts, stamp, room);
   std::vector<int32_t> inner;
   for (int32_t e = 0; e < size; ++e)
-    if (editor.owned(e))
+    if (region.owned(e))
       inner.push_back(e);
-  const optimize::Snapshot snapshot = editor.save(inner);
-  editor.straighten = editor.bold = true; // any edge of the surface that can be flipped
-  editor.goal = 1e-4f;
+  const optimize::Snapshot snapshot = region.save(inner);
+  optimize::Acceptance bold(recovery_guard); // any edge of the surface that can be flipped
+  bold.aim = optimize::Aim::fit;
+  bold.may_bend = true;
+  bold.goal = 1e-4f;
   for (const int32_t e : inner)
     for (int i = 0; i < 3; ++i)
       for (int j = i + 1; j < 4; ++j)
         if (c.m.element[e].alive())
-          editor.remove_edge(e, i, j);
-  REQUIRE(editor.counts.surface_flips > 10);
-  editor.straighten = editor.bold = false;
-  editor.goal = static_cast<float>(angle_quality(35));
+          optimize::remove_edge(region, bold, e, i, j);
+  REQUIRE(region.counts.surface_flips > 10);
+  optimize::Acceptance better(recovery_guard);
+  better.goal = static_cast<float>(angle_quality(35));
   for (const int32_t e : inner)
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j)
-        if (i != j && c.m.element[e].alive() && !editor.split(e, i, j) && !editor.remove_edge(e, i, j) &&
-            !editor.contract(e, i, j))
-          editor.smooth(c.m.element[e].v[i]);
-  REQUIRE(editor.counts.moves > 10);
-  REQUIRE(editor.counts.splits + editor.counts.contractions > 10);
-  const optimize::Snapshot changed = editor.save([&] {
+        if (i != j && c.m.element[e].alive() && !optimize::split_edge(region, better, e, i, j) &&
+            !optimize::remove_edge(region, better, e, i, j) && !optimize::contract_edge(region, better, e, i, j))
+          optimize::smooth_vertex(region, better, c.m.element[e].v[i]);
+  REQUIRE(region.counts.moves > 10);
+  REQUIRE(region.counts.splits + region.counts.contractions > 10);
+  const optimize::Snapshot changed = region.save([&] {
     std::vector<int32_t> alive;
     for (int32_t e = 0; e < size + 1000; ++e)
-      if (c.m.element[e].alive() && editor.owned(e))
+      if (c.m.element[e].alive() && region.owned(e))
         alive.push_back(e);
     return alive;
   }());
   const optimize::DynamicMesh then = c.m;
-  const int64_t operations = editor.counts.total();
+  const int64_t operations = region.counts.total();
   const size_t free_then = room.element.size();
-  editor.restore(snapshot);
-  editor.restore(changed);
-  CHECK(editor.counts.total() == operations);
+  region.restore(snapshot);
+  region.restore(changed);
+  CHECK(region.counts.total() == operations);
   CHECK(room.element.size() == free_then);
   for (size_t v = 0; v < then.point.size(); ++v)
     REQUIRE((c.m.incident[v] == then.incident[v] && (then.incident[v] < 0 || c.m.point[v] == then.point[v])));
@@ -209,17 +212,16 @@ TEST_CASE("what is restored is as it was saved") {
                  x.q == before.element[e].q));
     }
   };
-  editor.restore(snapshot);
-  CHECK(editor.counts.total() == 0);
+  region.restore(snapshot);
+  CHECK(region.counts.total() == 0);
   CHECK(room.element.size() == 1000);
   as_before();
   // Again and again, where little has been written; and faults, counted by what was written.
   std::vector<int32_t> slots = inner;
   slots.insert(slots.end(), room.element.begin(), room.element.end());
-  const auto goal = static_cast<float>(angle_quality(35));
-  optimize::FaultCount kept(editor, c.m, slots, goal);
+  optimize::FaultCount kept(region, slots, better);
   const auto counts_as_anew = [&] {
-    optimize::FaultCount anew(editor, c.m, slots, goal);
+    optimize::FaultCount anew(region, slots, better);
     const optimize::Faults a = kept(), b = anew();
     REQUIRE((a.off == b.off && a.bent == b.bent && a.below == b.below && a.worst == b.worst));
     REQUIRE(kept.points_off() == anew.points_off());
@@ -227,19 +229,20 @@ TEST_CASE("what is restored is as it was saved") {
   counts_as_anew();
   int64_t done = 0;
   for (size_t k = 0; k < inner.size(); k += 1 + inner.size() / 40) {
-    const optimize::Snapshot here = editor.save(inner);
-    for (const bool bold : {true, false}) {
-      editor.straighten = editor.bold = bold;
-      editor.goal = bold ? 1e-4f : goal;
+    const optimize::Snapshot here = region.save(inner);
+    for (const optimize::Acceptance& accept : {bold, better}) {
       for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j)
           if (const optimize::Element& e = c.m.element[inner[k]]; i != j && e.alive())
-            editor.remove_edge(inner[k], i, j) || editor.split(inner[k], i, j) || editor.contract(inner[k], i, j) ||
-                editor.hand_over(e.v[i]) || editor.smooth(e.v[i]);
+            optimize::remove_edge(region, accept, inner[k], i, j) ||
+                optimize::split_edge(region, accept, inner[k], i, j) ||
+                optimize::contract_edge(region, accept, inner[k], i, j) ||
+                optimize::retreat_surface(region, accept, e.v[i]) ||
+                optimize::smooth_vertex(region, accept, e.v[i]);
       counts_as_anew();
     }
-    done += editor.counts.total();
-    editor.restore(k % 2 == 0 ? here : snapshot);
+    done += region.counts.total();
+    region.restore(k % 2 == 0 ? here : snapshot);
     as_before();
     counts_as_anew();
   }
@@ -252,21 +255,23 @@ TEST_CASE("a surface point that leaves the surface leaves a surface behind") {
   parts.owner.resize(c.m.point.size());
   std::vector<uint32_t> stamp(c.m.element.size());
   optimize::PartRoom room;
-  optimize::Editor editor(c.m, &c.surface, nullptr, parts, stamp, room, recovery_guard);
-  editor.straighten = editor.bold = true;
-  editor.goal = 1e-4f;
+  optimize::Region region(c.m, &c.surface, nullptr, parts, stamp, room);
+  optimize::Acceptance bold(recovery_guard);
+  bold.aim = optimize::Aim::fit;
+  bold.may_bend = true;
+  bold.goal = 1e-4f;
   int gone = 0;
   double volume = optimize::measure_fidelity(c.m, c.surface, 1).volume;
   LargeArray<optimize::Element> before = c.m.element;
   for (size_t v = 0; v < parts.owner.size() && gone < 40; ++v) {
     std::fill(c.m.labelled.begin(), c.m.labelled.end(), uint8_t{0});
-    if (!editor.hand_over(static_cast<int32_t>(v)))
+    if (!optimize::retreat_surface(region, bold, static_cast<int32_t>(v)))
       continue;
     ++gone;
     for (size_t e = 0; e < before.size(); ++e)
       for (size_t f = 0; f < 4; ++f)
         if (c.m.element[e].label[f] > before[e].label[f])
-          REQUIRE(c.m.labelled[e / size_t(optimize::DynamicMesh::stretch)]);
+          REQUIRE(c.m.labelled[e / size_t(optimize::DynamicMesh::chunk)]);
     before = c.m.element;
     std::fill(c.m.labelled.begin(), c.m.labelled.end(), uint8_t{1});
     CHECK(c.m.vertex[v].kind == optimize::Kind::interior);

@@ -100,7 +100,7 @@ TEST_CASE("points of a trace that were pushed off come back, within their wall")
   optimize::Schedule schedule(m, &isosurface, 32 * isosurface.spacing(), 1);
   const float worst = schedule.worst();
   for (int k = 0; k < 4; ++k)
-    schedule.recover(recovery_pass(0.5));
+    schedule.search(recovery(0.5));
   CHECK(optimize::measure_fidelity(m, isosurface, 1).points_off <= before.points_off);
   CHECK(schedule.worst() >= worst);
   for (size_t v = 0; v < m.point.size(); ++v)

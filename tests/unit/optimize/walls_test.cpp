@@ -73,7 +73,7 @@ TEST_CASE("the device's flow keeps a cut surface in the box") {
   }
 }
 
-TEST_CASE("the device's flow leaves sheets that face each other to the host") {
+TEST_CASE("the device's flow leaves surfaces that face each other to the host") {
   const BlockGrid grid = cluster(1, 1);
   const Isosurface surface(grid, 1);
   contour::Options options;
@@ -92,9 +92,9 @@ TEST_CASE("the device's flow leaves sheets that face each other to the host") {
         const auto v = optimize::outward_triangle(m.element[t].v, f);
         const bool changed =
             std::any_of(v.begin(), v.end(), [&](int32_t w) { return m.point[w] != before.point[w]; });
-        watched += m.crowded(v);
+        watched += m.watched(v);
         moved += changed;
-        moved_watched += changed && m.crowded(v);
+        moved_watched += changed && m.watched(v);
       }
   CHECK(watched > 10);
   CHECK(moved > 10);

@@ -1,0 +1,167 @@
+// crossing_guard.cpp — triangles near those that move, told apart by planes first and by the exact test last.
+#include "optimize/crossings/crossing_guard.hpp"
+#include "geom/intersect.hpp"  // exact test of two triangles
+#include "geom/predicates.hpp" // on which side of a triangle a point lies
+#include "mesh/box_tree.hpp"
+#include "par/par.hpp"
+#include <algorithm>
+#include <bit>
+
+namespace molmesh::optimize {
+
+// Whether t and three triangles of beyond_, one across each of its edges, close a hole that is inside out.
+bool CrossingGuard::turns_over(const std::array<int32_t, 3>& t) const {
+  const auto across = [&](int k, int32_t apex) {
+    return std::any_of(beyond_.begin(), beyond_.end(),
+                       [&](const Beyond& b) { return b.edge == k && b.apex == apex; });
+  };
+  const auto p = [&](int32_t v) { return m_.point[v]; };
+  return std::any_of(beyond_.begin(), beyond_.end(), [&](const Beyond& b) {
+    return b.edge == 0 && across(1, b.apex) && across(2, b.apex) &&
+           !(orient3d(p(t[0]), p(t[1]), p(t[2]), p(b.apex)) > 0);
+  });
+}
+
+// near_: what may stand in the way of any triangle of now_. Triangles of other parts change meanwhile, each in its
+// own cell, so none of those is met; triangles of no part stay as they are.
+void CrossingGuard::gather_near(const FreeTriangles& from, const Boxf& around, bool may_be_stale) {
+  from.any(around, [&](const FreeTriangle& other) {
+    const size_t n = near_.size();
+    near_.push_back({other, may_be_stale ? Near::Stays::may_be_stale : Near::Stays::not_asked});
+    if (n % 8 == 0)
+      near_box_.emplace_back();
+    near_box_[n / 8].set(n % 8, static_cast<int32_t>(n), other);
+    return false;
+  });
+}
+
+bool CrossingGuard::stays_near(Near& n, uint32_t leaving) const {
+  if (n.stays == Near::Stays::yes || n.stays == Near::Stays::no)
+    return n.stays == Near::Stays::yes;
+  const auto owner = [&](size_t k) { return parts_.owner[n.triangle.v[k]]; };
+  const bool stays = !((owner(0) >= 0 && owner(0) != part_ && owner(0) == owner(1) && owner(0) == owner(2)) ||
+                       (leaving != 0 && stamp_[n.triangle.face / 4] == leaving) ||
+                       (n.stays == Near::Stays::may_be_stale && changes.knows(n.triangle.face)));
+  n.stays = stays ? Near::Stays::yes : Near::Stays::no;
+  return stays;
+}
+
+// Triangles of a hole with four of them share edges, all with all: turned inside out none crosses another.
+void CrossingGuard::note_edge(const Apart& apart, const std::array<int32_t, 3>& other) {
+  if (apart.share_edge())
+    beyond_.push_back({std::countr_zero(apart.of_first), other[std::countr_zero(apart.of_second)]});
+}
+
+// Whether they are seen not to cross without the exact test.
+bool CrossingGuard::lie_beside(const FreeTriangle& a, const FreeTriangle& b, const Apart& apart) const {
+  return a.runs_alike(b, apart.beside()) && side_by_side(m_.point, a, b, apart);
+}
+
+// Whether it crosses the near one, which may be itself and may not stay; their common edge is noted.
+bool CrossingGuard::crosses(const FreeTriangle& now, Near& near, uint32_t leaving) {
+  const FreeTriangle& other = near.triangle;
+  const Apart apart(now.v, other.v);
+  const bool beside = lie_beside(now, other, apart);
+  // Whether it stays is further away in memory.
+  if ((beside && !apart.share_edge()) || !stays_near(near, leaving))
+    return false;
+  note_edge(apart, other.v);
+  return !beside && triangles_cross(m_.point, now.v, other.v);
+}
+
+bool CrossingGuard::leave_part() const {
+  return std::any_of(now_.begin(), now_.end(), [&](const auto& t) {
+    return std::any_of(t.begin(), t.end(), [&](int32_t v) { return parts_.at(m_.point[v]) != part_; });
+  });
+}
+
+bool CrossingGuard::cross(uint32_t leaving) {
+  if (leave_part())
+    return true;
+  boxed_.clear();
+  Boxf around; // all of them
+  for (const auto& t : now_)
+    around.add(boxed_.emplace_back(free_triangle(m_.point, t, -1)));
+  if (now_.empty())
+    return false;
+  near_.clear();
+  near_box_.clear();
+  gather_near(changes, around, false);
+  gather_near(*free_, around, true);
+  for (size_t i = 0; i < now_.size(); ++i) {
+    const FreeTriangle& now = boxed_[i];
+    beyond_.clear();
+    for (const auto& o : now_)
+      note_edge(Apart(now.v, o), o);
+    for (size_t j = 0; j < i; ++j)
+      if (!lie_beside(now, boxed_[j], Apart(now.v, now_[j])) && triangles_cross(m_.point, now.v, now_[j]))
+        return true;
+    for (const EightBoxes& eight : near_box_)
+      for (uint32_t met = eight.met(now); met; met &= met - 1)
+        if (crosses(now, near_[eight.id[std::countr_zero(met)]], leaving))
+          return true;
+    if (turns_over(now.v))
+      return true;
+  }
+  return false;
+}
+
+void CrossingGuard::add_at(const std::vector<int32_t>& elements, int32_t v, int32_t without) {
+  for (const int32_t t : elements) {
+    const Element& e = m_.element[t];
+    if (without >= 0 && e.find(without) >= 0)
+      continue;
+    for (size_t f = 0; f < 4; ++f)
+      if (e.n[f] < 0 && e.v[f] != v && m_.labels[e.label[f]].curved() && m_.watched(outward_triangle(e.v, f))) {
+        now_.push_back(outward_triangle(e.v, f));
+        face_.push_back(4 * int64_t(t) + int64_t(f));
+      }
+  }
+}
+
+void CrossingGuard::note_moved() {
+  for (size_t i = 0; i < face_.size(); ++i)
+    changes.insert(free_triangle(m_.point, now_[i], face_[i]));
+}
+
+bool CrossingGuard::any_crosses(std::vector<int64_t> face) {
+  par::sort_unique(face, 1);
+  near_.clear();
+  moved_.clear();
+  OpenTable has_moved;
+  has_moved.reserve(face.size());
+  Boxf around; // all of them
+  for (const int64_t f : face) {
+    const auto v = outward_triangle(m_.element[f / 4].v, size_t(f % 4));
+    has_moved[uint64_t(f)] = 1;
+    moved_.push_back(free_triangle(m_.point, v, f));
+    near_.push_back({moved_.back(), Near::Stays::yes});
+    around.add(moved_.back());
+  }
+  free_->any(around, [&](const FreeTriangle& other) {
+    if (Near n{other, Near::Stays::not_asked}; !has_moved.find(uint64_t(other.face)) && stays_near(n, 0))
+      near_.push_back(n);
+    return false;
+  });
+  const BoxTree tree(near_.size(), [&](size_t n) { return near_[n].triangle; });
+  // Each with those after it: the first of a hole's four has the others at its edges.
+  for (size_t i = 0; i < face.size(); ++i) {
+    const FreeTriangle& now = near_[i].triangle;
+    beyond_.clear();
+    if (tree.any(
+            now, [&](size_t n) { return crosses(now, near_[n], 0); }, i + 1) ||
+        turns_over(now.v)) {
+      moved_.clear();
+      return true;
+    }
+  }
+  return false;
+}
+
+FreeTriangleChanges CrossingGuard::take_changes() const {
+  FreeTriangleChanges all = changes.changes();
+  all.there.insert(all.there.end(), moved_.begin(), moved_.end());
+  return all;
+}
+
+} // namespace molmesh::optimize

@@ -1,0 +1,256 @@
+// local_search.cpp — repair by rounds; first improvement and threshold accepting among operations.
+#include "optimize/search/local_search.hpp"
+#include "optimize/acceptance/surface_fit.hpp"
+#include "par/par.hpp"
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace molmesh::optimize {
+
+std::vector<int32_t> LocalSearch::below(float goal, const std::vector<int32_t>& of) const {
+  std::vector<int32_t> list;
+  for (const int32_t t : of)
+    if (r_.mesh.element[t].alive() && r_.mesh.element[t].q < goal)
+      list.push_back(t);
+  return list;
+}
+
+std::vector<int32_t> LocalSearch::bad() {
+  return below(FaultCount::share * accept_.goal, below_goal_());
+}
+
+std::vector<int32_t> LocalSearch::elements() const {
+  std::vector<int32_t> all;
+  for (const int32_t t : slots_)
+    if (r_.mesh.element[t].alive())
+      all.push_back(t);
+  return all;
+}
+
+Acceptance LocalSearch::first_step() const {
+  Acceptance a = accept_;
+  a.aim = Aim::fit;
+  a.goal = leeway.floor * accept_.goal;
+  a.worst_first = worst_first;
+  a.may_bend = true;
+  return a;
+}
+
+void LocalSearch::fit_listed(const Acceptance& accept) {
+  for (int sweep = 0; sweep < 3 && !r_.changed.empty(); ++sweep) {
+    std::vector<int32_t> list;
+    list.swap(r_.changed);
+    par::sort_unique(list, 1);
+    for (const int32_t t : list)
+      if (r_.mesh.element[t].alive())
+        fit_element(r_, accept, t);
+  }
+}
+
+void LocalSearch::fit_changed() {
+  Acceptance a = first_step();
+  a.may_bend = false;
+  fit_listed(a);
+}
+
+void LocalSearch::fit_bent() {
+  Acceptance a = accept_;
+  a.aim = Aim::fit;
+  a.worst_first = worst_first;
+  a.off_target = leeway.off_target;
+  r_.changed.clear();
+  for (const int32_t t : slots_)
+    for (size_t f = 0; f < 4; ++f)
+      if (r_.mesh.element[t].alive() && is_bent(r_, a, t, f)) {
+        r_.changed.push_back(t);
+        break;
+      }
+  fit_listed(a);
+}
+
+void LocalSearch::repair(int rounds, double hopeless) {
+  Acceptance a = accept_;
+  a.may_bend = leeway.may_bend;
+  a.off_target = leeway.off_target;
+  for (int k = 0, idle = 0; k < rounds && idle < 2; ++k) { // after two without effect, one of each measure, all are
+    if (k > 0 && k * cost() > hopeless)
+      return;
+    const int64_t done = r_.counts.total();
+    a.worst_first = worst_first = (k % 2 == 0) == accept_.worst_first;
+    std::vector<int32_t> list = below_goal_();
+    if (list.empty())
+      return;
+    for (int sweep = 0; sweep < 4 && !list.empty(); ++sweep) {
+      sort_worst_first(r_.mesh, list);
+      r_.changed.clear();
+      for (const int32_t t : list)
+        if (r_.mesh.element[t].alive() && r_.mesh.element[t].q < a.goal)
+          improve_element(r_, a, t, true);
+      list = below(a.goal, r_.changed);
+    }
+    idle = r_.counts.total() == done ? idle + 1 : 0;
+  }
+}
+
+double LocalSearch::cost() {
+  double sum = 0;
+  for (const int32_t t : bad())
+    sum += 1.2 - std::sqrt(r_.mesh.element[t].q / accept_.goal);
+  return sum;
+}
+
+// The worst elements and those beside them.
+std::vector<int32_t> LocalSearch::worst() {
+  constexpr size_t most = 4;
+  std::vector<int32_t> list = bad();
+  sort_worst_first(r_.mesh, list);
+  list.resize(std::min(list.size(), most));
+  for (size_t i = 0, n = list.size(); i < n; ++i)
+    for (const int32_t t : r_.mesh.element[list[i]].n)
+      if (t >= 0 && r_.owned(t) && std::find(list.begin(), list.end(), t) == list.end())
+        list.push_back(t);
+  return list;
+}
+
+bool LocalSearch::operate(const Trial& trial) {
+  const Acceptance a = first_step();
+  const int32_t t = trial.element;
+  const auto [i, j] = edges[trial.operation % 6];
+  r_.changed.clear();
+  switch (trial.operation / 6) {
+  case 0:
+    return remove_edge(r_, a, t, i, j);
+  case 1:
+    return split_edge(r_, a, t, i, j);
+  case 2:
+    return contract_edge(r_, a, t, i, j);
+  case 3:
+    return contract_edge(r_, a, t, j, i);
+  case 4:
+    return merge_edge(r_, a, t, i, j);
+  default:
+    return swap_face(r_, a, t, trial.operation % 6);
+  }
+}
+
+void LocalSearch::repair_after() {
+  fit_changed();
+  repair(2);
+}
+
+// What the cost and the faults after a trial must be under.
+struct LocalSearch::Limit {
+  const Faults& before;
+  int64_t off;
+  double least;
+};
+
+LocalSearch::Outcome LocalSearch::attempt(const Trial& trial, Limit& limit) {
+  if (!operate(trial))
+    return Outcome::idle;
+  repair_after();
+  if (const double now = cost(); now < 0.995 * limit.least)
+    if (const Faults f = faults(); f.off <= limit.off && f.fewer_than(limit.before, leeway.bent_for_point)) {
+      limit.least = now;
+      return Outcome::better;
+    }
+  return Outcome::worse;
+}
+
+// From trial `from` on, with the other threads' help: the first that does not leave all as it was, or that the next
+// would not follow like any other. Counts the trials down.
+size_t LocalSearch::first_telling(const std::vector<Trial>& all, size_t from, const Limit& limit,
+                                  const Snapshot& here, int& trials) {
+  const PartCopy copy = r_.copy(slots_);
+  std::vector<Outcome> outcome(all.size(), Outcome::none);
+  std::atomic<size_t> next{from}, telling{all.size()};
+  std::atomic<int> tried{0};
+  const auto work_off = [&](LocalSearch& search, const Snapshot& start, auto&& number) {
+    for (size_t i; tried < trials && (i = next++) < telling;) {
+      Limit its = limit;
+      outcome[i] = search.attempt({number(all[i].element), all[i].operation}, its);
+      if (outcome[i] == Outcome::idle)
+        continue;
+      ++tried;
+      if (outcome[i] == Outcome::better || !search.follows_repair()) {
+        outcome[i] = Outcome::better;
+        for (size_t first = telling; i < first && !telling.compare_exchange_weak(first, i);)
+          ;
+      }
+      search.r_.restore(start);
+      search.worst_first = !accept_.worst_first;
+    }
+  };
+  helpers_->share([&] { work_off(*this, here, [](int32_t t) { return t; }); },
+                  [&] {
+                    PartCopy part = copy;
+                    std::vector<uint32_t> stamp(part.mesh.element.size());
+                    Region region(r_, part, stamp);
+                    LocalSearch search(region, part.slots, accept_, leeway, nullptr);
+                    search.worst_first = !accept_.worst_first;
+                    work_off(search, region.save(search.elements()), [&](int32_t t) { return copy.number(t); });
+                  });
+  size_t i = from;
+  for (; i < all.size() && trials > 0 && (outcome[i] == Outcome::idle || outcome[i] == Outcome::worse); ++i)
+    trials -= outcome[i] == Outcome::worse;
+  return i;
+}
+
+void LocalSearch::climb(const Faults& before, int& trials) {
+  Limit limit{before, faults().off, cost()};
+  for (bool done = true; done && limit.least > 0;) {
+    done = false;
+    const Snapshot here = r_.save(elements());
+    std::vector<Trial> all;
+    for (const int32_t t : worst())
+      for (int k = 0; k < operations; ++k)
+        all.push_back({t, k});
+    for (size_t i = 0; i < all.size() && !done && trials > 0; ++i) {
+      if (helpers_ && helpers_->any_idle() && r_.is_alone() && follows_repair())
+        i = first_telling(all, i, limit, here, trials);
+      if (i == all.size() || trials == 0)
+        break;
+      const Outcome outcome = attempt(all[i], limit);
+      trials -= outcome != Outcome::idle;
+      done = outcome == Outcome::better;
+      if (outcome == Outcome::worse)
+        r_.restore(here);
+    }
+  }
+}
+
+void LocalSearch::walk(const Faults& before, int& trials) {
+  constexpr double first_rise = 0.15; // of the cost, in one step
+  constexpr int idle_for_a_trial = 20;
+  uint64_t state = 1; // the same walk every time
+  const auto random = [&](size_t n) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return static_cast<size_t>((state >> 33) % n);
+  };
+  const int64_t off_at_first = faults().off;
+  const int all = trials;
+  double current = cost();
+  Snapshot here = r_.save(elements());
+  std::vector<int32_t> list = worst();
+  for (int idle = idle_for_a_trial * trials; current > 0 && trials > 0 && idle > 0 && !list.empty();) {
+    const int32_t t = list[random(list.size())];
+    if (!operate({t, static_cast<int>(random(operations))})) {
+      --idle;
+      continue;
+    }
+    const double rise = first_rise * trials-- / all;
+    repair_after();
+    const double now = cost();
+    const Faults f = faults();
+    if (now > (1 + rise) * current || f.off > off_at_first || !f.fewer_than(before, leeway.bent_for_point)) {
+      r_.restore(here);
+      continue;
+    }
+    current = now;
+    here = r_.save(elements());
+    list = worst();
+  }
+}
+
+} // namespace molmesh::optimize
