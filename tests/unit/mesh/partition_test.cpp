@@ -44,7 +44,7 @@ TEST_CASE("one part, and more parts than tetrahedra") {
   CHECK(partition(TetMesh{}, 4, 1).empty());
 }
 
-TEST_CASE("no part is empty, however many are asked for, and METIS says nothing") {
+TEST_CASE("no part is empty, however many are asked for, and METIS says nothing", "[slow]") {
   const int n = GENERATE(2, 9, 30);
   const TetMesh m = cubes(n, all_molecule);
   const auto tets = static_cast<int>(m.tet.size());
