@@ -17,7 +17,7 @@ template <class T>
 struct Sink {
   T* to;
   int32_t n;
-  HD void push_back(const T& v) {
+  MOLMESH_HD void push_back(const T& v) {
     if (to)
       to[n] = v;
     ++n;
@@ -27,7 +27,7 @@ struct Sink {
 /// Vertices that elements without positive volume hang on, as flags.
 struct SpoiledSink {
   uint8_t* flag;
-  HD void push_back(int32_t vertex) const { par::raise(flag[vertex]); }
+  MOLMESH_HD void push_back(int32_t vertex) const { par::raise(flag[vertex]); }
 };
 
 /// contour::Batch for one item.
@@ -45,20 +45,20 @@ struct ItemOut {
   int32_t number; ///< of the item's first new point
   int32_t broken;
 
-  HD int32_t add_point(Vec3d p, int32_t at_wall) {
+  MOLMESH_HD int32_t add_point(Vec3d p, int32_t at_wall) {
     if (wall)
       wall[point.n] = at_wall;
     point.push_back(p);
     return number + point.n - 1;
   }
-  HD void add_triangle(Tri t, int32_t behind, int32_t front, int32_t label) {
+  MOLMESH_HD void add_triangle(Tri t, int32_t behind, int32_t front, int32_t label) {
     if (tri.to) {
       tri_sides[tri.n] = {behind, front};
       boundary[tri.n] = label;
     }
     tri.push_back(t);
   }
-  HD void broken_ring() { ++broken; }
+  MOLMESH_HD void broken_ring() { ++broken; }
 };
 
 /// Per item, then scanned: one more slot each for the total.
@@ -87,7 +87,7 @@ struct RunElements {
   ItemCounts count;
   ItemPlaces to;
   uint8_t* spoiled; ///< [vertices], where elements are only checked
-  HD void operator()(int64_t n) const {
+  MOLMESH_HD void operator()(int64_t n) const {
     const int64_t i = order[n];
     ItemOut<Make::check> out{};
     out.number = int32_t{1} << 30; // no number of an old vertex, and not negative
@@ -114,13 +114,13 @@ struct MakeFaces {
   static constexpr bool check = only_check;
   ComplexView c;
   const int32_t* leaves; ///< null: all
-  HD int32_t leaf(int64_t i) const { return leaves ? leaves[i] : static_cast<int32_t>(i); }
-  HD void operator()(int64_t i, ItemOut<check>& out) const {
+  MOLMESH_HD int32_t leaf(int64_t i) const { return leaves ? leaves[i] : static_cast<int32_t>(i); }
+  MOLMESH_HD void operator()(int64_t i, ItemOut<check>& out) const {
     contour::NearLeaves near(c.tree);
     contour::make_faces(c, near, leaf(i), out);
   }
   /// Leaves of one level, and surface cells apart: similar work (§4.2).
-  HD uint32_t work(int64_t i) const {
+  MOLMESH_HD uint32_t work(int64_t i) const {
     const int32_t l = leaf(i);
     return uint32_t(c.tree.level[l]) * 4 + uint32_t(c.side[l] == contour::Side::crossed) * 2 +
            uint32_t(c.is_split(l));
@@ -134,10 +134,10 @@ struct MakeRings {
   contour::RingVertices vertices;
   const Link* link;
   const int64_t* first;
-  HD void operator()(int64_t e, ItemOut<check>& out) const {
+  MOLMESH_HD void operator()(int64_t e, ItemOut<check>& out) const {
     contour::make_ring(vertices, link + first[e], link + first[e + 1], out);
   }
-  HD uint32_t work(int64_t e) const { return uint32_t(first[e + 1] - first[e]); }
+  MOLMESH_HD uint32_t work(int64_t e) const { return uint32_t(first[e + 1] - first[e]); }
 };
 
 template <class Make>
@@ -145,7 +145,7 @@ struct WorkKeys {
   Make make;
   int64_t first;
   uint32_t *key, *order;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     key[i] = ~make.work(first + i); // most first
     order[i] = uint32_t(i);
   }
@@ -157,7 +157,7 @@ struct WholeEdges {
   const int32_t* ends;
   int64_t n;
   int32_t grid_vertices;
-  HD int64_t operator()(int64_t i, Link* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, Link* out) const {
     if (!is_end(link[i].inside) || !is_end(link[i].outside))
       return 0;
     if (out)
@@ -166,7 +166,7 @@ struct WholeEdges {
   }
 
 private:
-  HD bool is_end(int32_t v) const { // all faces at a split cell's centre are that cell's
+  MOLMESH_HD bool is_end(int32_t v) const { // all faces at a split cell's centre are that cell's
     int64_t begin = 0, end = n;
     while (begin < end) {
       const int64_t middle = (begin + end) / 2;
@@ -182,7 +182,7 @@ private:
 struct LinkFrom {
   const Link* link;
   uint32_t *key, *index;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     key[i] = uint32_t(link[i].from);
     index[i] = uint32_t(i);
   }
@@ -191,7 +191,7 @@ struct LinkEdge {
   const Link* link;
   const uint32_t* index;
   uint64_t* key;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const Link& l = link[index[i]];
     key[i] = uint64_t(uint32_t(l.inside)) << 32 | uint32_t(l.outside);
   }
@@ -199,7 +199,7 @@ struct LinkEdge {
 struct FirstLink {
   const Link* link;
   int64_t *first, *index;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     first[i] = i == 0 || !link[i].same_edge(link[i - 1]);
     index[i] = i;
   }

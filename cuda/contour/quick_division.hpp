@@ -8,7 +8,7 @@ namespace molmesh::cuda {
 /// What star_element_quality divides by, which is positive: its bits are right where holds() is true in the end.
 class QuickDivision {
 public:
-  HD void invert(float x, float& out) {
+  MOLMESH_HD void invert(float x, float& out) {
     note(x);
 #ifdef __CUDA_ARCH__
     out = reciprocal(x);
@@ -16,7 +16,7 @@ public:
     out = 1 / x;
 #endif
   }
-  HD void divide(float a, float x, float& out) {
+  MOLMESH_HD void divide(float a, float x, float& out) {
     note(x);
 #ifdef __CUDA_ARCH__
     const float r = reciprocal(x), first = a * r, second = __fmaf_rn(r, __fmaf_rn(-x, first, a), first);
@@ -25,7 +25,7 @@ public:
     out = a / x;
 #endif
   }
-  HD bool holds() const {
+  MOLMESH_HD bool holds() const {
     return least_ > 1e-30f && largest_ < 1e30f;
   }
 
@@ -38,7 +38,7 @@ private:
     return __fmaf_rn(r, __fmaf_rn(-x, r, 1.0f), r);
   }
 #endif
-  HD void note(float x) {
+  MOLMESH_HD void note(float x) {
     least_ = x < least_ ? x : least_;
     largest_ = x > largest_ ? x : largest_;
   }

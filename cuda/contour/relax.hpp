@@ -32,8 +32,8 @@ public:
   static constexpr int most_places = StarShared::most_places;
 
   /// star_element, quality: scratch for all stars, as MoveTeams has it.
-  HD TeamStar(const RelaxView& r, int32_t c, Team team, StarElement<float>* star_element, float* quality,
-              StarShared& shared)
+  MOLMESH_HD TeamStar(const RelaxView& r, int32_t c, Team team, StarElement<float>* star_element, float* quality,
+                      StarShared& shared)
       : r_(r), team_(team), vertex_(r.vertex[c]), n_(static_cast<int32_t>(r.first[c + 1] - r.first[c])),
         element_(r.element + r.first[c]), star_element_(star_element + r.first[c]), quality_(quality + r.first[c]),
         shared_(shared), origin_(r.e.position[vertex_]) {
@@ -58,7 +58,7 @@ public:
   }
 
   /// Mean of the star's edges at the vertex.
-  HD double length() const {
+  MOLMESH_HD double length() const {
     double sum = 0;
     for (int32_t k = 0; k < n_; ++k)
       for (size_t i = 0; i < 4; ++i)
@@ -66,9 +66,9 @@ public:
     return sum / (3. * double(n_));
   }
 
-  HD TeamStar& star_quality() { return *this; }
+  MOLMESH_HD TeamStar& star_quality() { return *this; }
 
-  HD float worst(Vec3d x, float) const {
+  MOLMESH_HD float worst(Vec3d x, float) const {
     float least = 3e38f;
     for_each_element([&](int32_t, bool meshed, const StarElement<float>& s) {
       const float q = evaluate(s, meshed, x);
@@ -78,7 +78,7 @@ public:
   }
 
   /// The first of place[begin, end) whose worst element is above `above`; end: none.
-  HD int first_above(const Vec3d* place, int begin, int end, float above, float& q) const {
+  MOLMESH_HD int first_above(const Vec3d* place, int begin, int end, float above, float& q) const {
     constexpr int at_once = Team::size > 1 ? 7 : 1;
     for (int first = begin; first < end; first += at_once) {
       float least[at_once];
@@ -111,7 +111,7 @@ public:
   /// Puts those of y[0, n) in front that constrain(y[i]) allows, and where it moves them, in order; returns how
   /// many. A thread asks for a place.
   template <class Constrain>
-  HD int constrain_all(const Constrain& constrain, Vec3d* y, int n) const {
+  MOLMESH_HD int constrain_all(const Constrain& constrain, Vec3d* y, int n) const {
     for (int i = team_.rank(); i < n; i += Team::size) {
       Vec3d p = y[i];
       shared_.allowed[i] = constrain(p);
@@ -127,7 +127,7 @@ public:
     return allowed;
   }
 
-  HD Vec3d ascent(Vec3d x, double step) {
+  MOLMESH_HD Vec3d ascent(Vec3d x, double step) {
     // Of equals the first, and one that is asked for before others.
     uint64_t least = ~uint64_t{0};
     for_each_element([&](int32_t k, bool meshed, const StarElement<float>& s) {
@@ -153,7 +153,7 @@ public:
     return length > 0 ? g / length : Vec3d{};
   }
 
-  HD bool take(Vec3d x, float worst) {
+  MOLMESH_HD bool take(Vec3d x, float worst) {
     constexpr float refused = -2;
     for (int32_t k = team_.rank(); k < n_; k += Team::size) {
       const Tet& t = r_.e.tet[element_[k]];
@@ -179,31 +179,31 @@ public:
   }
 
 private:
-  HD bool is_meshed(int32_t k) const { return r_.classes.is_meshed(r_.e.tet[element_[k]]); }
-  HD float weight(int32_t k) const { return is_meshed(k) ? 1 : contour::unmeshed_weight; }
+  MOLMESH_HD bool is_meshed(int32_t k) const { return r_.classes.is_meshed(r_.e.tet[element_[k]]); }
+  MOLMESH_HD float weight(int32_t k) const { return is_meshed(k) ? 1 : contour::unmeshed_weight; }
   /// Of element k, the vertex in front.
-  HD Vec3d corner(int32_t k, int i) const {
+  MOLMESH_HD Vec3d corner(int32_t k, int i) const {
     const Tet& t = r_.e.tet[element_[k]];
     const int moving = t[0] == vertex_ ? 0 : t[1] == vertex_ ? 1 : t[2] == vertex_ ? 2 : 3;
     return r_.e.position[t[star_corner(moving, i)]];
   }
-  HD Vec3f local(Vec3d x, bool meshed) const {
+  MOLMESH_HD Vec3f local(Vec3d x, bool meshed) const {
     const Vec3d u = (x - origin_) * inverse_[meshed];
     return {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z)};
   }
   template <class By = const Division>
-  HD float quality(const StarElement<float>& s, const Vec3f& y, By&& by = {}) const {
+  MOLMESH_HD float quality(const StarElement<float>& s, const Vec3f& y, By&& by = {}) const {
     float q;
     star_element_quality(s, y.x, y.y, y.z, q, static_cast<float>(r_.shape), by);
     return q;
   }
   /// With the vertex at x.
-  HD float evaluate(const StarElement<float>& s, bool meshed, Vec3d x) const {
+  MOLMESH_HD float evaluate(const StarElement<float>& s, bool meshed, Vec3d x) const {
     return (meshed ? 1 : contour::unmeshed_weight) * quality(s, local(x, meshed));
   }
   /// see(k, meshed, star_element) of this thread's elements.
   template <class See>
-  HD void for_each_element(const See& see) const {
+  MOLMESH_HD void for_each_element(const See& see) const {
     if (team_.rank() < n_)
       see(team_.rank(), mine_meshed_, mine_);
     for (int32_t k = team_.rank() + Team::size; k < n_; k += Team::size)
@@ -234,7 +234,7 @@ struct MoveTeams {
   float* quality;                   ///< [star entries]
   using Shared = StarShared;
   template <class Team>
-  HD void operator()(int64_t i, Team team, Shared& shared) const {
+  MOLMESH_HD void operator()(int64_t i, Team team, Shared& shared) const {
     if (fate[i] != Fate::stays)
       return;
     TeamStar<Team> star(r, active[i], team, star_element, quality, shared);
@@ -253,7 +253,7 @@ struct MoveNearerTeams {
   float* quality;                   ///< [star entries]
   using Shared = StarShared;
   template <class Team>
-  HD void operator()(int64_t i, Team team, Shared& shared) const {
+  MOLMESH_HD void operator()(int64_t i, Team team, Shared& shared) const {
     if (fate[i] != Fate::stays)
       return;
     TeamStar<Team> star(v.r, active[i], team, star_element, quality, shared);

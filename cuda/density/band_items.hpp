@@ -13,14 +13,14 @@ struct KnownView {
   int64_t n;
   const uint64_t* below; ///< the mask of a block that is not here
 
-  HD const uint64_t* mask_at(Vec3i b) const {
+  MOLMESH_HD const uint64_t* mask_at(Vec3i b) const {
     const int64_t i = find_key(key, n, BlockFrame::key(b));
     return i < 0 ? below : mask[i];
   }
 };
 
 /// Bits of the points of a block's word i (its plane x = i) that face neighbour n.
-HD inline uint64_t facing(int n, int i) {
+MOLMESH_HD inline uint64_t facing(int n, int i) {
   const int dx = n / 9 - 1, dy = n / 3 % 3 - 1, dz = n % 3 - 1;
   if (dx != 0 && i != (dx < 0 ? 0 : 7))
     return 0;
@@ -38,7 +38,7 @@ struct MissingNeighbors {
   int64_t* count;
   Key* out;
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const Vec3i b = BlockFrame::block(known.key[i]);
     int64_t found = 0;
     const auto want = [&](Vec3i c) {
@@ -82,7 +82,7 @@ struct ActivePoints {
   int64_t* points; ///< count of i
   int64_t* blocks; ///< 1 when there are any
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     uint64_t* const out = active + 8 * i;
     for (int w = 0; w < 8; ++w)
       out[w] = 0;
@@ -151,7 +151,7 @@ struct PackBand {
   uint64_t* bits; ///< [16 blocks] active, above
   float* packed;
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     if (block[i + 1] == block[i])
       return;
     key[block[i]] = known.key[first + i];
@@ -175,7 +175,7 @@ struct InsideBlocks {
   int64_t* count;
   Key* out;
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const bool inside = has_points[i + 1] == has_points[i] && (known.mask[first + i][8] & 1);
     if (!out)
       count[i] = inside;

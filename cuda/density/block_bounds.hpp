@@ -11,7 +11,7 @@ namespace molmesh::cuda {
 enum class State : uint8_t { outside, inside, open };
 
 /// Squared distance of a point to the interval of an axis' points, Å².
-HD inline double beyond2(double c, double middle, double half) {
+MOLMESH_HD inline double beyond2(double c, double middle, double half) {
   const double d = (c > middle ? c - middle : middle - c) - half;
   return d > 0 ? d * d : 0;
 }
@@ -26,7 +26,7 @@ struct BoundBlocks {
   const Key* key;
   State* state;
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     if (!classify) {
       state[i] = State::open;
       return;

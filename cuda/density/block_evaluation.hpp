@@ -17,7 +17,7 @@ struct BlockClusters {
   double budget;
   const Key* key;
 
-  HD float effect(int32_t c, Vec3d middle, Vec3d half) const {
+  MOLMESH_HD float effect(int32_t c, Vec3d middle, Vec3d half) const {
     const FieldView& f = near.f;
     const double p = f.exponent[0][f.group[c]];
     if (p > 1)
@@ -31,7 +31,7 @@ struct BlockClusters {
     return std::exp(float(p * sum.ln()));
   }
   static constexpr int thresholds = 6;
-  HD float threshold(int k) const {
+  MOLMESH_HD float threshold(int k) const {
     const float share[thresholds] = {0.4f, 0.2f, 0.08f, 0.03f, 0.01f, 0.003f};
     return k < thresholds ? share[k] * float(budget) : -1;
   }
@@ -39,7 +39,7 @@ struct BlockClusters {
   /// see(c, whether c is near, its effect) round block i, as NearClusters::for_each has it. Effects are asked for
   /// where `weigh`.
   template <class Team, class See>
-  HD void for_each(int64_t i, Team team, bool weigh, See&& see) const {
+  MOLMESH_HD void for_each(int64_t i, Team team, bool weigh, See&& see) const {
     const Vec3i block = BlockFrame::block(key[i]);
     const Box box = near.frame.box(block, 1);
     const Vec3d middle = 0.5 * (box.lo + box.hi), half = 0.5 * (box.hi - box.lo);
@@ -56,7 +56,7 @@ struct ChooseLeast {
 
   using Shared = BlockClusters::NoneShared;
   template <class Team>
-  HD void operator()(int64_t i, Team team, Shared&) const {
+  MOLMESH_HD void operator()(int64_t i, Team team, Shared&) const {
     float total[BlockClusters::thresholds] = {};
     if (in.drop)
       in.for_each(i, team, true, [&](int32_t, bool is_near, float e) {
@@ -82,7 +82,7 @@ struct ListClusters {
 
   using Shared = BlockClusters::NoneShared;
   template <class Team>
-  HD void operator()(int64_t i, Team team, Shared&) const {
+  MOLMESH_HD void operator()(int64_t i, Team team, Shared&) const {
     int32_t* const to = list ? list + begin[i] : nullptr;
     int64_t n = 0;
     int32_t sum = 0;
@@ -108,7 +108,7 @@ struct ListClusters {
 /// A sum of any number of terms that is as good as a few terms' (Kahan's).
 struct LongSum {
   float sum = 0, excess = 0; ///< of sum over what it stands for
-  HD void add(float term) {
+  MOLMESH_HD void add(float term) {
     const float t = term - excess, next = sum + t;
     excess = (next - sum) - t;
     sum = next;
@@ -132,7 +132,7 @@ struct EvaluateBlock {
   };
 
   template <class Team>
-  HD void operator()(int64_t n, Team team, Shared& s) const {
+  MOLMESH_HD void operator()(int64_t n, Team team, Shared& s) const {
     constexpr int columns = 64 / Team::size; // of eight points along x, per thread
     const int64_t b = order[n];
     const Vec3d low = frame.grid.position(frame.corner(BlockFrame::block(key[b])));
@@ -196,7 +196,7 @@ struct EvaluatePoint {
   const int32_t* list;
   float* value;
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const int64_t b = order[i / 512];
     const int s = int(i % 512);
     const Vec3d p = frame.grid.position(frame.corner(BlockFrame::block(key[b])) + within_block(s));
@@ -217,7 +217,7 @@ struct PointMasks {
   const float* value;
   uint64_t* mask;
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     uint64_t below = 0, above = 0;
     for (int s = 0; s < 64; ++s) {
       const float v = value[64 * i + s];

@@ -35,7 +35,7 @@ struct FieldView {
   int32_t nodes;
 };
 
-HD inline float distance2(Vec3f lo, Vec3f hi, const BvhNode& n) {
+MOLMESH_HD inline float distance2(Vec3f lo, Vec3f hi, const BvhNode& n) {
   float sum = 0;
   for (int a = 0; a < 3; ++a) {
     const float below = lo[a] - n.hi[a], above = n.lo[a] - hi[a];
@@ -47,7 +47,7 @@ HD inline float distance2(Vec3f lo, Vec3f hi, const BvhNode& n) {
 
 /// visit(cluster) for every cluster nearer to `box` than its cutoff, ascending, until it returns false.
 template <class Visit>
-HD inline void for_near_clusters(const FieldView& f, const Box& box, Visit&& visit) {
+MOLMESH_HD inline void for_near_clusters(const FieldView& f, const Box& box, Visit&& visit) {
   const auto down = [](double v) { return static_cast<float>(v - 2e-7 * (v < 0 ? -v : v)); };
   const auto up = [](double v) { return static_cast<float>(v + 2e-7 * (v < 0 ? -v : v)); };
   const Vec3f lo{down(box.lo.x), down(box.lo.y), down(box.lo.z)}, hi{up(box.hi.x), up(box.hi.y), up(box.hi.z)};

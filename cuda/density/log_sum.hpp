@@ -12,7 +12,7 @@ struct LogSum {
   Real sum = 0;           ///< relative to it
   Vec3<Real> moment{};
 
-  HD void add(double term, Vec3<Real> at = {}) {
+  MOLMESH_HD void add(double term, Vec3<Real> at = {}) {
     if (!(term > -HUGE_VAL))
       return;
     if (term > top) {
@@ -28,9 +28,9 @@ struct LogSum {
         moment += w * at;
     }
   }
-  HD double ln() const { return top > -HUGE_VAL ? top + std::log(double(sum)) : -HUGE_VAL; }
+  MOLMESH_HD double ln() const { return top > -HUGE_VAL ? top + std::log(double(sum)) : -HUGE_VAL; }
   /// Σ exp(term)·moment / Σ exp(term)
-  HD Vec3<Real> mean() const { return sum > 0 ? moment / sum : Vec3<Real>{}; }
+  MOLMESH_HD Vec3<Real> mean() const { return sum > 0 ? moment / sum : Vec3<Real>{}; }
 };
 
 /// The groups that are open while clusters pass by in ascending order: adds what an innermost group sums to, closes
@@ -41,12 +41,12 @@ struct OpenLevels {
   Sum root{}, open[FieldView::most_levels];
   int64_t group[FieldView::most_levels];
 
-  HD explicit OpenLevels(const FieldView& field) : f(field) {
+  MOLMESH_HD explicit OpenLevels(const FieldView& field) : f(field) {
     for (int l = 0; l < f.levels; ++l)
       group[l] = -1;
   }
   /// The sum of innermost group g, which now begins; closes others as needed.
-  HD Sum& enter(int64_t g) {
+  MOLMESH_HD Sum& enter(int64_t g) {
     if (group[0] == g)
       return open[0];
     int64_t at[FieldView::most_levels];
@@ -63,13 +63,13 @@ struct OpenLevels {
     return open[0];
   }
   /// The field: call once, at the end.
-  HD Sum& finish() {
+  MOLMESH_HD Sum& finish() {
     close(f.levels - 1);
     return root;
   }
 
 private:
-  HD void close(int last) {
+  MOLMESH_HD void close(int last) {
     for (int l = 0; l <= last; ++l) {
       if (group[l] < 0)
         continue;

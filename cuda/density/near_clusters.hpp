@@ -19,7 +19,7 @@ struct NearClusters {
   /// see(c, whether c is near) for the clusters of the block's cube, of which no other is near the block: a cluster
   /// for each thread of the team, all of them as often; a thread without one gets -1, which is not near.
   template <class Team, class See>
-  HD void for_each(Vec3i block, const Box& box, Team team, See&& see) const {
+  MOLMESH_HD void for_each(Vec3i block, const Box& box, Team team, See&& see) const {
     const int32_t below = edge - 1;
     const int64_t i =
         find_key(cube, cubes, BlockFrame::key({block.x & ~below, block.y & ~below, block.z & ~below}));
@@ -42,7 +42,7 @@ struct ListNearCubes {
   int64_t* begin;
   int32_t* list;
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     int32_t* const to = list ? list + begin[i] : nullptr;
     int64_t n = 0;
     for_near_clusters(f, frame.box(BlockFrame::block(cube[i]), edge), [&](int32_t c) {

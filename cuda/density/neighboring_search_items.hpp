@@ -17,7 +17,7 @@ struct HalveCubes {
   Key* child;
   int64_t* kept;
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const int c = int(i & 7);
     const Vec3i b = BlockFrame::block(parent[i >> 3]) + edge * Vec3i{c >> 2, c >> 1 & 1, c & 1};
     child[i] = BlockFrame::key(b);
@@ -36,7 +36,7 @@ struct HalveCubes {
 struct CountStates {
   const State* state;
   int64_t *open, *known;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     open[i] = state[i] == State::open;
     known[i] = state[i] != State::outside;
   }
@@ -51,7 +51,7 @@ struct FillKnown {
   const float* value;
   const uint64_t** mask_of;
   const float** value_of;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     if (state[i] == State::outside)
       return;
     const bool is_open = state[i] == State::open;
@@ -64,7 +64,7 @@ struct FillKnown {
 struct FirstOfEqual {
   const Key* key;
   int64_t* first;
-  HD void operator()(int64_t i) const { first[i] = i == 0 || key[i] != key[i - 1]; }
+  MOLMESH_HD void operator()(int64_t i) const { first[i] = i == 0 || key[i] != key[i - 1]; }
 };
 
 /// Known blocks and then new ones, whose keys replace equal ones among the known: those get no_key, and replaced 1.
@@ -75,7 +75,7 @@ struct MergeKeys {
   Key* key;
   uint32_t* index;
   int64_t* replaced;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     index[i] = uint32_t(i);
     replaced[i] = 0;
     if (i >= known.n) {
@@ -93,7 +93,7 @@ struct MergeKnown {
   const float* value;
   const uint64_t** mask_of;
   const float** value_of;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const int64_t k = index[i];
     mask_of[i] = k < known.n ? known.mask[k] : mask + 16 * (k - known.n);
     value_of[i] = k < known.n ? known.value[k] : value + 512 * (k - known.n);
@@ -106,7 +106,7 @@ struct CountPoints {
   int32_t begin_x, end_x;
   const Key* key;
   int64_t* points;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const Vec3i b = BlockFrame::block(key[i]);
     points[i] = b.x >= begin_x && b.x < end_x ? frame.grid.points_of_block(frame.corner(b)) : 0;
   }
@@ -115,13 +115,13 @@ struct CountPoints {
 struct Widen {
   const uint32_t* from;
   int64_t* to;
-  HD void operator()(int64_t i) const { to[i] = from[i]; }
+  MOLMESH_HD void operator()(int64_t i) const { to[i] = from[i]; }
 };
 
 struct SortKeys { ///< most atoms first
   const uint32_t* atoms;
   uint32_t *key, *index;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     key[i] = ~atoms[i];
     index[i] = uint32_t(i);
   }

@@ -22,7 +22,7 @@ struct SurfaceTriangle {
 struct GatherSurfaceTriangles {
   const Corners* element;
   const uint8_t* faces;
-  HD int64_t operator()(int64_t i, SurfaceTriangle* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, SurfaceTriangle* out) const {
     int64_t n = 0;
     for (int f = 0; f < 4; ++f)
       if (faces[i] >> f & 1) {
@@ -56,10 +56,10 @@ struct FlowMesh {
   bool worst_first;
   optimize::Walls walls;
 
-  HD float deficit(float q) const { return optimize::deficit(q, goal, worst_first, guard); }
+  MOLMESH_HD float deficit(float q) const { return optimize::deficit(q, goal, worst_first, guard); }
   /// Whether a triangle at the point must be kept from crossing another one (DynamicMesh::watched): the host's
   /// passes see to that, and know such triangles by their places.
-  HD bool is_watched(int64_t v) const {
+  MOLMESH_HD bool is_watched(int64_t v) const {
     for (int64_t i = triangles.begin[v]; i < triangles.begin[v + 1]; ++i) {
       int watched = 0;
       for (const int32_t corner : triangle[triangles.item[i]].v)
@@ -83,7 +83,7 @@ struct ElementQuality {
   const Corners* element;
   const Vec3d* point;
   float* q;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const Corners e = element[i];
     if (e.v[0] >= 0)
       q[i] = tet_quality(point[e.v[0]], point[e.v[1]], point[e.v[2]], point[e.v[3]]);
@@ -96,7 +96,7 @@ struct WantsToMove {
   const float* q;
   const uint32_t* order;
   int64_t* wanted;
-  HD void operator()(int64_t n) const {
+  MOLMESH_HD void operator()(int64_t n) const {
     const int64_t v = order[n];
     bool bad = false;
     for (int64_t i = m.elements.begin[v]; i < m.elements.begin[v + 1]; ++i)
@@ -111,20 +111,20 @@ struct WantsToMove {
 struct Places {
   const Vec3d *point, *to;
   const uint8_t* moving;
-  HD Vec3d operator()(int32_t v) const { return moving[v] ? to[v] : point[v]; }
+  MOLMESH_HD Vec3d operator()(int32_t v) const { return moving[v] ? to[v] : point[v]; }
 };
 /// Points at their places but for one.
 struct OneMoved {
   const Vec3d* point;
   int32_t moved;
   Vec3d at;
-  HD Vec3d operator()(int32_t v) const { return v == moved ? at : point[v]; }
+  MOLMESH_HD Vec3d operator()(int32_t v) const { return v == moved ? at : point[v]; }
 };
 
 /// Whether the star of v keeps to its limits, and by how much its worst element rises. No element may be so flat
 /// that floating point cannot tell its sign.
 template <class Where>
-HD inline float worst_if_kept(const FlowMesh& m, int64_t v, const Where& at, const Limits& limits) {
+MOLMESH_HD inline float worst_if_kept(const FlowMesh& m, int64_t v, const Where& at, const Limits& limits) {
   float worst = 2, deficit = 0;
   for (int64_t i = m.elements.begin[v]; i < m.elements.begin[v + 1]; ++i) {
     const Corners& e = m.element[m.elements.item[i]];
@@ -157,7 +157,7 @@ struct ProposeMove {
   Limits* limits; ///< of active[n]
 
   /// Moves y onto what v is bound to. False when that cannot be.
-  HD bool constrain(int64_t v, Vec3d& y, double length) const {
+  MOLMESH_HD bool constrain(int64_t v, Vec3d& y, double length) const {
     const optimize::Vertex& k = m.vertex[v];
     if (k.kind == optimize::Kind::surface)
       return m.surface.project(y, m.guard.reach * length) &&
@@ -168,7 +168,7 @@ struct ProposeMove {
     return true;
   }
 
-  HD void operator()(int64_t n) const {
+  MOLMESH_HD void operator()(int64_t n) const {
     const auto v = int32_t(active[n]);
     const Vec3d from = point[v];
     Limits l{2, 0, 1};
@@ -228,7 +228,7 @@ struct ProposeMove {
 
 private:
   /// Direction in which element e improves fastest when v moves; zero when flat.
-  HD Vec3d ascent(int32_t v, int32_t e, double step) const {
+  MOLMESH_HD Vec3d ascent(int32_t v, int32_t e, double step) const {
     Vec3d g;
     for (int a = 0; a < 3; ++a) {
       double q[2];
@@ -252,7 +252,7 @@ struct CheckMove {
   const uint32_t* active;
   const Limits* limits;
   int64_t* stays;
-  HD void operator()(int64_t n) const {
+  MOLMESH_HD void operator()(int64_t n) const {
     const int64_t v = active[n];
     stays[n] = at.moving[v] && worst_if_kept(m, v, at, limits[n]) < 0;
   }
@@ -263,7 +263,7 @@ struct TakeBack {
   const uint32_t* active;
   const int64_t* stays; ///< scanned
   uint8_t* moving;
-  HD void operator()(int64_t n) const {
+  MOLMESH_HD void operator()(int64_t n) const {
     if (stays[n + 1] != stays[n])
       moving[active[n]] = 0;
   }
@@ -276,7 +276,7 @@ struct CommitMoves {
   Vec3d* point;
   int64_t* moves;
   uint8_t* has_moved;
-  HD void operator()(int64_t n) const {
+  MOLMESH_HD void operator()(int64_t n) const {
     const uint32_t v = active[n];
     moves[n] = moving[v];
     if (!moving[v])
@@ -294,7 +294,7 @@ struct GatherNewQualities {
   const Corners* element;
   const Vec3d* point;
   const uint8_t* has_moved;
-  HD int64_t operator()(int64_t i, NewQuality* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, NewQuality* out) const {
     const Corners e = element[i];
     if (e.v[0] < 0 || !(has_moved[e.v[0]] || has_moved[e.v[1]] || has_moved[e.v[2]] || has_moved[e.v[3]]))
       return 0;
@@ -309,7 +309,7 @@ struct StarBegin {
   const uint32_t* point_of; ///< [pairs] ascending
   int64_t pairs;
   int64_t* begin;
-  HD void operator()(int64_t v) const {
+  MOLMESH_HD void operator()(int64_t v) const {
     int64_t low = 0, high = pairs;
     while (low < high) {
       const int64_t middle = (low + high) / 2;
@@ -326,7 +326,7 @@ template <class Item, int corners>
 struct StarPairs {
   const Item* item;
   uint32_t *point_of, *item_of;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     point_of[i] = uint32_t(item[i / corners].v[0] < 0 ? -1 : item[i / corners].v[i % corners]);
     item_of[i] = uint32_t(i / corners);
   }
@@ -336,7 +336,7 @@ struct StarPairs {
 struct ValenceKeys {
   const int64_t* begin;
   uint32_t *key, *order;
-  HD void operator()(int64_t v) const {
+  MOLMESH_HD void operator()(int64_t v) const {
     key[v] = ~uint32_t(begin[v + 1] - begin[v]);
     order[v] = uint32_t(v);
   }

@@ -44,19 +44,19 @@ struct DeviceReport {
 /// One thread of a team of `size`. The host's teams are one thread; a GPU's are a warp.
 struct Solo {
   static constexpr int size = 1;
-  HD int rank() const { return 0; }
-  HD void sync() const {}
+  MOLMESH_HD int rank() const { return 0; }
+  MOLMESH_HD void sync() const {}
   /// Of what all threads have, to all of them: the least, and the sum.
   template <class T>
-  HD T least(T mine) const {
+  MOLMESH_HD T least(T mine) const {
     return mine;
   }
   template <class T>
-  HD T sum(T mine) const {
+  MOLMESH_HD T sum(T mine) const {
     return mine;
   }
   /// How many threads before this one say yes; all: how many do.
-  HD int before(bool mine, int& all) const {
+  MOLMESH_HD int before(bool mine, int& all) const {
     all = mine;
     return 0;
   }

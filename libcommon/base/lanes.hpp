@@ -8,7 +8,7 @@
 namespace molmesh {
 
 template <class V>
-HD __attribute__((always_inline)) inline void squared_length(const V (&v)[3], V& out) {
+MOLMESH_HD __attribute__((always_inline)) inline void squared_length(const V (&v)[3], V& out) {
   out = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
 }
 

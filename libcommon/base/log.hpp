@@ -10,7 +10,7 @@ namespace molmesh {
 /// As portable_log. V: double, or one of the compiler's vectors of them, U: its bits. By reference: what vectors
 /// look like as arguments depends on the processor.
 template <class V, class U>
-HD __attribute__((always_inline)) inline void portable_logs(const V& x, V& log) {
+MOLMESH_HD __attribute__((always_inline)) inline void portable_logs(const V& x, V& log) {
   // By the bits and without branches, so that loops over it are vectors. m in [0.707, 1.414), x = 2^exponent m.
   constexpr uint64_t mantissa = (uint64_t{1} << 52) - 1;
   constexpr uint64_t root_half = std::bit_cast<uint64_t>(0.70710678118654752) & mantissa;
@@ -37,7 +37,7 @@ HD __attribute__((always_inline)) inline void portable_logs(const V& x, V& log) 
 }
 
 /// x finite, normal and positive; within 2e-16 of |ln x| + 1. Needs IEEE arithmetic without contraction.
-HD inline double portable_log(double x) {
+MOLMESH_HD inline double portable_log(double x) {
   double log;
   portable_logs<double, uint64_t>(x, log);
   return log;

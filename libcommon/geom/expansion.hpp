@@ -11,12 +11,12 @@ struct TwoTerms {
   double sum, error;
 };
 
-HD inline TwoTerms two_sum(double a, double b) {
+MOLMESH_HD inline TwoTerms two_sum(double a, double b) {
   const double sum = a + b, b_part = sum - a, a_part = sum - b_part;
   return {sum, (a - a_part) + (b - b_part)};
 }
 /// a · b = sum + error, exactly when it is a multiple of 2^-1074 and does not overflow.
-HD inline TwoTerms two_product(double a, double b) {
+MOLMESH_HD inline TwoTerms two_product(double a, double b) {
   const double product = a * b;
   return {product, std::fma(a, b, -product)};
 }
@@ -27,7 +27,7 @@ struct Expansion {
   double term[N];
   int size = 0;
 
-  HD void add(double b) {
+  MOLMESH_HD void add(double b) {
     int kept = 0;
     for (int i = 0; i < size; ++i) {
       const TwoTerms t = two_sum(b, term[i]);
@@ -39,13 +39,13 @@ struct Expansion {
       term[kept++] = b;
     size = kept;
   }
-  HD void add_product(double a, double b) {
+  MOLMESH_HD void add_product(double a, double b) {
     const TwoTerms t = two_product(a, b);
     add(t.error);
     add(t.sum);
   }
   /// Of the exact value: the largest term outweighs the others together.
-  HD int sign() const { return size == 0 ? 0 : term[size - 1] > 0 ? 1 : -1; }
+  MOLMESH_HD int sign() const { return size == 0 ? 0 : term[size - 1] > 0 ? 1 : -1; }
 };
 
 } // namespace molmesh

@@ -8,7 +8,7 @@
 namespace molmesh {
 
 /// Sign of the turn a → b → c, coordinate `axis` left out. Exact.
-HD inline int orient2d(Vec3d a, Vec3d b, Vec3d c, int axis) {
+MOLMESH_HD inline int orient2d(Vec3d a, Vec3d b, Vec3d c, int axis) {
   Vec3d above = a; // off the plane: a tetrahedron over the projected triangle
   a[axis] = b[axis] = c[axis] = 0;
   above[axis] = 1;
@@ -16,7 +16,7 @@ HD inline int orient2d(Vec3d a, Vec3d b, Vec3d c, int axis) {
 }
 
 /// Segments p q and a b, end points included, in the plane without `axis`.
-HD inline bool segments_meet(Vec3d p, Vec3d q, Vec3d a, Vec3d b, int axis) {
+MOLMESH_HD inline bool segments_meet(Vec3d p, Vec3d q, Vec3d a, Vec3d b, int axis) {
   const int pa = orient2d(p, q, a, axis), pb = orient2d(p, q, b, axis);
   const int ap = orient2d(a, b, p, axis), aq = orient2d(a, b, q, axis);
   if (pa * pb > 0 || ap * aq > 0)
@@ -34,7 +34,7 @@ HD inline bool segments_meet(Vec3d p, Vec3d q, Vec3d a, Vec3d b, int axis) {
 }
 
 /// Closed segment p q and closed triangle a b c.
-HD inline bool segment_meets_triangle(Vec3d p, Vec3d q, Vec3d a, Vec3d b, Vec3d c) {
+MOLMESH_HD inline bool segment_meets_triangle(Vec3d p, Vec3d q, Vec3d a, Vec3d b, Vec3d c) {
   const int sp = orient3d(a, b, c, p), sq = orient3d(a, b, c, q);
   if (sp * sq > 0)
     return false;

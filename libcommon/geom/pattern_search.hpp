@@ -17,8 +17,9 @@ inline constexpr double finest_step = 0.01;
 /// where that is faster than asking one by one. Steps under `least_step` of the length are not tried. Host and
 /// device.
 template <class Worth, class Constrain, class Accept>
-HD bool pattern_search(Worth& worth, Vec3d& x, float& best, float goal, double length, const Vec3d* basis,
-                       int dimensions, Constrain constrain, Accept accept, double least_step = finest_step) {
+MOLMESH_HD bool pattern_search(Worth& worth, Vec3d& x, float& best, float goal, double length, const Vec3d* basis,
+                               int dimensions, Constrain constrain, Accept accept,
+                               double least_step = finest_step) {
   Vec3d direction[14];
   int directions = 0;
   for (int a = 0; a < dimensions; ++a) {

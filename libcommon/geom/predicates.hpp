@@ -10,11 +10,11 @@ namespace detail {
 struct ExactDifference {
   TwoTerms x, y, z;
 };
-HD inline ExactDifference exact_difference(Vec3d a, Vec3d b) {
+MOLMESH_HD inline ExactDifference exact_difference(Vec3d a, Vec3d b) {
   return {two_sum(a.x, -b.x), two_sum(a.y, -b.y), two_sum(a.z, -b.z)};
 }
 /// out += f · (a·b - c·d)
-HD inline void add_minor(Expansion<192>& out, TwoTerms f, TwoTerms a, TwoTerms b, TwoTerms c, TwoTerms d) {
+MOLMESH_HD inline void add_minor(Expansion<192>& out, TwoTerms f, TwoTerms a, TwoTerms b, TwoTerms c, TwoTerms d) {
   Expansion<16> minor;
   const double av[2] = {a.sum, a.error}, bv[2] = {b.sum, b.error}, cv[2] = {c.sum, c.error},
                dv[2] = {d.sum, d.error};
@@ -28,7 +28,7 @@ HD inline void add_minor(Expansion<192>& out, TwoTerms f, TwoTerms a, TwoTerms b
     out.add_product(minor.term[i], f.error);
   }
 }
-HD_CALL inline int orient3d_exact(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
+MOLMESH_HD_CALL inline int orient3d_exact(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
   const ExactDifference u = exact_difference(b, a), v = exact_difference(c, a), w = exact_difference(d, a);
   Expansion<192> det; // 3 minors of at most 16 terms, each times two terms, two doubles a product
   add_minor(det, w.x, u.y, v.z, u.z, v.y);
@@ -43,7 +43,7 @@ HD_CALL inline int orient3d_exact(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
 /// 1997, bound A of orient3d: the same sum of products of rounded differences); then expansions decide. Exact for
 /// finite coordinates up to 2^330 (1e99) that are multiples of 2^-340 (all doubles of magnitude over 1e-86). Needs
 /// IEEE double arithmetic: no -ffast-math, no contraction of a·b + c.
-HD inline int orient3d(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
+MOLMESH_HD inline int orient3d(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
   const Vec3d u = b - a, v = c - a, w = d - a;
   const double yz = u.y * v.z, zy = u.z * v.y, zx = u.z * v.x, xz = u.x * v.z, xy = u.x * v.y, yx = u.y * v.x;
   const double det = (yz - zy) * w.x + (zx - xz) * w.y + (xy - yx) * w.z;

@@ -15,7 +15,7 @@ struct StarElement {
 
 /// From its corners.
 template <class V>
-HD __attribute__((always_inline)) inline void complete(StarElement<V>& s) {
+MOLMESH_HD __attribute__((always_inline)) inline void complete(StarElement<V>& s) {
   const V ux = s.bx - s.ax, uy = s.by - s.ay, uz = s.bz - s.az, vx = s.cx - s.ax, vy = s.cy - s.ay,
           vz = s.cz - s.az;
   const V wx = s.cx - s.bx, wy = s.cy - s.by, wz = s.cz - s.bz;
@@ -28,25 +28,25 @@ HD __attribute__((always_inline)) inline void complete(StarElement<V>& s) {
   s.ca = vx * vx + vy * vy + vz * vz;
 }
 
-HD inline StarElement<float> make_star_element(Vec3f a, Vec3f b, Vec3f c) {
+MOLMESH_HD inline StarElement<float> make_star_element(Vec3f a, Vec3f b, Vec3f c) {
   StarElement<float> s{a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, 0, 0, 0, 0, 0, 0, 0};
   complete(s);
   return s;
 }
 
 /// Corners of an element with the vertex `moving` in front, the others in an even permutation.
-HD constexpr int star_corner(int moving, int i) {
+MOLMESH_HD constexpr int star_corner(int moving, int i) {
   return (moving == 0 ? 0x3210 : moving == 1 ? 0x2301 : moving == 2 ? 0x1032 : 0x0123) >> (4 * i) & 3;
 }
 
 /// 1 / x and a / x, as star_element_quality asks for them.
 struct Division {
   template <class V>
-  HD __attribute__((always_inline)) inline void invert(const V& x, V& out) const {
+  MOLMESH_HD __attribute__((always_inline)) inline void invert(const V& x, V& out) const {
     out = 1 / x;
   }
   template <class V>
-  HD __attribute__((always_inline)) inline void divide(float a, const V& x, V& out) const {
+  MOLMESH_HD __attribute__((always_inline)) inline void divide(float a, const V& x, V& out) const {
     out = a / x;
   }
 };
@@ -55,9 +55,9 @@ struct Division {
 /// float: elements in the lanes, or places. A lane's bits are the scalar's. Vectors come and go by reference: what
 /// they look like as arguments depends on the processor.
 template <class S, class X, class V, class By = const Division>
-HD __attribute__((always_inline)) inline void star_element_quality(const StarElement<S>& s, const X& x, const X& y,
-                                                                   const X& z, V& q, float q_weight,
-                                                                   By&& division = {}) {
+MOLMESH_HD __attribute__((always_inline)) inline void star_element_quality(const StarElement<S>& s, const X& x,
+                                                                           const X& y, const X& z, V& q,
+                                                                           float q_weight, By&& division = {}) {
   const V ax = s.ax - x, ay = s.ay - y, az = s.az - z;
   const V bx = s.bx - x, by = s.by - y, bz = s.bz - z;
   const V cx = s.cx - x, cy = s.cy - y, cz = s.cz - z;

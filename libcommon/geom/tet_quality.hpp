@@ -32,7 +32,7 @@ struct Corners {
 
 /// As tet_quality. By reference: what vectors look like as arguments depends on the processor.
 template <class V>
-HD __attribute__((always_inline)) inline void corners_quality(const Corners<V>& p, V& q, double shape) {
+MOLMESH_HD __attribute__((always_inline)) inline void corners_quality(const Corners<V>& p, V& q, double shape) {
   const V ax = p.x[1] - p.x[0], ay = p.y[1] - p.y[0], az = p.z[1] - p.z[0];
   const V bx = p.x[2] - p.x[0], by = p.y[2] - p.y[0], bz = p.z[2] - p.z[0];
   const V cx = p.x[3] - p.x[0], cy = p.y[3] - p.y[0], cz = p.z[3] - p.z[0];
@@ -65,7 +65,7 @@ HD __attribute__((always_inline)) inline void corners_quality(const Corners<V>& 
 /// leave needles, and needles leave no room to repair what is around them); -1 when the volume is not positive in
 /// floating point. With face normals n of length twice the area and D six times the volume, sin²θ at edge e between
 /// faces i and j is D² |e|² / (|n_i|² |n_j|²), accurate for flat elements too.
-HD inline float tet_quality(Vec3d p0, Vec3d p1, Vec3d p2, Vec3d p3, double shape = shape_weight) {
+MOLMESH_HD inline float tet_quality(Vec3d p0, Vec3d p1, Vec3d p2, Vec3d p3, double shape = shape_weight) {
   const Corners<double> corners{{p0.x, p1.x, p2.x, p3.x}, {p0.y, p1.y, p2.y, p3.y}, {p0.z, p1.z, p2.z, p3.z}};
   double q;
   corners_quality(corners, q, shape);

@@ -17,9 +17,9 @@ struct GridFrame {
   double spacing = 0; ///< h, Å
   Vec3i lower;        ///< lowest index of the grid
   Vec3i points;       ///< nx, ny, nz
-  HD Vec3d position(Vec3i p) const { return origin + spacing * to_double(p); }
+  MOLMESH_HD Vec3d position(Vec3i p) const { return origin + spacing * to_double(p); }
   /// Of the block of 8³ points from `corner` on, which meets the grid.
-  HD int64_t points_of_block(Vec3i corner) const {
+  MOLMESH_HD int64_t points_of_block(Vec3i corner) const {
     int64_t n = 1;
     for (int a = 0; a < 3; ++a) {
       const int32_t begin = corner[a] > lower[a] ? corner[a] : lower[a], end = lower[a] + points[a];
@@ -59,15 +59,15 @@ struct BlockGrid {
 };
 
 /// Slot of p in BlockGrid::value within its block.
-HD constexpr int slot(Vec3i p) {
+MOLMESH_HD constexpr int slot(Vec3i p) {
   return (p.x & 7) << 6 | (p.y & 7) << 3 | (p.z & 7);
 }
 /// From the block's corner to the point of that slot.
-HD constexpr Vec3i within_block(int slot) {
+MOLMESH_HD constexpr Vec3i within_block(int slot) {
   return {slot >> 6, slot >> 3 & 7, slot & 7};
 }
 /// Lowest index of p's block (rounds down, also for negative indices).
-HD constexpr Vec3i block_corner(Vec3i p) {
+MOLMESH_HD constexpr Vec3i block_corner(Vec3i p) {
   return {p.x & ~7, p.y & ~7, p.z & ~7};
 }
 
@@ -78,14 +78,14 @@ struct BlockIndexView {
   const int64_t* block;
   uint64_t mask;
 
-  HD static uint64_t hash(Vec3i corner) {
+  MOLMESH_HD static uint64_t hash(Vec3i corner) {
     const auto u = [](int32_t c) { return static_cast<uint64_t>(static_cast<uint32_t>(c >> 3)); };
     uint64_t h =
         u(corner.x) * 0x9E3779B97F4A7C15u ^ u(corner.y) * 0xC2B2AE3D27D4EB4Fu ^ u(corner.z) * 0x165667B19E3779F9u;
     return h ^ (h >> 29);
   }
   /// p: any index, also beyond the grid. ≥ 0: position in BlockGrid::corner.
-  HD int64_t find(Vec3i p) const {
+  MOLMESH_HD int64_t find(Vec3i p) const {
     const Vec3i corner = block_corner(p);
     for (uint64_t i = hash(corner) & mask; block[i] != outside; i = (i + 1) & mask)
       if (key[i] == corner)
@@ -97,7 +97,7 @@ struct BlockIndexView {
     Vec3i corner{1, 1, 1}; ///< no block's
     int64_t block = outside;
   };
-  HD int64_t find(Vec3i p, Last& last) const {
+  MOLMESH_HD int64_t find(Vec3i p, Last& last) const {
     if (const Vec3i corner = block_corner(p); !(corner == last.corner))
       last = {corner, find(p)};
     return last.block;

@@ -27,9 +27,9 @@ inline constexpr double unknown_misfit = 10;
 /// misfit() of a triangle with a normal n of that length, from the target's distance (Å) and normal at its
 /// centroid. far: Å, of one that just keeps the guard.
 template <class V>
-HD __attribute__((always_inline)) inline void misfit_at(const V (&n)[3], const V& length, const V& distance,
-                                                        const V (&normal)[3], double far, double most_tilt,
-                                                        V& misfit) {
+MOLMESH_HD __attribute__((always_inline)) inline void misfit_at(const V (&n)[3], const V& length, const V& distance,
+                                                                const V (&normal)[3], double far, double most_tilt,
+                                                                V& misfit) {
   const V least = V{} + 1e-300;
   const V cosine = (n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2]) / (length > least ? length : least);
   const V off = (distance < 0 ? -distance : distance) / far, tilt = (1 - cosine) / most_tilt;
@@ -39,7 +39,7 @@ HD __attribute__((always_inline)) inline void misfit_at(const V (&n)[3], const V
 /// Of a triangle that runs as the target's normal does: at most 1 when the guard is kept. most_tilt: guard.tilt(),
 /// for many triangles. Surface: probe() and spacing() as in Target.
 template <class Surface>
-HD double misfit(const Surface& target, const Guard& guard, double most_tilt, Vec3d a, Vec3d b, Vec3d c) {
+MOLMESH_HD double misfit(const Surface& target, const Guard& guard, double most_tilt, Vec3d a, Vec3d b, Vec3d c) {
   double distance;
   Vec3d normal;
   if (!target.probe((a + b + c) / 3., distance, normal))

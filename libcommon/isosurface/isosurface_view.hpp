@@ -9,8 +9,8 @@ namespace molmesh {
 /// Of values v at the corners of a cell, z fastest, at t of the way through it: the trilinear value, and its
 /// gradient where the cell is `edge` wide.
 template <class V>
-HD __attribute__((always_inline)) inline void trilinear(const V& tx, const V& ty, const V& tz, const V (&v)[8],
-                                                        double edge, V& value, V (&gradient)[3]) {
+MOLMESH_HD __attribute__((always_inline)) inline void
+trilinear(const V& tx, const V& ty, const V& tz, const V (&v)[8], double edge, V& value, V (&gradient)[3]) {
   const V z0 = v[0] + tz * (v[1] - v[0]), z1 = v[2] + tz * (v[3] - v[2]);
   const V z2 = v[4] + tz * (v[5] - v[4]), z3 = v[6] + tz * (v[7] - v[6]);
   const V y0 = z0 + ty * (z1 - z0), y1 = z2 + ty * (z3 - z2);
@@ -24,8 +24,8 @@ HD __attribute__((always_inline)) inline void trilinear(const V& tx, const V& ty
 
 /// To first order, from log G / isovalue and its gradient of that length, which is positive.
 template <class V>
-HD __attribute__((always_inline)) inline void to_distance(const V& f, const V (&gradient)[3], const V& length,
-                                                          double offset, V& distance, V (&normal)[3]) {
+MOLMESH_HD __attribute__((always_inline)) inline void
+to_distance(const V& f, const V (&gradient)[3], const V& length, double offset, V& distance, V (&normal)[3]) {
   distance = -f / length - offset;
   for (int a = 0; a < 3; ++a)
     normal[a] = gradient[a] / -length;
@@ -41,11 +41,11 @@ struct IsosurfaceView {
   const float* log;  ///< [512 n], NaN where not active
   double offset = 0; ///< Å: how far outside the isosurface points are kept
 
-  HD double spacing() const { return frame.spacing; }
+  MOLMESH_HD double spacing() const { return frame.spacing; }
 
   /// f = log(G / isovalue) and its gradient (1/Å); outside the known cells by the next one, a quarter of a cell
   /// far. False beyond.
-  HD bool evaluate(Vec3d p, double& f, Vec3d& gradient) const {
+  MOLMESH_HD bool evaluate(Vec3d p, double& f, Vec3d& gradient) const {
     Vec3d u;
     Vec3i c;
     if (!locate(p, u, c))
@@ -58,30 +58,30 @@ struct IsosurfaceView {
   }
 
   /// u: p in spacings; c: the lower corner of its cell. False beyond all grids.
-  HD bool locate(Vec3d p, Vec3d& u, Vec3i& c) const {
+  MOLMESH_HD bool locate(Vec3d p, Vec3d& u, Vec3i& c) const {
     u = (p - frame.origin) / frame.spacing;
     return cell_of(u, c);
   }
-  HD bool cell_of(Vec3d u, Vec3i& c) const {
+  MOLMESH_HD bool cell_of(Vec3d u, Vec3i& c) const {
     if (!(std::abs(u.x) < 1e9 && std::abs(u.y) < 1e9 && std::abs(u.z) < 1e9))
       return false;
     c = {lower(u.x), lower(u.y), lower(u.z)};
     return true;
   }
   /// As evaluate, at u by the cell at c with the corners' values v.
-  HD void interpolate(Vec3d u, Vec3i c, const double (&v)[8], double& f, Vec3d& gradient) const {
+  MOLMESH_HD void interpolate(Vec3d u, Vec3i c, const double (&v)[8], double& f, Vec3d& gradient) const {
     const Vec3d t = u - to_double(c);
     double g[3];
     trilinear(t.x, t.y, t.z, v, frame.spacing, f, g);
     gradient = {g[0], g[1], g[2]};
   }
 
-  HD bool probe(Vec3d p, double& distance, Vec3d& normal) const {
+  MOLMESH_HD bool probe(Vec3d p, double& distance, Vec3d& normal) const {
     double f;
     Vec3d g;
     return evaluate(p, f, g) && to_distance(f, g, distance, normal);
   }
-  HD bool to_distance(double f, Vec3d g, double& distance, Vec3d& normal) const {
+  MOLMESH_HD bool to_distance(double f, Vec3d g, double& distance, Vec3d& normal) const {
     const double length = norm(g), gradient[3] = {g.x, g.y, g.z};
     if (!(length > 0))
       return false;
@@ -91,7 +91,7 @@ struct IsosurfaceView {
     return true;
   }
 
-  HD bool project(Vec3d& p, double reach) const {
+  MOLMESH_HD bool project(Vec3d& p, double reach) const {
     const Vec3d from = p;
     double f, distance, v[8];
     Vec3d u, gradient, normal;
@@ -119,13 +119,13 @@ struct IsosurfaceView {
   }
 
   /// At the corners of the cell at c, z fastest. False where one is not active.
-  HD bool values(Vec3i c, double (&v)[8]) const {
+  MOLMESH_HD bool values(Vec3i c, double (&v)[8]) const {
     BlockIndexView::Last last;
     return values(c, v, last);
   }
   /// T: float, as they are kept, or double. last: where many cells near each other are asked for.
   template <class T>
-  HD bool values(Vec3i c, T (&v)[8], BlockIndexView::Last& last) const {
+  MOLMESH_HD bool values(Vec3i c, T (&v)[8], BlockIndexView::Last& last) const {
     T sum = 0; // NaN when one is
     if ((c.x & 7) < 7 && (c.y & 7) < 7 && (c.z & 7) < 7) {
       const int64_t b = index.find(c, last);
@@ -149,13 +149,13 @@ struct IsosurfaceView {
 
 private:
   /// std::floor, which is a call where processors may lack the instruction.
-  HD static int32_t lower(double x) {
+  MOLMESH_HD static int32_t lower(double x) {
     const auto towards_zero = static_cast<int32_t>(x);
     return towards_zero - (x < towards_zero);
   }
   /// Of the known cell behind the nearest face, whose corner c becomes: where the isosurface touches a grid point,
   /// a point may come to lie in a cell that it does not cross.
-  HD bool values_beside(Vec3d u, Vec3i& c, double (&v)[8]) const {
+  MOLMESH_HD bool values_beside(Vec3d u, Vec3i& c, double (&v)[8]) const {
     const Vec3i home = c;
     double best = 0.25;
     for (int a = 0; a < 3; ++a) {

@@ -9,7 +9,7 @@ namespace molmesh::par {
 
 /// Of a place that others may change meanwhile.
 template <class T>
-HD inline T seen(const T& place) {
+MOLMESH_HD inline T seen(const T& place) {
 #ifdef __CUDA_ARCH__
   return *const_cast<const volatile T*>(&place);
 #else
@@ -17,7 +17,7 @@ HD inline T seen(const T& place) {
 #endif
 }
 template <class T>
-HD inline void put(T& place, T value) {
+MOLMESH_HD inline void put(T& place, T value) {
 #ifdef __CUDA_ARCH__
   *const_cast<volatile T*>(&place) = value;
 #else
@@ -26,14 +26,14 @@ HD inline void put(T& place, T value) {
 }
 
 /// A flag, only ever set, and read when the pass is over.
-HD inline void raise(uint8_t& flag) {
+MOLMESH_HD inline void raise(uint8_t& flag) {
   put(flag, uint8_t{1});
 }
 
 /// Lowers the place to `value` where that is less; returns what was there. The least of all stays. T: 32 or 64
 /// bits.
 template <class T>
-HD inline T lower(T& place, T value) {
+MOLMESH_HD inline T lower(T& place, T value) {
   static_assert(std::is_same_v<T, uint32_t> || std::is_same_v<T, uint64_t>);
 #ifdef __CUDA_ARCH__
   if constexpr (sizeof(T) == 8)

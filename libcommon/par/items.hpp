@@ -9,7 +9,7 @@ template <class T>
 struct CopyItems {
   const T* from;
   T* to;
-  HD void operator()(int64_t i) const { to[i] = from[i]; }
+  MOLMESH_HD void operator()(int64_t i) const { to[i] = from[i]; }
 };
 /// to[at[i]] = from[i] where the scanned count rises.
 template <class T>
@@ -17,7 +17,7 @@ struct Compact {
   const T* from;
   const int64_t* at;
   T* to;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     if (at[i + 1] != at[i])
       to[at[i]] = from[i];
   }
@@ -27,14 +27,14 @@ struct Gather {
   const T* from;
   const Index* index;
   T* to;
-  HD void operator()(int64_t i) const { to[i] = from[index[i]]; }
+  MOLMESH_HD void operator()(int64_t i) const { to[i] = from[index[i]]; }
 };
 template <class T, class Index = uint32_t>
 struct Scatter {
   const T* from;
   const Index* index; ///< each once
   T* to;
-  HD void operator()(int64_t i) const { to[index[i]] = from[i]; }
+  MOLMESH_HD void operator()(int64_t i) const { to[index[i]] = from[i]; }
 };
 
 } // namespace molmesh::par

@@ -23,12 +23,12 @@ struct Work {
 
 /// An item that does nothing: Launcher asks for for_n by it.
 struct NoItem {
-  HD void operator()(int64_t) const {}
+  MOLMESH_HD void operator()(int64_t) const {}
 };
 
 /// A launcher runs passes over arrays in its own memory. HostLauncher is one, and so are the backends of cuda/par.
-/// T is trivially copyable. A kernel is an `item`: a struct of plain views with HD operator()(int64_t) const, so
-/// that one text serves host and device; par/passes.hpp makes count, scan, fill and union of these.
+/// T is trivially copyable. A kernel is an `item`: a struct of plain views with MOLMESH_HD operator()(int64_t)
+/// const, so that one text serves host and device; par/passes.hpp makes count, scan, fill and union of these.
 template <class L>
 concept Launcher = requires(L& launcher, const char* name, int64_t n, const Work& work, const NoItem& item,
                             const int32_t* from, int32_t* to, uint64_t* keys, uint32_t* values,

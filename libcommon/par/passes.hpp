@@ -17,14 +17,14 @@ template <class Item, class T>
 struct CountElements {
   Item item;
   int64_t* count;
-  HD void operator()(int64_t i) const { count[i] = item(i, static_cast<T*>(nullptr)); }
+  MOLMESH_HD void operator()(int64_t i) const { count[i] = item(i, static_cast<T*>(nullptr)); }
 };
 template <class Item, class T>
 struct FillElements {
   Item item;
   const int64_t* start;
   T* out;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     if (start[i + 1] != start[i])
       item(i, out + start[i]);
   }
@@ -68,7 +68,7 @@ struct Flagged {
   static constexpr int64_t run = 64, most = run;
   const uint8_t* flag; ///< 0 or 1
   int64_t n;
-  HD int64_t operator()(int64_t i, int32_t* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, int32_t* out) const {
     int64_t raised = 0;
     const int64_t end = n < (i + 1) * run ? n : (i + 1) * run;
     for (int64_t k = i * run; k < end; ++k) {
@@ -84,7 +84,7 @@ struct Flagged {
   }
 
 private:
-  HD static bool none(const uint8_t* eight) {
+  MOLMESH_HD static bool none(const uint8_t* eight) {
     uint64_t word;
     __builtin_memcpy(&word, eight, 8);
     return word == 0;
@@ -99,14 +99,14 @@ template <class Key>
 struct CountKeyed {
   Key key;
   uint32_t* count;
-  HD void operator()(int64_t i) const { count[i] = key(i) >= 0; }
+  MOLMESH_HD void operator()(int64_t i) const { count[i] = key(i) >= 0; }
 };
 template <class Key>
 struct FillKeyed {
   Key of;
   const uint32_t* start;
   uint32_t *key, *index;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     if (const int64_t k = of(i); k >= 0) {
       key[start[i]] = static_cast<uint32_t>(k);
       index[start[i]] = static_cast<uint32_t>(i);
@@ -117,7 +117,7 @@ template <class Place>
 struct PlaceIndexed {
   Place place;
   const uint32_t* index;
-  HD void operator()(int64_t slot) const { place(slot, index[slot]); }
+  MOLMESH_HD void operator()(int64_t slot) const { place(slot, index[slot]); }
 };
 
 /// place(slot, i) for each i in [0, n) with key(i) ≥ 0, slots counting from 0 by ascending key, then ascending i.
@@ -147,7 +147,7 @@ struct KeyedWord {
 struct SplitWords {
   const KeyedWord* from;
   uint64_t *key, *word;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     key[i] = from[i].key;
     word[i] = from[i].word;
   }
@@ -156,7 +156,7 @@ struct SplitWords {
 struct UniteWords {
   const uint64_t *key, *word;
   int64_t n;
-  HD int64_t operator()(int64_t i, KeyedWord* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, KeyedWord* out) const {
     if (i > 0 && key[i] == key[i - 1])
       return 0;
     if (out) {

@@ -9,7 +9,7 @@ namespace {
 struct Copy {
   const float4* from;
   float4* to;
-  HD void operator()(int64_t i) const { to[i] = from[i]; }
+  MOLMESH_HD void operator()(int64_t i) const { to[i] = from[i]; }
 };
 
 constexpr int steps = 512, chains = 8;
@@ -17,7 +17,7 @@ constexpr int steps = 512, chains = 8;
 template <class Real>
 struct MultiplyAdds {
   Real* out;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     Real v[chains];
     for (int c = 0; c < chains; ++c)
       v[c] = Real(i + c);

@@ -1,4 +1,5 @@
 // cgal_surface.cpp — the one file that sees CGAL.
+#include "oracles.hpp"
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
@@ -8,8 +9,6 @@
 #include <CGAL/Surface_mesh.h>
 #include <iterator>
 #include <map>
-
-#include "oracles.hpp" // last: CGAL has a type named HD
 
 namespace molmesh::reference {
 

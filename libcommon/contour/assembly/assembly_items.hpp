@@ -8,7 +8,7 @@ namespace molmesh::contour {
 /// Bit r: elements of Region r are wanted.
 struct Wanted {
   uint8_t bits;
-  HD bool operator()(uint8_t region) const { return bits >> region & 1; }
+  MOLMESH_HD bool operator()(uint8_t region) const { return bits >> region & 1; }
 };
 
 /// The vertex by which a wanted element is put in order.
@@ -16,7 +16,7 @@ struct TetKey {
   const Tet* tet;
   const uint8_t* region;
   Wanted wanted;
-  HD int64_t operator()(int64_t t) const {
+  MOLMESH_HD int64_t operator()(int64_t t) const {
     const int32_t v = tet[t][0];
     return wanted(region[v]) ? v : -1;
   }
@@ -26,7 +26,7 @@ struct PlaceTets {
   const uint8_t* region;
   Tet* to;
   int32_t* to_region;
-  HD void operator()(int64_t slot, int64_t t) const {
+  MOLMESH_HD void operator()(int64_t slot, int64_t t) const {
     to[slot] = from[t];
     to_region[slot] = region[from[t][0]];
   }
@@ -36,7 +36,7 @@ struct PlaceTets {
 struct FirstElements {
   const Tet* tet;
   uint32_t* first;
-  HD void operator()(int64_t t) const {
+  MOLMESH_HD void operator()(int64_t t) const {
     for (size_t c = 0; c < 4; ++c)
       par::lower(first[tet[t][c]], static_cast<uint32_t>(t));
   }
@@ -45,7 +45,7 @@ struct FirstElements {
 struct FirstUses {
   const Tet* tet;
   const uint32_t* first;
-  HD int64_t operator()(int64_t t, int32_t* out) const {
+  MOLMESH_HD int64_t operator()(int64_t t, int32_t* out) const {
     int64_t n = 0;
     for (size_t c = 0; c < 4; ++c)
       if (const int32_t v = tet[t][c]; first[v] == t) {
@@ -62,7 +62,7 @@ struct NumberPoints {
   const Vec3d* position;
   int32_t* number;
   Vec3d* point;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     number[used[i]] = static_cast<int32_t>(i);
     point[i] = position[used[i]];
   }
@@ -70,7 +70,7 @@ struct NumberPoints {
 struct Renumber {
   const int32_t* number;
   Tet* tet;
-  HD void operator()(int64_t t) const {
+  MOLMESH_HD void operator()(int64_t t) const {
     for (size_t c = 0; c < 4; ++c)
       tet[t][c] = number[tet[t][c]];
   }
@@ -81,7 +81,7 @@ struct GatherTriangles {
   ElementsView e;
   const uint8_t* region;
   Wanted wanted;
-  HD int64_t operator()(int64_t t, int64_t* out) const {
+  MOLMESH_HD int64_t operator()(int64_t t, int64_t* out) const {
     const uint8_t behind = region[e.tri_sides[t][0]], front = region[e.tri_sides[t][1]];
     const bool kept =
         e.boundary[t] == surface ? behind != front && (wanted(behind) || wanted(front)) : wanted(behind);
@@ -96,7 +96,7 @@ struct PlaceTriangles {
   const int32_t* number;
   Tri* tri;
   int32_t* boundary;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     for (size_t c = 0; c < 3; ++c)
       tri[i][c] = number[e.tri[from[i]][c]];
     boundary[i] = e.boundary[from[i]];

@@ -14,7 +14,7 @@ namespace molmesh::contour {
 
 struct GatherMovedPoints {
   ComplexView c;
-  HD int64_t operator()(int64_t v, int32_t* out) const {
+  MOLMESH_HD int64_t operator()(int64_t v, int32_t* out) const {
     if (!c.has_moved[v])
       return 0;
     if (out)
@@ -24,7 +24,7 @@ struct GatherMovedPoints {
 };
 struct GatherInsideAtWall {
   ComplexView c;
-  HD int64_t operator()(int64_t v, int32_t* out) const {
+  MOLMESH_HD int64_t operator()(int64_t v, int32_t* out) const {
     if (!c.at_wall(static_cast<int32_t>(v)) || !c.inside(static_cast<int32_t>(v)))
       return 0;
     if (out)
@@ -35,7 +35,7 @@ struct GatherInsideAtWall {
 struct SplitLeaves {
   static constexpr int64_t most = 1;
   ComplexView c;
-  HD int64_t operator()(int64_t leaf, int32_t* out) const {
+  MOLMESH_HD int64_t operator()(int64_t leaf, int32_t* out) const {
     const bool split = c.is_split(static_cast<int32_t>(leaf));
     if (split && out)
       *out = static_cast<int32_t>(leaf);
@@ -45,7 +45,7 @@ struct SplitLeaves {
 /// Leaves with a corner near the surface.
 struct GatherLeavesNearSurface {
   ComplexView c;
-  HD int64_t operator()(int64_t leaf, int32_t* out) const {
+  MOLMESH_HD int64_t operator()(int64_t leaf, int32_t* out) const {
     bool near = false;
     for (int k = 0; k < 8; ++k)
       near = near || c.nearest[c.grid_vertex[8 * leaf + k]] >= 0;
@@ -60,7 +60,7 @@ struct RaiseSpoiling {
   ComplexView c;
   const int32_t* spoiled;
   uint8_t* flag; ///< [grid vertices]
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const int32_t v = spoiled[i], leaf = c.leaf_of(v);
     for (int k = leaf >= 0 ? 0 : 8; k < 9; ++k)
       if (const int32_t u = k < 8 ? c.corner_vertex(leaf, k) : v; c.moved(u))
@@ -73,7 +73,7 @@ struct RaiseLeavesRound {
   ComplexView c;
   const int32_t* vertex;
   uint8_t* flag; ///< [leaves]
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     NearLeaves near(c.tree);
     of_point(near, i);
   }
@@ -84,7 +84,7 @@ struct RaiseLeavesRound {
   }
 
 private:
-  HD void of_point(NearLeaves& near, int64_t i) const {
+  MOLMESH_HD void of_point(NearLeaves& near, int64_t i) const {
     for (int octant = 0; octant < 8; ++octant)
       if (const int32_t leaf = leaf_with_corner(near, c.point[vertex[i]], octant); leaf >= 0)
         par::raise(flag[leaf]);
@@ -94,7 +94,7 @@ struct RaiseCorners {
   ComplexView c;
   const int32_t* leaf;
   uint8_t* flag; ///< [grid vertices]
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     for (int k = 0; k < 8; ++k)
       par::raise(flag[c.corner_vertex(leaf[i], k)]);
   }
@@ -102,7 +102,7 @@ struct RaiseCorners {
 struct PlaceDuals {
   PlaceDual place;
   const int32_t* leaf;
-  HD void operator()(int64_t i) const { place(leaf[i]); }
+  MOLMESH_HD void operator()(int64_t i) const { place(leaf[i]); }
 };
 /// The passes on a complex in a launcher's memory.
 template <par::Launcher Launcher, class Memory = Launcher>

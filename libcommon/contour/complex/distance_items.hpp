@@ -29,7 +29,7 @@ struct LookFromLeaf {
   uint64_t* nearest; ///< [grid vertices] none at first
   uint32_t* level;   ///< [grid vertices] large at first
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const auto leaf = static_cast<int32_t>(i);
     for (int k = 0; k < 8; ++k)
       par::lower(level[c.corner_vertex(leaf, k)], uint32_t{c.tree.level[leaf]});
@@ -38,7 +38,7 @@ struct LookFromLeaf {
   }
 
 private:
-  HD void find_nearest(int32_t leaf) const {
+  MOLMESH_HD void find_nearest(int32_t leaf) const {
     const Vec3d low = to_double(c.tree.corner(leaf));
     const double extent = c.tree.extent(leaf);
     float least[8];
@@ -69,7 +69,7 @@ struct KeepDistance {
   const uint64_t* nearest;
   const uint32_t* level;
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const auto v = static_cast<int32_t>(i);
     c.distance[v] = c.estimate[v] = 0;
     c.has_moved[v] = 0;
@@ -100,7 +100,7 @@ struct KeepDistance {
 
 private:
   /// d: distance to the surface (Å, positive inside); inwards: unit. foot: the nearest sample (Å).
-  HD bool estimate(int32_t v, Vec3d foot, double& d, Vec3d& inwards) const {
+  MOLMESH_HD bool estimate(int32_t v, Vec3d foot, double& d, Vec3d& inwards) const {
     const Vec3i p = c.point[v];
     const double here = c.value[v];
     float there;
@@ -156,7 +156,7 @@ private:
 struct Restore {
   ComplexView c;
   const int32_t* vertex;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const int32_t v = vertex[i];
     c.position[v] = c.lattice.position(c.point[v]);
     c.distance[v] = c.estimate[v];

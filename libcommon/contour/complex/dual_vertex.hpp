@@ -9,7 +9,7 @@
 namespace molmesh::contour {
 
 /// The next float towards +∞ or -∞; x positive and finite.
-HD inline float next_float(float x, bool up) {
+MOLMESH_HD inline float next_float(float x, bool up) {
 #ifdef __CUDA_ARCH__
   return __int_as_float(__float_as_int(x) + (up ? 1 : -1));
 #else
@@ -20,20 +20,21 @@ HD inline float next_float(float x, bool up) {
 /// Where the samples of a leaf's fine surface are, Å; most leaves have few, and those are found once.
 class LeafSamples {
 public:
-  HD LeafSamples(const ComplexView& c, int32_t leaf) : c_(c), begin_(c.first_cell[leaf]), end_(c.end_cell(leaf)) {
+  MOLMESH_HD LeafSamples(const ComplexView& c, int32_t leaf)
+      : c_(c), begin_(c.first_cell[leaf]), end_(c.end_cell(leaf)) {
     for (int32_t k = 0; k < kept && k < size(); ++k) {
       const Vec3d foot = c.lattice.between(sample(k).point);
       x_[k] = foot.x, y_[k] = foot.y, z_[k] = foot.z;
     }
   }
-  HD int32_t size() const { return end_ - begin_; }
-  HD const SurfaceSample& sample(int32_t k) const { return c_.samples[begin_ + k]; }
-  HD Vec3d foot(int32_t k) const {
+  MOLMESH_HD int32_t size() const { return end_ - begin_; }
+  MOLMESH_HD const SurfaceSample& sample(int32_t k) const { return c_.samples[begin_ + k]; }
+  MOLMESH_HD Vec3d foot(int32_t k) const {
     return k < kept ? Vec3d{x_[k], y_[k], z_[k]} : c_.lattice.between(sample(k).point);
   }
   /// x moved onto the tangent plane of the nearest: the mean of a curved surface's crossings lies on its concave
   /// side.
-  HD Vec3d onto_surface(Vec3d x) const {
+  MOLMESH_HD Vec3d onto_surface(Vec3d x) const {
     int32_t which = 0;
     uint64_t least = ~uint64_t{0};
     for (int32_t k = 0; k < size(); ++k) { // no branches: bits of positive numbers are in the numbers' order
@@ -56,7 +57,7 @@ private:
 struct PlaceDual {
   ComplexView c;
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const auto leaf = static_cast<int32_t>(i);
     Vec3d& dual = c.position[c.dual(leaf)];
     if (c.side[leaf] == Side::crossed) {
@@ -74,7 +75,7 @@ struct PlaceDual {
 
 private:
   /// Mean of the surface's crossings with the leaf's edges (the paper's mass centre).
-  HD Vec3d mean_crossing(int32_t leaf) const {
+  MOLMESH_HD Vec3d mean_crossing(int32_t leaf) const {
     Vec3d sum;
     int crossings = 0;
     for (int k = 0; k < 8; ++k)
@@ -88,7 +89,7 @@ private:
     return sum / double(crossings);
   }
 
-  HD Vec3d fine_dual(int32_t leaf) const {
+  MOLMESH_HD Vec3d fine_dual(int32_t leaf) const {
     const Vec3d x = mean_crossing(leaf), moved = LeafSamples(c, leaf).onto_surface(x), low = lower(leaf),
                 size = upper(leaf) - low;
     for (int a = 0; a < 3; ++a)
@@ -99,7 +100,7 @@ private:
 
   /// Where elements are best: near the cell's middle and off its faces. A little beyond the fine surface where that
   /// is curved: chords then lie on both sides of it.
-  HD Vec3d merged_dual(int32_t leaf) const {
+  MOLMESH_HD Vec3d merged_dual(int32_t leaf) const {
     constexpr double to_middle = 0.6, beyond = 1.5;
     constexpr int most_rounds = 4;
     const Vec3d low = lower(leaf), size = upper(leaf) - low;
@@ -117,7 +118,7 @@ private:
 
   /// A share of the leaf's edge along an axis, off the leaf's faces: further where smaller cells are behind, whose
   /// faces would be seen aslant.
-  HD double off_faces(int32_t leaf, int axis, double share) const {
+  MOLMESH_HD double off_faces(int32_t leaf, int axis, double share) const {
     constexpr double off_smaller = 0.25, off_any = 0.3; // in the leaf's edge, in fine spacings
     const bool upper = share > 0.5;
     const double from_face = upper ? 1 - share : share;
@@ -130,7 +131,7 @@ private:
   }
 
   /// From the mean of the leaf's fine surface onto it.
-  HD Vec3d bulge(const LeafSamples& samples) const {
+  MOLMESH_HD Vec3d bulge(const LeafSamples& samples) const {
     Vec3d mean;
     for (int32_t k = 0; k < samples.size(); ++k)
       mean += samples.sample(k).point;
@@ -138,13 +139,13 @@ private:
     return samples.onto_surface(mean) - mean;
   }
 
-  HD Vec3d lower(int32_t leaf) const { return c.lattice.position(c.tree.corner(leaf)); }
-  HD Vec3d upper(int32_t leaf) const {
+  MOLMESH_HD Vec3d lower(int32_t leaf) const { return c.lattice.position(c.tree.corner(leaf)); }
+  MOLMESH_HD Vec3d upper(int32_t leaf) const {
     const int32_t extent = c.tree.extent(leaf);
     return c.lattice.position(c.tree.corner(leaf) + Vec3i{extent, extent, extent});
   }
 
-  HD void place_split(int32_t leaf) const {
+  MOLMESH_HD void place_split(int32_t leaf) const {
     const SplitCell s(c.topology(leaf));
     const int32_t centre = c.split[leaf];
     const bool centre_inside = s.topology.centre_inside;
@@ -174,7 +175,7 @@ private:
   }
 
   /// The piece between a patch and an apex: the mean of its crossings, or of its corners where there is none.
-  HD void place_piece(int32_t leaf, int32_t dual, const Patch& p, int32_t apex) const {
+  MOLMESH_HD void place_piece(int32_t leaf, int32_t dual, const Patch& p, int32_t apex) const {
     Vec3d crossed, all = c.position[apex];
     int crossings = 0;
     const auto edge = [&](int32_t a, int32_t b) {

@@ -5,14 +5,14 @@
 
 namespace molmesh::contour {
 
-HD inline double kept_off_ends(double share) {
+MOLMESH_HD inline double kept_off_ends(double share) {
   constexpr double least = 0.02; // of an edge between its end and a crossing
   return share < least ? least : share > 1 - least ? 1 - least : share;
 }
 
 /// On a coarse edge whose ends have moved: the distances to the surface say about where, the tangent plane at the
 /// nearer of the ends' nearest samples more exactly.
-HD inline Vec3d moved_crossing(const ComplexView& c, int32_t a, int32_t b) {
+MOLMESH_HD inline Vec3d moved_crossing(const ComplexView& c, int32_t a, int32_t b) {
   const Vec3d pa = c.position[a], along = c.position[b] - pa;
   const double da = c.distance[a], db = c.distance[b];
   double share = da != 0 && db != 0 ? da / (da - db) : 0.5;
@@ -32,7 +32,7 @@ HD inline Vec3d moved_crossing(const ComplexView& c, int32_t a, int32_t b) {
 }
 
 /// Between two vertices on opposite sides, Å. Coarse edges whose ends have not moved are searched on the fine grid.
-HD_CALL inline Vec3d crossing(const ComplexView& c, int32_t a, int32_t b) {
+MOLMESH_HD_CALL inline Vec3d crossing(const ComplexView& c, int32_t a, int32_t b) {
   Vec3d pa = c.position[a], pb = c.position[b];
   float va = c.value[a], vb = c.value[b];
   if (a < c.grid_vertices && b < c.grid_vertices) {

@@ -7,7 +7,7 @@
 namespace molmesh::contour {
 
 /// The leaf with grid point p as a corner whose fine cell there is p - step of the octant; -1: none.
-HD inline int32_t leaf_with_corner(NearLeaves& near, Vec3i p, int octant) {
+MOLMESH_HD inline int32_t leaf_with_corner(NearLeaves& near, Vec3i p, int octant) {
   const int32_t leaf = near.find(p - corner_step(octant));
   return leaf >= 0 && ((p.x | p.y | p.z) & (near.tree().extent(leaf) - 1)) == 0 ? leaf : -1;
 }
@@ -15,7 +15,7 @@ HD inline int32_t leaf_with_corner(NearLeaves& near, Vec3i p, int octant) {
 /// Of a surface cell: its leaf's first_cell, if this is it; -1 before.
 struct ClaimLeaf {
   ComplexView c;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const int32_t leaf = c.tree.find_key(c.cells[i].key);
     if (i == 0 || c.cells[i - 1].key < c.tree.key[leaf])
       c.first_cell[leaf] = static_cast<int32_t>(i);
@@ -29,7 +29,7 @@ struct OwnCorners {
   OctreeView tree;
   int32_t *owned, *first, *beside;
 
-  HD void operator()(int64_t leaf) const {
+  MOLMESH_HD void operator()(int64_t leaf) const {
     NearLeaves near(tree);
     of_leaf(near, leaf);
   }
@@ -41,7 +41,7 @@ struct OwnCorners {
   }
 
 private:
-  HD void of_leaf(NearLeaves& near, int64_t leaf) const {
+  MOLMESH_HD void of_leaf(NearLeaves& near, int64_t leaf) const {
     int32_t own = 1;
     owned[8 * leaf] = static_cast<int32_t>(8 * leaf);
     for (int c = 1; c < 8; ++c) {
@@ -53,7 +53,7 @@ private:
     for (int f = 0; f < 6; ++f)
       beside[6 * leaf + f] = near.neighbour(static_cast<int32_t>(leaf), f);
   }
-  HD int32_t owner(NearLeaves& near, int32_t leaf, int c) const {
+  MOLMESH_HD int32_t owner(NearLeaves& near, int32_t leaf, int c) const {
     const int level = tree.level[leaf];
     uint64_t k = tree.key[leaf];
     for (int a = 0; a < 3; ++a)
@@ -87,7 +87,7 @@ private:
 struct NumberCorners {
   ComplexView c;
   const int32_t *owned, *first;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const auto leaf = static_cast<int32_t>(i);
     int32_t id = first[leaf];
     for (int k = 0; k < 8; ++k) {
@@ -106,7 +106,7 @@ struct NumberCorners {
 struct ShareCorners {
   ComplexView c;
   const int32_t* owned;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const bool crossed = c.first_cell[i] >= 0;
     c.side[i] = crossed ? Side::crossed : c.inside(c.grid_vertex[8 * i]) ? Side::inside : Side::outside;
     for (int k = 0; k < 8; ++k)
@@ -119,7 +119,7 @@ struct ShareCorners {
 struct CountPieces {
   ComplexView c;
   int32_t* extra;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     extra[i] = 0;
     if (c.first_cell[i] < 0 || c.tree.level[i] > 0)
       return;
@@ -132,7 +132,7 @@ struct CountPieces {
 struct NumberPieces {
   ComplexView c;
   const int32_t* extra;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const int32_t first = c.dual0 + c.tree.leaves;
     c.split[i] = extra[i + 1] > extra[i] ? first + extra[i] : -1;
     for (int32_t k = extra[i]; k < extra[i + 1]; ++k) {

@@ -17,7 +17,7 @@ inline constexpr int32_t no_vertex = std::numeric_limits<int32_t>::min();
 struct Link {
   int32_t inside, outside;
   int32_t from, via, to;
-  HD bool same_edge(const Link& o) const { return inside == o.inside && outside == o.outside; }
+  MOLMESH_HD bool same_edge(const Link& o) const { return inside == o.inside && outside == o.outside; }
   bool operator<(const Link& o) const {
     return inside != o.inside ? inside < o.inside : outside != o.outside ? outside < o.outside : from < o.from;
   }

@@ -7,12 +7,12 @@
 
 namespace molmesh::contour {
 
-HD inline double lesser(double a, double b) {
+MOLMESH_HD inline double lesser(double a, double b) {
   return b < a ? b : a;
 }
 
 /// Of the dihedral angles; -1 where the volume is not positive.
-HD inline double least_sine(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
+MOLMESH_HD inline double least_sine(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
   const Corners<double> corners{{a.x, b.x, c.x, d.x}, {a.y, b.y, c.y, d.y}, {a.z, b.z, c.z, d.z}};
   Sines<double> sines;
   begin_sines(corners, sines);
@@ -25,7 +25,7 @@ HD inline double least_sine(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
 
 /// least_sine of n elements, many at once on the host. corner(i, k): of element i
 template <class Corner>
-HD void least_sines(int n, const Corner& corner, double* least) {
+MOLMESH_HD void least_sines(int n, const Corner& corner, double* least) {
 #ifndef __CUDA_ARCH__
   constexpr int few = 2;
   for (int first = 0; n > few && first < n; first += 8) {

@@ -13,8 +13,8 @@ struct Polygon {
   static constexpr int most = 8;
   int n = 0;
   int32_t vertex[most];
-  HD void add(int32_t v) { vertex[n++] = v; }
-  HD int next(int i) const { return i + 1 < n ? i + 1 : 0; }
+  MOLMESH_HD void add(int32_t v) { vertex[n++] = v; }
+  MOLMESH_HD int next(int i) const { return i + 1 < n ? i + 1 : 0; }
 };
 
 /// Volumes below this share of the cube of the face's shortest edge get a face point instead.
@@ -27,7 +27,8 @@ inline constexpr double least_moved_volume = 1e-4;
 inline constexpr double flat_sine = 0.25;
 
 /// least: a share as above; negative: no test.
-HD inline bool pierced(const ComplexView& c, const Polygon& p, int32_t behind, int32_t front, double least_share) {
+MOLMESH_HD inline bool pierced(const ComplexView& c, const Polygon& p, int32_t behind, int32_t front,
+                               double least_share) {
   if (least_share < 0)
     return true;
   const Vec3d d = c.position[behind], e = c.position[front];
@@ -42,7 +43,7 @@ HD inline bool pierced(const ComplexView& c, const Polygon& p, int32_t behind, i
 }
 
 /// The least sine of the elements without a face point, and with one.
-HD inline double direct_shape(const ComplexView& c, const Polygon& p, int32_t behind, int32_t front) {
+MOLMESH_HD inline double direct_shape(const ComplexView& c, const Polygon& p, int32_t behind, int32_t front) {
   double of[Polygon::most];
   least_sines(
       p.n,
@@ -55,7 +56,8 @@ HD inline double direct_shape(const ComplexView& c, const Polygon& p, int32_t be
     least = lesser(least, of[i]);
   return least;
 }
-HD inline double via_shape(const ComplexView& c, const Polygon& p, int32_t behind, Vec3d via, int32_t front) {
+MOLMESH_HD inline double via_shape(const ComplexView& c, const Polygon& p, int32_t behind, Vec3d via,
+                                   int32_t front) {
   double of[2 * Polygon::most]; // two by two, behind and in front
   least_sines(
       2 * p.n,
@@ -74,7 +76,7 @@ HD inline double via_shape(const ComplexView& c, const Polygon& p, int32_t behin
 }
 
 /// A point within the polygon: the middle of the surface's trace on it, or the polygon's centre.
-HD inline Vec3d face_point(const ComplexView& c, const Polygon& p) {
+MOLMESH_HD inline Vec3d face_point(const ComplexView& c, const Polygon& p) {
   Vec3d crossed, all;
   int crossings = 0;
   for (int i = 0; i < p.n; ++i) {
@@ -91,8 +93,8 @@ HD inline Vec3d face_point(const ComplexView& c, const Polygon& p) {
 /// Whether a point goes between the dual vertices, and where: where they miss the face, and where elements are
 /// better for it. test: they could miss it; check: at a surface cell. Direct elements are positive, where checked
 /// by far.
-HD inline bool wants_point(const ComplexView& c, const Polygon& p, int32_t behind, int32_t front, bool test,
-                           bool check, Vec3d& point) {
+MOLMESH_HD inline bool wants_point(const ComplexView& c, const Polygon& p, int32_t behind, int32_t front, bool test,
+                                   bool check, Vec3d& point) {
   const bool direct = pierced(c, p, behind, front, test ? least_volume : check ? least_moved_volume : -1);
   const double shape = !direct ? -1 : test && check ? direct_shape(c, p, behind, front) : 1;
   if (shape >= flat_sine)

@@ -12,9 +12,9 @@ namespace molmesh::contour {
 template <class Out>
 class LeafFaces {
 public:
-  HD LeafFaces(const ComplexView& c, NearLeaves& near, Out& out) : c_(c), near_(near), out_(out) {}
+  MOLMESH_HD LeafFaces(const ComplexView& c, NearLeaves& near, Out& out) : c_(c), near_(near), out_(out) {}
 
-  HD void leaf(int32_t leaf) {
+  MOLMESH_HD void leaf(int32_t leaf) {
     const int level = c_.tree.level[leaf];
     int32_t other[6];
     smaller_ = 0;
@@ -38,7 +38,7 @@ public:
 
 private:
   /// The vertex in the middle of the leaf's edge from corner a to b, or -1 when no cell round the edge is smaller.
-  HD int32_t middle_vertex(int32_t leaf, int a, int b) const {
+  MOLMESH_HD int32_t middle_vertex(int32_t leaf, int a, int b) const {
     const int level = c_.tree.level[leaf];
     // Smaller cells at an edge are there at its ends too.
     if (c_.least_level[c_.corner_vertex(leaf, a)] >= level || c_.least_level[c_.corner_vertex(leaf, b)] >= level)
@@ -73,7 +73,7 @@ private:
     return c_.corner_vertex(other, int(other_upper_u) << u | int(other_upper_v) << v);
   }
 
-  HD void face(int32_t leaf, int f, int32_t other) {
+  MOLMESH_HD void face(int32_t leaf, int f, int32_t other) {
     const Side mine = c_.side[leaf], its = other < 0 ? mine : c_.side[other];
     const bool both_crossed = mine == Side::crossed && its == Side::crossed;
     if (Out::checks && mine != Side::crossed && its != Side::crossed)
@@ -115,7 +115,7 @@ private:
 
   /// Whether the segment between the dual vertices could miss the face: never between unsplit boxes of one size,
   /// nor from the centre of a box.
-  HD bool needs_test(int32_t leaf, int32_t other) const {
+  MOLMESH_HD bool needs_test(int32_t leaf, int32_t other) const {
     if (other < 0)
       return false;
     if (c_.is_split(leaf) || c_.is_split(other))
@@ -124,7 +124,7 @@ private:
            (c_.side[leaf] == Side::crossed || c_.side[other] == Side::crossed);
   }
 
-  HD int32_t cell_dual(int32_t leaf, int f, int off) const {
+  MOLMESH_HD int32_t cell_dual(int32_t leaf, int f, int off) const {
     return c_.is_split(leaf) ? c_.piece_dual(leaf, SplitCell(c_.topology(leaf)), f, off) : c_.dual(leaf);
   }
 
@@ -139,7 +139,7 @@ private:
   };
 
   /// behind, front: dual vertices of the two cells; front no_vertex at wall f.
-  HD_CALL void polygon(const Polygon& p, int32_t behind, int32_t front, int f, Cells cells) {
+  MOLMESH_HD_CALL void polygon(const Polygon& p, int32_t behind, int32_t front, int f, Cells cells) {
     const bool wall = front == no_vertex;
     int32_t via = no_vertex;
     Vec3d via_position, front_position;
@@ -191,7 +191,8 @@ private:
   }
 
   /// Whether a point goes between the dual vertices, and where. What the check found is known of leaves' faces.
-  HD bool gets_point(const Polygon& p, int32_t behind, int32_t front, const Cells& cells, Vec3d& point) const {
+  MOLMESH_HD bool gets_point(const Polygon& p, int32_t behind, int32_t front, const Cells& cells,
+                             Vec3d& point) const {
     if (!Out::checks && cells.leaf >= 0) {
       if (!(c_.face_points[cells.leaf] >> cells.bit & 1))
         return false;
@@ -206,7 +207,7 @@ private:
   }
 
   /// Triangles from the cell's edges (and its faces' diagonals) to the centre.
-  HD void split_interior(int32_t leaf) {
+  MOLMESH_HD void split_interior(int32_t leaf) {
     const SplitCell s(c_.topology(leaf));
     const auto vertex = [&](int k) { return c_.corner_vertex(leaf, k); };
     const int32_t centre = c_.split[leaf];
@@ -247,7 +248,7 @@ private:
 /// The elements of the faces that a leaf owns, and the links they add to sign-change edges. A face belongs to its
 /// smaller cell, of two equal ones to the lower. near: the complex's tree.
 template <class Out>
-HD void make_faces(const ComplexView& complex, NearLeaves& near, int32_t leaf, Out& out) {
+MOLMESH_HD void make_faces(const ComplexView& complex, NearLeaves& near, int32_t leaf, Out& out) {
   LeafFaces<Out>(complex, near, out).leaf(leaf);
 }
 

@@ -14,19 +14,19 @@ struct Sines {
   V six_volume;
 };
 template <class V>
-HD __attribute__((always_inline)) inline void set_edge(const Corners<V>& p, int from, int to, V (&e)[3]) {
+MOLMESH_HD __attribute__((always_inline)) inline void set_edge(const Corners<V>& p, int from, int to, V (&e)[3]) {
   e[0] = p.x[to] - p.x[from];
   e[1] = p.y[to] - p.y[from];
   e[2] = p.z[to] - p.z[from];
 }
 template <class V>
-HD __attribute__((always_inline)) inline void set_normal(const V (&a)[3], const V (&b)[3], V (&n)[3]) {
+MOLMESH_HD __attribute__((always_inline)) inline void set_normal(const V (&a)[3], const V (&b)[3], V (&n)[3]) {
   n[0] = a[1] * b[2] - a[2] * b[1];
   n[1] = a[2] * b[0] - a[0] * b[2];
   n[2] = a[0] * b[1] - a[1] * b[0];
 }
 template <class V>
-HD __attribute__((always_inline)) inline void begin_sines(const Corners<V>& p, Sines<V>& s) {
+MOLMESH_HD __attribute__((always_inline)) inline void begin_sines(const Corners<V>& p, Sines<V>& s) {
   V e[6][3], n[4][3];
   set_edge(p, 0, 1, e[0]), set_edge(p, 0, 2, e[1]), set_edge(p, 0, 3, e[2]);
   set_edge(p, 1, 2, e[3]), set_edge(p, 1, 3, e[4]), set_edge(p, 2, 3, e[5]);
@@ -41,7 +41,7 @@ HD __attribute__((always_inline)) inline void begin_sines(const Corners<V>& p, S
 /// least: of the dihedral angles; -1 where the volume is not positive. The sine at the edge between two faces is
 /// six volumes times the edge over both normals, twice their areas long.
 template <class V>
-HD __attribute__((always_inline)) inline void least_of(const Sines<V>& s, V& least) {
+MOLMESH_HD __attribute__((always_inline)) inline void least_of(const Sines<V>& s, V& least) {
   V inverse[4];
   for (int f = 0; f < 4; ++f)
     inverse[f] = 1 / s.length[6 + f];

@@ -16,10 +16,10 @@ struct RingVertices {
   const Vec3d* more;   ///< positions after the complex's own
   const int32_t* wall; ///< of those: Boundary of a wall point, 0 otherwise
 
-  HD Vec3d position(int32_t v) const {
+  MOLMESH_HD Vec3d position(int32_t v) const {
     return v < complex_vertices ? complex.position[v] : more[v - complex_vertices];
   }
-  HD int32_t wall_of(int32_t v) const { return v < complex_vertices ? 0 : wall[v - complex_vertices]; }
+  MOLMESH_HD int32_t wall_of(int32_t v) const { return v < complex_vertices ? 0 : wall[v - complex_vertices]; }
 };
 
 /// Rings seldom have more than six vertices, and never more than two for each of the twelve cells and pieces that
@@ -29,14 +29,14 @@ struct Ring {
   int32_t vertex[most];
   int n = 0;
   bool closed = true, has_via = false, broken = false;
-  HD void add(int32_t v) {
+  MOLMESH_HD void add(int32_t v) {
     broken = broken || n == most;
     if (!broken)
       vertex[n++] = v;
   }
 };
 
-HD inline void trace(const Link* begin, const Link* end, Ring& ring) {
+MOLMESH_HD inline void trace(const Link* begin, const Link* end, Ring& ring) {
   const auto coming_from = [&](int32_t v) {
     const Link* l = begin;
     while (l < end && l->from != v)
@@ -73,7 +73,7 @@ HD inline void trace(const Link* begin, const Link* end, Ring& ring) {
 
 /// Whether one of the splits of a ring of three or four has only elements so far from flat that whatever is chosen
 /// has positive volumes: sines of dihedral angles are at least six volumes over the cube of the longest edge.
-HD inline bool clearly_positive(const RingVertices& v, int32_t inside, int32_t outside, const Ring& ring) {
+MOLMESH_HD inline bool clearly_positive(const RingVertices& v, int32_t inside, int32_t outside, const Ring& ring) {
   constexpr double least_sine_of_all = 1e-5;
   const Vec3d a = v.position(inside), b = v.position(outside);
   Vec3d x[4];
@@ -94,7 +94,7 @@ HD inline bool clearly_positive(const RingVertices& v, int32_t inside, int32_t o
 
 /// Elements of the ring with the edge's crossing point at its middle.
 template <class Out>
-HD void add_round_point(const RingVertices& v, int32_t a, int32_t b, const Ring& ring, Vec3d m, Out& out) {
+MOLMESH_HD void add_round_point(const RingVertices& v, int32_t a, int32_t b, const Ring& ring, Vec3d m, Out& out) {
   const int k = ring.n;
   const auto p = [&](int i) { return ring.vertex[i % k]; };
   const int32_t middle = out.add_point(m, 0);
@@ -115,7 +115,7 @@ HD void add_round_point(const RingVertices& v, int32_t a, int32_t b, const Ring&
 /// links [begin, end): all links of one edge. The ring is closed, or at a wall an open chain from wall point to
 /// wall point.
 template <class Out>
-HD void make_ring(const RingVertices& v, const Link* begin, const Link* end, Out& out) {
+MOLMESH_HD void make_ring(const RingVertices& v, const Link* begin, const Link* end, Out& out) {
   Ring ring;
   trace(begin, end, ring);
   if (ring.broken)

@@ -11,7 +11,7 @@ namespace molmesh::contour {
 
 /// Of the surface in the sample's cell, in squared fine spacings: a surface of area A crosses A (|nx| + |ny| +
 /// |nz|) cells of a lattice on average.
-HD inline double sample_area(const SurfaceSample& s) {
+MOLMESH_HD inline double sample_area(const SurfaceSample& s) {
   const double crossed = std::fabs(s.normal.x) + std::fabs(s.normal.y) + std::fabs(s.normal.z);
   return crossed > 0 ? 1 / crossed : 0;
 }
@@ -28,11 +28,11 @@ struct CutByCells {
   int64_t n;
   float isovalue;
   double* cut = nullptr; ///< [items(n)]
-  HD static int64_t every(int64_t n) { return 1 + n / enough; }
-  HD static int64_t items(int64_t n) { return (n + every(n) - 1) / every(n); }
-  HD void operator()(int64_t i) const { cut[i] = static_cast<double>(every(n)) * of_cell(i * every(n)); }
+  MOLMESH_HD static int64_t every(int64_t n) { return 1 + n / enough; }
+  MOLMESH_HD static int64_t items(int64_t n) { return (n + every(n) - 1) / every(n); }
+  MOLMESH_HD void operator()(int64_t i) const { cut[i] = static_cast<double>(every(n)) * of_cell(i * every(n)); }
 
-  HD double of_cell(int64_t i) const {
+  MOLMESH_HD double of_cell(int64_t i) const {
     double sum = 0;
     const uint32_t inside = inside_corners(cell[i], isovalue);
     for (int axis = 0; axis < 3; ++axis) {
@@ -51,7 +51,7 @@ struct CutByCells {
 
 private:
   /// After i and likely near: the first key not below the one wanted, which is larger than key[i].
-  HD int64_t first_from(int64_t i, uint64_t wanted) const {
+  MOLMESH_HD int64_t first_from(int64_t i, uint64_t wanted) const {
     int64_t step = 1;
     for (; i + step < n && key[i + step] < wanted; step *= 2)
       i += step;
@@ -73,7 +73,7 @@ struct CutByNodes {
   int level;
   const double* child_cut; ///< level 1: null
   double* cut;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const bool leaf = !(refined.word(nodes.key[i] >> 6) >> (nodes.key[i] & 63) & 1);
     const bool of_cells = leaf || !child_cut;
     const double* const from = of_cells ? cell_cut : child_cut;
@@ -87,7 +87,7 @@ struct CutByNodes {
 
 private:
   /// Of cells from this one on; both are below 2^31.
-  HD int64_t first_sample(int64_t cell) const {
+  MOLMESH_HD int64_t first_sample(int64_t cell) const {
     return static_cast<uint32_t>(cell + every - 1) / static_cast<uint32_t>(every);
   }
 };
@@ -100,7 +100,7 @@ struct SurfaceSums {
   // far apart do not blur each other.
   Vec3d crossings, places, outwards, moment;
 
-  HD SurfaceSums& operator+=(const SurfaceSums& o) {
+  MOLMESH_HD SurfaceSums& operator+=(const SurfaceSums& o) {
     area += o.area;
     crossings += o.crossings;
     places += o.places;
@@ -110,7 +110,7 @@ struct SurfaceSums {
   }
   /// Within the surface, by the axis whose lines see most of it: they all do where the box cuts nothing; lines that
   /// end at a wall see what lies between crossings, or those from their mean place.
-  HD double volume() const {
+  MOLMESH_HD double volume() const {
     double most = 0;
     for (int a = 0; a < 3; ++a)
       if (crossings[a] > 0)
@@ -121,7 +121,7 @@ struct SurfaceSums {
 
 /// Of one cell, for the lines through its lowest corner. A crossing is taken to be where the sample is: the mean of
 /// the cell's, so that what is too much on one side of a body is too little on the other.
-HD inline SurfaceSums sums_of_cell(const SurfaceCell& cell, const SurfaceSample& s, float isovalue) {
+MOLMESH_HD inline SurfaceSums sums_of_cell(const SurfaceCell& cell, const SurfaceSample& s, float isovalue) {
   SurfaceSums sums;
   sums.area = sample_area(s);
   const bool inside = cell.value[0] > isovalue;
@@ -144,7 +144,7 @@ struct SumCells {
   int64_t cells;
   float isovalue;
   SurfaceSums* out;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     SurfaceSums sums;
     for (int64_t c = run * i; c < run * (i + 1) && c < cells; ++c)
       sums += sums_of_cell(cell[c], sample[c], isovalue);

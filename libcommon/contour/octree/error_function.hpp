@@ -26,13 +26,13 @@ struct SurfaceNodes {
   uint8_t* corners = nullptr;     ///< bit c: corner c is inside; of nodes within the domain
   int64_t n = 0, below = 0, cells = 0; ///< nodes here, of the level below, surface cells
 
-  HD int64_t child_begin(int64_t i) const { return i < n ? child[i] : below; }
-  HD int64_t cell_begin(int64_t i) const { return i >= n ? cells : cell ? cell[i] : i; }
+  MOLMESH_HD int64_t child_begin(int64_t i) const { return i < n ? child[i] : below; }
+  MOLMESH_HD int64_t cell_begin(int64_t i) const { return i >= n ? cells : cell ? cell[i] : i; }
 };
 
 /// Bit x + 3 y + 9 z: of the 27 corners of a node's children, (x, y, z) is inside. The children that the surface
 /// crosses are nodes begin … end - 1; the others lie on one side, that of the corner that all eight share.
-HD inline uint32_t inside_points(const SurfaceNodes& children, int64_t begin, int64_t end) {
+MOLMESH_HD inline uint32_t inside_points(const SurfaceNodes& children, int64_t begin, int64_t end) {
   const auto of_child = [](uint32_t octant, uint32_t corners) {
     const uint32_t points =
         (corners & 0x03) | (corners & 0x0C) << 1 | (corners & 0x30) << 5 | (corners & 0xC0) << 6;
@@ -65,7 +65,7 @@ struct OneDisc {
       of_set[set >> 6] |= uint64_t{plain} << (set & 63);
     }
   }
-  HD bool operator()(uint32_t inside_corners) const {
+  MOLMESH_HD bool operator()(uint32_t inside_corners) const {
     return of_set[inside_corners >> 6] >> (inside_corners & 63) & 1;
   }
 
@@ -80,7 +80,7 @@ private:
   }
 };
 
-HD inline uint32_t inside_corners(const SurfaceCell& cell, float isovalue) {
+MOLMESH_HD inline uint32_t inside_corners(const SurfaceCell& cell, float isovalue) {
   uint32_t inside = 0;
   for (int c = 0; c < 8; ++c)
     inside |= uint32_t{cell.value[c] > isovalue} << c;
@@ -93,7 +93,7 @@ struct StartFromCells {
   uint64_t* key;
   uint8_t *flags, *corners;
   OneDisc one_disc{};
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const uint32_t inside = inside_corners(from[i], isovalue);
     key[i] = from[i].key;
     corners[i] = static_cast<uint8_t>(inside);
@@ -104,7 +104,7 @@ struct StartFromCells {
 /// First of the nodes with one parent.
 struct FirstChildren {
   const uint64_t* key;
-  HD int64_t operator()(int64_t i, int32_t* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, int32_t* out) const {
     if (i > 0 && key[i] >> 3 == key[i - 1] >> 3)
       return 0;
     if (out)
@@ -119,7 +119,7 @@ struct MakeParents {
   uint64_t* key;
   int32_t* cell;
   uint8_t* corners;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     key[i] = below.key[child[i]] >> 3;
     cell[i] = static_cast<int32_t>(below.cell_begin(child[i]));
     const uint32_t in = inside_points(below, child[i], i + 1 < n ? child[i + 1] : below.n);
@@ -134,7 +134,7 @@ struct MakeParents {
 struct MeanPlane {
   Vec3d normal, middle; ///< unit vector, zero where normals cancel
 
-  HD MeanPlane(const SurfaceSample* begin, const SurfaceSample* end) {
+  MOLMESH_HD MeanPlane(const SurfaceSample* begin, const SurfaceSample* end) {
     for (const SurfaceSample* s = begin; s < end; ++s) {
       normal += s->normal;
       middle += s->point;
@@ -145,12 +145,12 @@ struct MeanPlane {
       normal = normal / length;
   }
   /// Normals within 72.5° of their mean: one surface, no sharp crease.
-  HD bool has(const SurfaceSample& s) const { return dot(s.normal, normal) >= 0.3; }
+  MOLMESH_HD bool has(const SurfaceSample& s) const { return dot(s.normal, normal) >= 0.3; }
 };
 
 /// Of inside_points: whether the signs at the middles of the edges, faces and volume each agree with a corner of
 /// that edge, face or volume, so that eight plain cells may be one (Ju et al. 2002, the paper's reference 22).
-HD inline bool middles_agree(uint32_t in) {
+MOLMESH_HD inline bool middles_agree(uint32_t in) {
   constexpr uint32_t corner_bits = 0x5140145, half_way[3] = {0x2492492, 0xE07038, 0x3FE00};
   // Whether any, and whether all of the corners of the edge, face or cell that a point is the middle of are inside.
   uint32_t any = in & corner_bits, all = any;
@@ -176,7 +176,7 @@ struct MergeNodes {
   double tolerance; ///< distance of the samples from their mean plane, fine spacings
   OneDisc one_disc{};
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     uint8_t& flags = nodes.flags[i];
     flags = 0;
     const Vec3i corner = morton_point(nodes.key[i] << 3 * level);
@@ -195,17 +195,17 @@ struct MergeNodes {
   }
 
 private:
-  HD bool nearly_plane(const SurfaceSample* begin, const SurfaceSample* end, const MeanPlane& plane) const {
+  MOLMESH_HD bool nearly_plane(const SurfaceSample* begin, const SurfaceSample* end, const MeanPlane& plane) const {
     for (const SurfaceSample* s = begin; s < end; ++s)
       if (!(plane.has(*s) && std::fabs(dot(s->point - plane.middle, plane.normal)) <= tolerance))
         return false;
     return true;
   }
-  HD bool keeps_topology(int64_t i) const {
+  MOLMESH_HD bool keeps_topology(int64_t i) const {
     return one_disc(nodes.corners[i]) &&
            middles_agree(inside_points(children, nodes.child_begin(i), nodes.child_begin(i + 1)));
   }
-  HD static uint8_t near_faces(Vec3d middle, Vec3i corner, int32_t extent) {
+  MOLMESH_HD static uint8_t near_faces(Vec3d middle, Vec3i corner, int32_t extent) {
     const double margin = extent == 2 ? least_margin_of_two : least_margin;
     uint8_t faces = 0;
     for (int a = 0; a < 3; ++a) {
@@ -221,7 +221,7 @@ struct SurfaceBlocks {
   SurfaceNodes nodes, parents, blocks;
   par::KeyedWord* refined;
   uint64_t* near; ///< [6 blocks] nodes near face f
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     uint64_t children = 0, near_face[6] = {};
     const int64_t begin = parents.child_begin(blocks.child_begin(i)),
                   end = parents.child_begin(blocks.child_begin(i + 1));

@@ -37,8 +37,8 @@ struct LatticeView {
   double spacing = 0;                     ///< of the grid, Å
   Vec3i grid_first, grid_last;            ///< lattice points; outside the lattice where a wall cuts the grid
 
-  HD float grid_value(Vec3i p) const { return value_in(index.find(p), p); }
-  HD float value(Vec3i p) const {
+  MOLMESH_HD float grid_value(Vec3i p) const { return value_in(index.find(p), p); }
+  MOLMESH_HD float value(Vec3i p) const {
     for (int a = 0; any_cut && a < 3; ++a)
       for (int side = 0; side < 2; ++side)
         if (cut[a][side].cuts && p[a] == (side ? cells[a] : 0)) {
@@ -48,14 +48,14 @@ struct LatticeView {
         }
     return grid_value(base + p);
   }
-  HD bool on_cut(Vec3i p) const {
+  MOLMESH_HD bool on_cut(Vec3i p) const {
     for (int a = 0; a < 3; ++a)
       if ((cut[a][0].cuts && p[a] == 0) || (cut[a][1].cuts && p[a] == cells[a]))
         return true;
     return false;
   }
   /// Whether the grid holds G there, not only the side; v: value(p) then. last: as for inside.
-  HD bool active(Vec3i p, float& v, BlockIndexView::Last& last) const {
+  MOLMESH_HD bool active(Vec3i p, float& v, BlockIndexView::Last& last) const {
     const Vec3i q = base + p;
     const int64_t b = index.find(q, last);
     if (b < 0 || !bit(active_words, b, q))
@@ -63,9 +63,9 @@ struct LatticeView {
     v = any_cut && on_cut(p) ? value(p) : grid[512 * b + slot(q)];
     return true;
   }
-  HD Vec3d position(Vec3i p) const { return {axis[0][p.x], axis[1][p.y], axis[2][p.z]}; }
+  MOLMESH_HD Vec3d position(Vec3i p) const { return {axis[0][p.x], axis[1][p.y], axis[2][p.z]}; }
   /// Between lattice points, each axis by itself; p within 0 … cells.
-  HD Vec3d between(Vec3d p) const {
+  MOLMESH_HD Vec3d between(Vec3d p) const {
     Vec3d x;
     for (int a = 0; a < 3; ++a) {
       const auto whole = static_cast<int64_t>(p[a]), last = int64_t{cells[a]} - 1;
@@ -76,12 +76,12 @@ struct LatticeView {
   }
 
   /// Of BlockGrid::active or what is laid out like it.
-  HD static bool bit(const uint64_t* words, int64_t block, Vec3i grid_point) {
+  MOLMESH_HD static bool bit(const uint64_t* words, int64_t block, Vec3i grid_point) {
     const int s = slot(grid_point);
     return words[8 * block + (s >> 6)] >> (s & 63) & 1;
   }
   /// At a point that block b, as the index names it, holds; grid_point: by its place within the block.
-  HD float value_in(int64_t b, Vec3i grid_point) const {
+  MOLMESH_HD float value_in(int64_t b, Vec3i grid_point) const {
     return b == BlockIndexView::outside  ? 0
            : b == BlockIndexView::inside ? inside_value
                                          : grid[512 * b + slot(grid_point)];
@@ -89,7 +89,7 @@ struct LatticeView {
 
 private:
   /// On the wall of axis a, at one of its two planes; on further cut axes at the nearer plane.
-  HD double cut_value(Vec3i p, int a, int32_t plane) const {
+  MOLMESH_HD double cut_value(Vec3i p, int a, int32_t plane) const {
     Vec3i q = base + p;
     q[a] = plane;
     for (int b = a + 1; b < 3; ++b)
@@ -105,7 +105,7 @@ struct SetInsideWords {
   const float* grid;
   float isovalue;
   uint64_t* words;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const float* v = grid + 64 * i;
     uint64_t word = 0;
     for (int row = 0; row < 8; ++row) {

@@ -9,7 +9,7 @@ namespace molmesh::contour {
 /// Leaves and blocks by the Morton key of their lower corner; word: the leaf's level, or this.
 inline constexpr uint64_t is_block = 0;
 
-HD inline int64_t add_nodes(uint64_t block, uint64_t nodes, int level, uint64_t word, par::KeyedWord* out) {
+MOLMESH_HD inline int64_t add_nodes(uint64_t block, uint64_t nodes, int level, uint64_t word, par::KeyedWord* out) {
   for (uint64_t rest = nodes; out && rest; rest &= rest - 1)
     *out++ = {(block << 6 | static_cast<uint64_t>(lowest_bit(rest))) << 3 * level, word};
   return count_bits(nodes);
@@ -21,7 +21,7 @@ struct LeafRoots {
   Vec3i nodes; ///< of the level, per axis
   NodeSet refined;
   int level;
-  HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
     const uint64_t key = morton(box.block(i));
     return add_nodes(key, nodes_within(box.block(i), nodes) & ~refined.word(key), level, uint64_t(level), out);
   }
@@ -32,7 +32,7 @@ struct LeafChildren {
   NodeSet parents, refined;
   Vec3i nodes;
   int level;
-  HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
     const uint64_t siblings = parents.block[i >> 3].word >> 8 * (i & 7) & 0xFF;
     if (siblings == 0)
       return 0;
@@ -45,14 +45,14 @@ struct LeafChildren {
 /// Blocks of 8³ fine cells: nodes of level 3 with children.
 struct LeafBlocks {
   NodeSet refined;
-  HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
     return add_nodes(refined.block[i].key, refined.block[i].word, 3, is_block, out);
   }
 };
 
 /// Where leaves of levels 0, 1 and 2 start within the block of fine cell `key`, by the nodes of levels 1 and 2 with
 /// children.
-HD inline void leaf_starts(uint64_t key, NodeSet level1, NodeSet level2, Vec3i cells, uint64_t start[8]) {
+MOLMESH_HD inline void leaf_starts(uint64_t key, NodeSet level1, NodeSet level2, Vec3i cells, uint64_t start[8]) {
   const uint64_t fine = level1.word(key >> 9), middle = level2.word(key >> 12) >> 8 * (key >> 9 & 7);
   const Vec3i left = cells - morton_point(key);
   for (int w = 0; w < 8; ++w) {
@@ -75,7 +75,7 @@ struct CountLeaves {
   NodeSet level1, level2;
   Vec3i cells;
   int64_t *leaves, *blocks;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     blocks[i] = entry[i].word == is_block;
     leaves[i] = 1;
     if (!blocks[i])
@@ -93,7 +93,7 @@ struct PlaceLeaves {
   int32_t* large; ///< leaves of level 3 and more
   uint64_t* key;
   uint8_t* level;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const par::KeyedWord e = entries.entry[i];
     const int64_t first = entries.leaves[i], b = entries.blocks[i];
     if (e.word != is_block) {
@@ -119,7 +119,7 @@ struct FillBlocks {
   NodeSet level1, level2;
   uint64_t* key;
   uint8_t* level;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const OctreeView::Block& b = block[i >> 3];
     const auto w = static_cast<uint64_t>(i & 7);
     if (b.start[w] == 0)

@@ -14,7 +14,7 @@ struct IndexEntries {
   OctreeView tree;
   int64_t blocks;
   uint32_t* slot;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     auto e = i < blocks ? static_cast<uint32_t>(i)
                         : OctreeView::of_large + static_cast<uint32_t>(tree.large[i - blocks]);
     for (uint64_t s = OctreeView::mix(tree.entry_key(e)) & tree.mask; e != OctreeView::free_slot;

@@ -14,7 +14,7 @@ struct UniformNodes {
   Vec3i first, last; ///< nodes that meet the grid
   bool inside, outside;
 
-  HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
     const Vec3i b = box.block(i), corner = 8 * b, points = l.cells - corner; // the last point
     const BlockWindow window(l, corner);
     if (!outside && window.one_sided() && !(window.inside(0, 0) & 1))
@@ -47,7 +47,7 @@ struct NodeLayer {
   BlockBox box;
   Vec3i nodes; ///< of the level, per axis
   int axis;
-  HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
     const Vec3i b = box.block(i);
     uint64_t word = nodes_within(b, nodes);
     if (axis >= 0) {
@@ -65,7 +65,7 @@ struct NodeLayer {
 struct ParentsOfNeighbours {
   NodeSet refined;
   Vec3i parents; ///< of that level, per axis
-  HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
     const uint64_t word = refined.block[i].word;
     const Vec3i b = morton_point(refined.block[i].key), low = 2 * b - Vec3i{1, 1, 1};
     uint64_t region = 0; // bit x + 4 y + 16 z: parent low + (x, y, z)
@@ -106,7 +106,7 @@ struct ParentsOfNeighbours {
 /// Surface blocks with a node near a face.
 struct NearBlocks {
   const uint64_t* near;
-  HD int64_t operator()(int64_t i, int64_t* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, int64_t* out) const {
     uint64_t any = 0;
     for (int f = 0; f < 6; ++f)
       any |= near[6 * i + f];
@@ -121,7 +121,7 @@ struct FindNeighbours {
   const par::KeyedWord* surface;
   NodeSet refined;
   int64_t* position; ///< [7 candidates]
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const uint64_t key = surface[candidate[i]].key;
     const Vec3i p = morton_point(key);
     position[7 * i + 6] = refined.find(key);
@@ -140,7 +140,7 @@ struct SpreadWave {
   NodeSet refined;
   uint64_t* grown; ///< [candidates]
   int64_t* changed;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const int64_t* const at = position + 7 * i;
     const uint64_t* const near_face = near + 6 * candidate[i];
     const uint64_t before = refined.block[at[6]].word;
@@ -162,7 +162,7 @@ struct ApplyWave {
   const int64_t* position;
   const uint64_t* grown;
   par::KeyedWord* refined;
-  HD void operator()(int64_t i) const { refined[position[7 * i + 6]].word = grown[i]; }
+  MOLMESH_HD void operator()(int64_t i) const { refined[position[7 * i + 6]].word = grown[i]; }
 };
 
 } // namespace molmesh::contour

@@ -13,7 +13,7 @@ namespace molmesh::contour {
 struct Sets {
   uint32_t* parent;
 
-  HD uint32_t find(uint32_t v) const {
+  MOLMESH_HD uint32_t find(uint32_t v) const {
     for (uint32_t p = par::seen(parent[v]); p != v; p = par::seen(parent[v])) {
       const uint32_t above = par::seen(parent[p]);
       if (above != p)
@@ -22,7 +22,7 @@ struct Sets {
     }
     return v;
   }
-  HD void join(uint32_t a, uint32_t b) const {
+  MOLMESH_HD void join(uint32_t a, uint32_t b) const {
     for (a = find(a), b = find(b); a != b; a = find(a), b = find(b)) {
       const uint32_t high = a > b ? a : b, low = a > b ? b : a, was = par::lower(parent[high], low);
       if (was == high)
@@ -34,7 +34,7 @@ struct Sets {
 };
 struct StartSets {
   uint32_t* parent;
-  HD void operator()(int64_t v) const { parent[v] = static_cast<uint32_t>(v); }
+  MOLMESH_HD void operator()(int64_t v) const { parent[v] = static_cast<uint32_t>(v); }
 };
 
 /// Joins the leaf's vertices that lie in one component.
@@ -42,7 +42,7 @@ struct JoinLeaves {
   ComplexView c;
   Sets sets;
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const auto leaf = static_cast<int32_t>(i);
     if (c.side[leaf] != Side::crossed) {
       for (int k = 1; k < 8; ++k)
@@ -68,9 +68,11 @@ struct JoinLeaves {
   }
 
 private:
-  HD int32_t vertex(int32_t leaf, int k) const { return c.corner_vertex(leaf, k); }
-  HD void join(int32_t a, int32_t b) const { sets.join(static_cast<uint32_t>(a), static_cast<uint32_t>(b)); }
-  HD void join_if_same(int32_t a, int32_t b) const {
+  MOLMESH_HD int32_t vertex(int32_t leaf, int k) const { return c.corner_vertex(leaf, k); }
+  MOLMESH_HD void join(int32_t a, int32_t b) const {
+    sets.join(static_cast<uint32_t>(a), static_cast<uint32_t>(b));
+  }
+  MOLMESH_HD void join_if_same(int32_t a, int32_t b) const {
     if (c.inside(a) == c.inside(b))
       join(a, b);
   }
@@ -85,7 +87,7 @@ struct ComponentStart {
 struct GatherComponents {
   ComplexView c;
   const uint32_t* parent;
-  HD int64_t operator()(int64_t v, ComponentStart* out) const {
+  MOLMESH_HD int64_t operator()(int64_t v, ComponentStart* out) const {
     if (parent[v] != v)
       return 0;
     if (out)
@@ -96,7 +98,7 @@ struct GatherComponents {
 struct NumberComponents {
   const ComponentStart* start;
   int32_t* part;
-  HD void operator()(int64_t i) const { par::put(part[start[i].vertex], static_cast<int32_t>(i)); }
+  MOLMESH_HD void operator()(int64_t i) const { par::put(part[start[i].vertex], static_cast<int32_t>(i)); }
 };
 /// part: [vertices] those that name a component have its number; -1 for dual vertices. at_wall: [components]
 struct LabelComponents {
@@ -104,7 +106,7 @@ struct LabelComponents {
   Sets sets;
   int32_t* part;
   uint8_t* at_wall;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const auto v = static_cast<int32_t>(i);
     const int32_t leaf = c.leaf_of(v);
     if (leaf >= 0 && c.split[leaf] != v) // neither a grid point nor a split cell's centre
@@ -128,7 +130,7 @@ struct ComponentSurfaces {
   const int32_t* part;
   LatticeView lattice;
   /// The grid's first point: a far wall's corner would leave a small component's volume to rounding.
-  HD Vec3d origin() const {
+  MOLMESH_HD Vec3d origin() const {
     Vec3i p;
     for (int a = 0; a < 3; ++a)
       p[a] = lattice.grid_first[a] < 0                  ? 0
@@ -136,7 +138,7 @@ struct ComponentSurfaces {
                                                         : lattice.grid_first[a];
     return lattice.position(p);
   }
-  HD int64_t operator()(int64_t i, ComponentSurface* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, ComponentSurface* out) const {
     const Vec3d from = origin();
     ComponentSurface now{-1, -1, 0};
     int64_t n = 0;
@@ -162,7 +164,7 @@ struct SetRegions {
   const int32_t* part;
   const uint8_t* region_of;
   uint8_t* region;
-  HD void operator()(int64_t v) const { region[v] = part[v] < 0 ? uint8_t{0} : region_of[part[v]]; }
+  MOLMESH_HD void operator()(int64_t v) const { region[v] = part[v] < 0 ? uint8_t{0} : region_of[part[v]]; }
 };
 
 } // namespace molmesh::contour

@@ -17,7 +17,7 @@ struct NearSurface {
   bool on_surface; ///< else it is bound to nothing
   double most;
 
-  HD bool operator()(Vec3d& y) const {
+  MOLMESH_HD bool operator()(Vec3d& y) const {
     double distance;
     Vec3d normal;
     return !on_surface || (surface.probe(y, distance, normal) && pull(distance, normal, y));
@@ -41,7 +41,7 @@ struct NearSurface {
   }
 
 private:
-  HD bool pull(double distance, Vec3d normal, Vec3d& y) const {
+  MOLMESH_HD bool pull(double distance, Vec3d normal, Vec3d& y) const {
     constexpr double least_normal = 0.25; // square of the normal's component within a wall
     if (std::fabs(distance) <= most)
       return true;
@@ -59,8 +59,8 @@ template <class Surface, class Star>
 struct NearSurfaceByTeam {
   const NearSurface<Surface>& one;
   const Star& star;
-  HD bool operator()(Vec3d& y) const { return one(y); }
-  HD int all(Vec3d* y, int n) const { return one.on_surface ? star.constrain_all(one, y, n) : n; }
+  MOLMESH_HD bool operator()(Vec3d& y) const { return one(y); }
+  MOLMESH_HD int all(Vec3d* y, int n) const { return one.on_surface ? star.constrain_all(one, y, n) : n; }
 };
 
 /// most_distance: of a surface vertex from the surface, in its spacings, if it was nearer. Star, of candidate c:
@@ -68,7 +68,8 @@ struct NearSurfaceByTeam {
 /// which puts the vertex there unless an element is no better than `worst`, in double precision, or not positive by
 /// the exact predicate; it may have constrain_all(constrain, y, n), as pattern_search's constrain.all.
 template <class Surface, class Star>
-HD bool move_vertex(const RelaxView& r, const Surface& surface, double most_distance, int32_t c, Star& star) {
+MOLMESH_HD bool move_vertex(const RelaxView& r, const Surface& surface, double most_distance, int32_t c,
+                            Star& star) {
   const int32_t vertex = r.vertex[c];
   Vec3d x = r.e.position[vertex];
   const bool on_surface = r.bound.on_surface(vertex);

@@ -15,7 +15,7 @@ struct LatticeClasses {
   static constexpr uint8_t unmeshed = 0x80;
   ComplexView c;
   uint8_t* of;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const auto v = static_cast<int32_t>(i), leaf = c.leaf_of(v);
     const bool is_unmeshed = c.unmeshed == (c.inside(v) ? Side::inside : Side::outside);
     uint8_t is = 0;
@@ -32,15 +32,15 @@ struct ElementClasses {
   const uint8_t* lattice_class; ///< LatticeClasses
   int64_t known;                ///< of the vertices
 
-  HD bool is_meshed(const Tet& t) const { return !(class_of(t[0]) & LatticeClasses::unmeshed); }
+  MOLMESH_HD bool is_meshed(const Tet& t) const { return !(class_of(t[0]) & LatticeClasses::unmeshed); }
   /// The lattice's own elements need no look: an edge of it with the middles of two boxes of one size.
-  HD bool of_lattice(const Tet& t) const {
+  MOLMESH_HD bool of_lattice(const Tet& t) const {
     const uint8_t dual = class_of(t[2]); // near the surface this one says it
     return dual >= 2 && class_of(t[3]) == dual && class_of(t[0]) == 1 && class_of(t[1]) == 1;
   }
 
 private:
-  HD uint8_t class_of(int32_t vertex) const { return vertex < known ? lattice_class[vertex] : uint8_t{0}; }
+  MOLMESH_HD uint8_t class_of(int32_t vertex) const { return vertex < known ? lattice_class[vertex] : uint8_t{0}; }
 };
 
 /// An element on the side that is not meshed has to stay positive, and is left alone where its sines are a quarter
@@ -52,25 +52,25 @@ struct Qualities {
   ElementClasses classes;
   double shape; ///< of Q, as tet_quality has it
   float* quality;
-  HD void operator()(int64_t t) const {
+  MOLMESH_HD void operator()(int64_t t) const {
     const Tet& v = e.tet[t];
     quality[t] = classes.of_lattice(v) ? 1
                                        : weighted(v, tet_quality(e.position[v[0]], e.position[v[1]],
                                                                  e.position[v[2]], e.position[v[3]], shape));
   }
-  HD float weighted(const Tet& t, float q) const { return classes.is_meshed(t) ? q : unmeshed_weight * q; }
+  MOLMESH_HD float weighted(const Tet& t, float q) const { return classes.is_meshed(t) ? q : unmeshed_weight * q; }
 };
 
 /// What a vertex is bound to, by 4 flags: a wall across x, y, z, and the surface.
 struct Bounds {
   uint8_t* flag;
-  HD bool on_wall(int64_t vertex, int axis) const { return flag[4 * vertex + axis]; }
-  HD bool on_surface(int64_t vertex) const { return flag[4 * vertex + 3]; }
+  MOLMESH_HD bool on_wall(int64_t vertex, int axis) const { return flag[4 * vertex + axis]; }
+  MOLMESH_HD bool on_surface(int64_t vertex) const { return flag[4 * vertex + 3]; }
 };
 struct RaiseBounds {
   ElementsView e;
   Bounds bound;
-  HD void operator()(int64_t t) const {
+  MOLMESH_HD void operator()(int64_t t) const {
     const int32_t label = e.boundary[t];
     const int which = label == surface ? 3 : (label - box_x0) / 2;
     for (size_t c = 0; c < 3; ++c)
@@ -98,10 +98,10 @@ struct RelaxView {
   int32_t* moves;           ///< [candidates] how often it has moved
 
   /// Candidates that share an element with candidate c, some more than once, up to the first -1.
-  HD const int32_t* neighbours(int64_t c) const { return neighbour + 3 * first[c] + c; }
+  MOLMESH_HD const int32_t* neighbours(int64_t c) const { return neighbour + 3 * first[c] + c; }
 
   /// Of candidate c, where an element may have changed.
-  HD void update_worst(int64_t c) const {
+  MOLMESH_HD void update_worst(int64_t c) const {
     if (!changed[c])
       return;
     float w = 1;
@@ -128,7 +128,7 @@ struct WantVertices {
   const int32_t* number; ///< [vertices] of the pass before, where there was one
   uint8_t* wanted;       ///< [vertices]
   uint8_t* has_new;      ///< raised where one was no candidate before
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const int64_t begin = run * i, end = begin + run < n ? begin + run : n;
     if (!near && end == begin + run && !any_bad(quality + begin))
       return;
@@ -137,13 +137,13 @@ struct WantVertices {
   }
 
 private:
-  HD bool any_bad(const float* of_run) const {
+  MOLMESH_HD bool any_bad(const float* of_run) const {
     int bad = 0; // no branches: most runs have none
     for (int64_t k = 0; k < run; ++k)
       bad |= of_run[k] < goal;
     return bad;
   }
-  HD void want(int64_t t) const {
+  MOLMESH_HD void want(int64_t t) const {
     for (size_t c = 0; quality[t] < goal && c < 4; ++c)
       if (const int32_t v = e.tet[t][c]; surface_moves || !bound.on_surface(v)) {
         par::raise(wanted[v]);
@@ -154,7 +154,7 @@ private:
 };
 
 /// Whose turn it is: another order in each round, lest one vertex that creeps holds up its neighbours.
-HD inline uint32_t turn(int32_t candidate, int round) {
+MOLMESH_HD inline uint32_t turn(int32_t candidate, int round) {
   uint64_t h =
       static_cast<uint64_t>(candidate) * 0x9E3779B97F4A7C15u + static_cast<uint64_t>(round) * 0xC2B2AE3D27D4EB4Fu;
   h = (h ^ h >> 29) * 0x165667B19E3779F9u;
@@ -166,7 +166,7 @@ struct StartRound {
   RelaxView r;
   const int32_t* active;
   int round;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const int32_t c = active[i];
     r.update_worst(c);
     r.turn[c] = r.worst[c] < r.goal ? turn(c, round) : RelaxView::at_rest;
@@ -183,10 +183,10 @@ struct ChooseFirst {
   RelaxView r;
   const int32_t* active;
   Fate* fate;
-  HD void operator()(int64_t i) const { fate[i] = is_first(active[i]) ? Fate::stays : Fate::waits; }
+  MOLMESH_HD void operator()(int64_t i) const { fate[i] = is_first(active[i]) ? Fate::stays : Fate::waits; }
 
 private:
-  HD bool is_first(int32_t c) const {
+  MOLMESH_HD bool is_first(int32_t c) const {
     const uint32_t mine = r.turn[c];
     if (mine == RelaxView::at_rest)
       return false;
@@ -202,7 +202,7 @@ struct WakeNeighbours {
   RelaxView r;
   const int32_t* active;
   const Fate* fate;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const int32_t c = active[i];
     if (fate[i] == Fate::waits && r.turn[c] != RelaxView::at_rest)
       par::raise(r.wakes[c]);

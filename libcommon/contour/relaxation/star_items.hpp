@@ -12,12 +12,12 @@ namespace molmesh::contour {
 struct NumberCandidates {
   const int32_t* vertex;
   int32_t* number;
-  HD void operator()(int64_t i) const { number[vertex[i]] = static_cast<int32_t>(i); }
+  MOLMESH_HD void operator()(int64_t i) const { number[vertex[i]] = static_cast<int32_t>(i); }
 };
 struct ForgetCandidates {
   const int32_t* vertex;
   int32_t* number;
-  HD void operator()(int64_t i) const { number[vertex[i]] = -1; }
+  MOLMESH_HD void operator()(int64_t i) const { number[vertex[i]] = -1; }
 };
 /// Elements at a wanted vertex.
 struct NearTets {
@@ -25,7 +25,7 @@ struct NearTets {
   const Tet* tet;
   const uint8_t* wanted;
   const int32_t* among; ///< null: all
-  HD int64_t operator()(int64_t i, int32_t* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, int32_t* out) const {
     const int64_t t = among ? among[i] : i;
     const Tet& v = tet[t];
     if (out) // wanted or not, since there is no telling: the next one takes the place
@@ -42,7 +42,7 @@ struct DescribeNear {
   const float* quality;
   const int32_t *near, *number;
   NearElement* out;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const Tet& t = tet[near[i]];
     out[i] = {{number[t[0]], number[t[1]], number[t[2]], number[t[3]]}, quality[near[i]]};
   }
@@ -50,13 +50,13 @@ struct DescribeNear {
 /// Corner i % 4 of near element i / 4.
 struct CornerCandidate {
   const NearElement* element;
-  HD int64_t operator()(int64_t i) const { return element[i >> 2].corner[i & 3]; }
+  MOLMESH_HD int64_t operator()(int64_t i) const { return element[i >> 2].corner[i & 3]; }
 };
 /// In the order of the candidates, then of the elements.
 struct PlaceStars {
   CornerCandidate of;
   int32_t *near_index, *owner;
-  HD void operator()(int64_t slot, int64_t i) const {
+  MOLMESH_HD void operator()(int64_t slot, int64_t i) const {
     near_index[slot] = static_cast<int32_t>(i >> 2);
     owner[slot] = static_cast<int32_t>(of(i));
   }
@@ -65,7 +65,7 @@ struct PlaceStars {
 struct FirstOfStars {
   const int32_t* owner;
   int64_t* first;
-  HD void operator()(int64_t slot) const {
+  MOLMESH_HD void operator()(int64_t slot) const {
     for (int32_t c = slot == 0 ? 0 : owner[slot - 1] + 1; c <= owner[slot]; ++c)
       first[c] = slot;
   }
@@ -79,7 +79,7 @@ struct ListNeighbours {
   int32_t* element;             ///< places in `near` become elements
   int32_t* neighbour;           ///< as RelaxView has it
   float* worst;
-  HD void operator()(int64_t c) const {
+  MOLMESH_HD void operator()(int64_t c) const {
     constexpr int32_t kept = 16; // of those named last, which need not be named again
     int32_t last[kept];
     for (int32_t& j : last)

@@ -10,13 +10,13 @@
 namespace molmesh::contour {
 
 /// Corner c of a cell lies here, from its lower corner.
-HD constexpr Vec3i corner_step(int c) {
+MOLMESH_HD constexpr Vec3i corner_step(int c) {
   return {c & 1, c >> 1 & 1, c >> 2 & 1};
 }
 
 /// Corner i of face f, counter-clockwise seen from outside the cell. Faces: 0..5 = -x, +x, -y, +y, -z, +z.
 /// A function: a device cannot see the table below.
-HD constexpr int face_corner_of(int f, int i) {
+MOLMESH_HD constexpr int face_corner_of(int f, int i) {
   return (f == 0   ? 0x2640
           : f == 1 ? 0x5731
           : f == 2 ? 0x4510
@@ -32,7 +32,7 @@ HD constexpr int face_corner_of(int f, int i) {
 enum class Diagonal : uint8_t { none, even, odd };
 
 /// Corners at either end of face f's diagonal d: 0 and 2, or 1 and 3, in face order.
-HD constexpr std::array<int, 2> diagonal_corners(int f, Diagonal d) {
+MOLMESH_HD constexpr std::array<int, 2> diagonal_corners(int f, Diagonal d) {
   const int first = d == Diagonal::even ? 0 : 1;
   return {face_corner_of(f, first), face_corner_of(f, first + 2)};
 }
@@ -47,19 +47,19 @@ struct CellTopology {
   /// function joins. With `chop` ≥ 0 that corner (an isolated one) is cut off first.
   bool centre_inside = false;
   int chop = -1;
-  HD bool split() const { return loops > 1; }
+  MOLMESH_HD bool split() const { return loops > 1; }
 };
 
 /// A corner's value minus the isovalue, never 0: a corner at the isovalue is outside, and so counts as below it by
 /// less than any other float is.
-HD inline double over_isovalue(float value, float isovalue) {
+MOLMESH_HD inline double over_isovalue(float value, float isovalue) {
   constexpr double least = 1e-9; // of the isovalue, > 0; floats differ from it by 3e-8 and more
   const double over = double(value) - double(isovalue);
   return over != 0 ? over : -least * double(isovalue);
 }
 
 /// Which diagonal a face with these values (in face order, minus the isovalue) needs. The same for both its cells.
-HD inline Diagonal face_diagonal(double a, double b, double c, double d) {
+MOLMESH_HD inline Diagonal face_diagonal(double a, double b, double c, double d) {
   const bool in = a > 0;
   if ((c > 0) != in || (b > 0) == in || (d > 0) == in)
     return Diagonal::none;
@@ -72,16 +72,16 @@ HD inline Diagonal face_diagonal(double a, double b, double c, double d) {
 template <int N>
 struct SmallSets {
   int parent[N];
-  HD SmallSets() {
+  MOLMESH_HD SmallSets() {
     for (int i = 0; i < N; ++i)
       parent[i] = i;
   }
-  HD int find(int i) const {
+  MOLMESH_HD int find(int i) const {
     while (parent[i] != i)
       i = parent[i];
     return i;
   }
-  HD void join(int a, int b) {
+  MOLMESH_HD void join(int a, int b) {
     a = find(a), b = find(b);
     if (a < b)
       parent[b] = a;
@@ -91,7 +91,7 @@ struct SmallSets {
 };
 
 /// Labels of the sets that the cell's boundary (edges and diagonals) joins.
-HD inline std::array<int, 8> boundary_components(uint8_t mask, const std::array<Diagonal, 6>& diagonal) {
+MOLMESH_HD inline std::array<int, 8> boundary_components(uint8_t mask, const std::array<Diagonal, 6>& diagonal) {
   SmallSets<8> set;
   for (int a = 0; a < 8; ++a)
     for (int bit = 1; bit < 8; bit *= 2)
@@ -109,8 +109,8 @@ HD inline std::array<int, 8> boundary_components(uint8_t mask, const std::array<
 }
 
 /// The boundary labels after everything on side `inside` is joined through the centre.
-HD inline std::array<int, 8> joined_through_centre(std::array<int, 8> label, uint8_t mask, bool inside,
-                                                   int except) {
+MOLMESH_HD inline std::array<int, 8> joined_through_centre(std::array<int, 8> label, uint8_t mask, bool inside,
+                                                           int except) {
   int first = -1;
   for (int c = 0; c < 8; ++c)
     if (c != except && (mask >> c & 1) == int(inside)) {
@@ -121,7 +121,7 @@ HD inline std::array<int, 8> joined_through_centre(std::array<int, 8> label, uin
   return label;
 }
 
-HD inline bool same_partition(const std::array<int, 8>& a, const std::array<int, 8>& b) {
+MOLMESH_HD inline bool same_partition(const std::array<int, 8>& a, const std::array<int, 8>& b) {
   for (int i = 0; i < 8; ++i)
     for (int j = 0; j < i; ++j)
       if ((a[i] == a[j]) != (b[i] == b[j]))
@@ -131,7 +131,7 @@ HD inline bool same_partition(const std::array<int, 8>& a, const std::array<int,
 
 /// For each corner a label: two inside (outside) corners carry the same label exactly when the inside (outside) of
 /// the trilinear function joins them within the cell. Labels are corner numbers.
-HD_CALL inline std::array<int, 8> trilinear_components(const double value[8]) {
+MOLMESH_HD_CALL inline std::array<int, 8> trilinear_components(const double value[8]) {
   // Slices of constant z carry a bilinear function of the four vertical lines. Their joins change only where a line
   // changes sign or where the saddle does: between such heights one slice speaks for all.
   double height[8] = {}; // 0, roots, 1
@@ -196,7 +196,7 @@ HD_CALL inline std::array<int, 8> trilinear_components(const double value[8]) {
   return label;
 }
 
-HD_CALL inline CellTopology cell_topology(const double value[8]) {
+MOLMESH_HD_CALL inline CellTopology cell_topology(const double value[8]) {
   CellTopology t;
   for (int c = 0; c < 8; ++c)
     t.mask = static_cast<uint8_t>(t.mask | (value[c] > 0) << c);
@@ -247,7 +247,7 @@ HD_CALL inline CellTopology cell_topology(const double value[8]) {
 }
 
 /// For each corner a label, as trilinear_components: of what the mesh joins within the cell.
-HD_CALL inline std::array<int, 8> joined_corners(const CellTopology& t) {
+MOLMESH_HD_CALL inline std::array<int, 8> joined_corners(const CellTopology& t) {
   const std::array<int, 8> boundary = boundary_components(t.mask, t.diagonal);
   return t.split() ? joined_through_centre(boundary, t.mask, t.centre_inside, t.chop) : boundary;
 }

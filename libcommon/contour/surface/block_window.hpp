@@ -8,7 +8,8 @@ namespace molmesh::contour {
 class BlockWindow {
 public:
   /// corner: lattice point; cells: 8 at most along each axis, whose points are read
-  HD BlockWindow(const LatticeView& lattice, Vec3i corner, int cells = 8) : lattice_(lattice), corner_(corner) {
+  MOLMESH_HD BlockWindow(const LatticeView& lattice, Vec3i corner, int cells = 8)
+      : lattice_(lattice), corner_(corner) {
     const Vec3i first = lattice.base + corner;
     offset_ = {first.x & 7, first.y & 7, first.z & 7};
     const int needed = (offset_.x + cells) >> 3 | (offset_.y + cells) >> 3 << 1 | (offset_.z + cells) >> 3 << 2;
@@ -17,14 +18,14 @@ public:
           (n & needed) == n ? lattice.index.find(first + 8 * Vec3i{n & 1, n >> 1 & 1, n >> 2}) : block_[n & needed];
   }
   /// No block of the grid holds one of the points, and all are on one side.
-  HD bool one_sided() const {
+  MOLMESH_HD bool one_sided() const {
     for (int n = 0; n < 8; ++n)
       if (block_[n] >= 0 || block_[n] != block_[0])
         return false;
     return !lattice_.any_cut;
   }
   /// Bit z of row (x, y), each 0 … 8.
-  HD uint32_t inside(int x, int y) const {
+  MOLMESH_HD uint32_t inside(int x, int y) const {
     uint32_t bits = row(lattice_.inside_words, x, y, true);
     if (lattice_.any_cut)
       for (int z = 0; z < 9; ++z)
@@ -33,7 +34,7 @@ public:
     return bits;
   }
   /// At the corners c = x + 2 y + 4 z of the cell there, 0 … 7 along each axis.
-  HD void corner_values(Vec3i cell, float v[8]) const {
+  MOLMESH_HD void corner_values(Vec3i cell, float v[8]) const {
     const Vec3i first = offset_ + cell;
     const auto block_of = [&](Vec3i p) { return block_[p.x >> 3 | p.y >> 3 << 1 | p.z >> 3 << 2]; };
     const int64_t b = block_of(first);
@@ -49,11 +50,11 @@ public:
                               : lattice_.value_in(block_of(first + step), first + step);
     }
   }
-  HD uint32_t active(int x, int y) const { return row(lattice_.active_words, x, y, false); }
+  MOLMESH_HD uint32_t active(int x, int y) const { return row(lattice_.active_words, x, y, false); }
 
 private:
   /// `constant`: what points of inside blocks have.
-  HD uint32_t row(const uint64_t* words, int x, int y, bool constant) const {
+  MOLMESH_HD uint32_t row(const uint64_t* words, int x, int y, bool constant) const {
     const int px = offset_.x + x, py = offset_.y + y, n = px >> 3 | py >> 3 << 1;
     const auto byte = [&](int64_t block) {
       return block >= 0 ? static_cast<uint32_t>(words[8 * block + (px & 7)] >> 8 * (py & 7)) & 0xFF

@@ -25,14 +25,14 @@ struct SplitCell {
   struct Patches {
     Patch item[13];
     int n = 0;
-    HD const Patch* begin() const { return item; }
-    HD const Patch* end() const { return item + n; }
+    MOLMESH_HD const Patch* begin() const { return item; }
+    MOLMESH_HD const Patch* end() const { return item + n; }
   };
   CellTopology topology;
   Patches patch;
   int pieces = 0; ///< without the chopped corner
 
-  HD explicit SplitCell(const CellTopology& t) : topology(t) {
+  MOLMESH_HD explicit SplitCell(const CellTopology& t) : topology(t) {
     for (int f = 0; f < 6; ++f) {
       const int c[4] = {face_corner_of(f, 0), face_corner_of(f, 1), face_corner_of(f, 2), face_corner_of(f, 3)};
       if (t.diagonal[f] == Diagonal::none) {
@@ -52,7 +52,7 @@ struct SplitCell {
   }
 
 private:
-  HD void add(Patch p) {
+  MOLMESH_HD void add(Patch p) {
     bool chopped = false;
     for (int i = 0; p.face >= 0 && topology.chop >= 0 && i < p.n; ++i)
       chopped = chopped || p.corner[i] == topology.chop;

@@ -22,8 +22,8 @@ struct SurfaceSample {
 /// b: log G is interpolated, since G falls exponentially. Kept away from both ends. log_a: of a / isovalue. V:
 /// double, or one of the compiler's vectors of them.
 template <class V>
-HD __attribute__((always_inline)) inline void crossing_shares(const V& a, const V& b, const V& log_a,
-                                                              const V& log_b, double isovalue, V& share) {
+MOLMESH_HD __attribute__((always_inline)) inline void crossing_shares(const V& a, const V& b, const V& log_a,
+                                                                      const V& log_b, double isovalue, V& share) {
   constexpr double end = 0.02; // of an edge between its end and a crossing
   const auto logarithmic = (a > 0) & (b > 0);
   const V fa = logarithmic ? log_a : a - isovalue, fb = logarithmic ? log_b : b - isovalue;
@@ -31,7 +31,7 @@ HD __attribute__((always_inline)) inline void crossing_shares(const V& a, const 
   const V s = fa == fb ? half : fa / (fa - fb), not_above = s > most ? most : s;
   share = s < least ? least : not_above;
 }
-HD inline double crossing_share(double a, double b, double isovalue) {
+MOLMESH_HD inline double crossing_share(double a, double b, double isovalue) {
   const bool logarithmic = a > 0 && b > 0;
   double share;
   crossing_shares(a, b, logarithmic ? portable_log(a / isovalue) : 0, logarithmic ? portable_log(b / isovalue) : 0,
@@ -42,8 +42,8 @@ HD inline double crossing_share(double a, double b, double isovalue) {
 /// Of a cell in each lane. value: [8] at corner c = x + 2 y + 4 z. point: within the cell, in fine spacings;
 /// gradient: of G, times 4.
 template <class V, class U>
-HD __attribute__((always_inline)) inline void sample_cells(const V* value, double isovalue, V (&point)[3],
-                                                           V (&gradient)[3]) {
+MOLMESH_HD __attribute__((always_inline)) inline void sample_cells(const V* value, double isovalue, V (&point)[3],
+                                                                   V (&gradient)[3]) {
   V logarithm[8]; // anything where a value is not positive
   for (int c = 0; c < 8; ++c)
     portable_logs<V, U>(isovalue == 1 ? value[c] : value[c] / isovalue, logarithm[c]); // it mostly is

@@ -15,7 +15,7 @@ namespace molmesh::contour {
 struct CoveredBlocks {
   LatticeView l;
   const Vec3i* corner;
-  HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
     const int32_t below = l.any_cut ? 2 : 1, above = l.any_cut ? 8 : 7;
     const Vec3i p = corner[i] - l.base;
     Vec3i first, last;
@@ -41,7 +41,7 @@ struct CrossedCells {
   int64_t* failed;   ///< [blocks] 1: it has such a cell,
   uint64_t* culprit; ///< [blocks] with this key
 
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const Vec3i corner = morton_point(block[i].key << 9), cells = l.cells - corner;
     const BlockWindow window(l, corner);
     uint64_t* const out = crossed + 8 * i;
@@ -75,7 +75,7 @@ struct CrossedCells {
 
 private:
   /// Cells z … z + 7 of row (x, y) beside a wall that cuts the grid.
-  HD uint32_t interpolated(Vec3i p) const {
+  MOLMESH_HD uint32_t interpolated(Vec3i p) const {
     if (!l.any_cut)
       return 0;
     uint32_t cut = 0;
@@ -83,7 +83,7 @@ private:
       cut |= uint32_t{l.on_cut(p + Vec3i{0, 0, z}) || l.on_cut(p + Vec3i{1, 1, z + 1})} << z;
     return cut;
   }
-  HD static void add(uint64_t* out, int x, int y, uint32_t row) {
+  MOLMESH_HD static void add(uint64_t* out, int x, int y, uint32_t row) {
     const auto spread = [](uint64_t four) {
       return (four & 1) | (four & 2) << 3 | (four & 4) << 30 | (four & 8) << 33;
     };
@@ -98,7 +98,7 @@ struct MakeSurfaceCells {
   LatticeView l;
   const par::KeyedWord* block;
   const uint64_t* crossed;
-  HD int64_t operator()(int64_t i, SurfaceCell* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, SurfaceCell* out) const {
     if (out && crossed[i]) {
       const uint64_t first = block[i >> 3].key << 9 | static_cast<uint64_t>(i & 7) << 6;
       const BlockWindow window(l, morton_point(first), 4);
@@ -114,7 +114,7 @@ struct MakeSurfaceCells {
 };
 
 /// point: within the cell; gradient: in its direction.
-HD inline SurfaceSample sample_of(const SurfaceCell& cell, Vec3d point, Vec3d gradient) {
+MOLMESH_HD inline SurfaceSample sample_of(const SurfaceCell& cell, Vec3d point, Vec3d gradient) {
   const double length = norm(gradient);
   return {to_double(morton_point(cell.key)) + point, length > 0 ? gradient / length : Vec3d{}};
 }
@@ -123,7 +123,7 @@ struct MakeSamples {
   const SurfaceCell* cell;
   double isovalue;
   SurfaceSample* sample;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     double v[8], point[3], gradient[3];
     for (int c = 0; c < 8; ++c)
       v[c] = cell[i].value[c];

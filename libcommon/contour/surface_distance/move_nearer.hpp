@@ -12,7 +12,7 @@ public:
 
   /// Of candidate c, which has `most` triangles at most.
   template <class Surface>
-  HD TriangleFan(const NearerView& v, const Surface& surface, int32_t c)
+  MOLMESH_HD TriangleFan(const NearerView& v, const Surface& surface, int32_t c)
       : triangle_(v.triangle + v.first[c]), n_(v.first[c + 1] - v.first[c]), x_(v.r.e.position[v.r.vertex[c]]),
         spacing_(surface.spacing()) {
     for (int64_t k = 0; k < n_; ++k) {
@@ -31,11 +31,11 @@ public:
         way_ += (distance < 0 ? off_[k] - CentroidDistance::least : CentroidDistance::least - off_[k]) * normal_[k];
     }
   }
-  HD double cost() const { return cost_; }
-  HD Vec3d way() const { return way_; } ///< along which the cost falls fastest
+  MOLMESH_HD double cost() const { return cost_; }
+  MOLMESH_HD Vec3d way() const { return way_; } ///< along which the cost falls fastest
 
   /// The cost with the vertex at y, to first order; `enough` where it is that or more, or a triangle gets out.
-  HD double expected(Vec3d y, double enough) const {
+  MOLMESH_HD double expected(Vec3d y, double enough) const {
     double sum = 0;
     for (int64_t k = 0; k < n_; ++k) {
       if (!known_[k])
@@ -49,7 +49,7 @@ public:
   }
   /// How far the triangles are off with the vertex at y. False where they cost `enough` or one gets out.
   template <class Surface>
-  HD bool measure(const Surface& surface, Vec3d y, double enough, float* off) const {
+  MOLMESH_HD bool measure(const Surface& surface, Vec3d y, double enough, float* off) const {
     double sum = 0;
     for (int64_t k = 0; k < n_; ++k) {
       off[k] = CentroidDistance::of(surface, centroid(k, y));
@@ -59,15 +59,15 @@ public:
     }
     return true;
   }
-  HD void keep(const NearerView& v, const float* off) const {
+  MOLMESH_HD void keep(const NearerView& v, const float* off) const {
     for (int64_t k = 0; k < n_; ++k)
       v.off[triangle_[k]] = off[k];
   }
 
 private:
   /// No triangle that was near becomes far, and none that is far gets farther.
-  HD bool gets_out(int64_t k, float off) const { return off > CentroidDistance::most && off > off_[k]; }
-  HD Vec3d centroid(int64_t k, Vec3d x) const { return (rest_[k] + x) / 3.; }
+  MOLMESH_HD bool gets_out(int64_t k, float off) const { return off > CentroidDistance::most && off > off_[k]; }
+  MOLMESH_HD Vec3d centroid(int64_t k, Vec3d x) const { return (rest_[k] + x) / 3.; }
 
   const int32_t* triangle_;
   int64_t n_;
@@ -86,9 +86,9 @@ class NearerPlaces {
 public:
   static constexpr int steps = 4, directions = 14;
 
-  HD NearerPlaces(const TriangleFan& fan, Vec3d x, double spacing, double enough)
+  MOLMESH_HD NearerPlaces(const TriangleFan& fan, Vec3d x, double spacing, double enough)
       : fan_(fan), x_(x), spacing_(spacing), enough_(enough) {}
-  HD void try_along(Vec3d direction, double length) {
+  MOLMESH_HD void try_along(Vec3d direction, double length) {
     constexpr double first = 0.9; // in spacings
     double step = first * spacing_;
     for (int s = 0; s < steps; ++s, step *= 0.5) {
@@ -105,9 +105,9 @@ public:
       place_[k] = y;
     }
   }
-  HD int size() const { return n_; }
-  HD const Vec3d& operator[](int k) const { return place_[k]; }
-  HD void clear() { n_ = 0; }
+  MOLMESH_HD int size() const { return n_; }
+  MOLMESH_HD const Vec3d& operator[](int k) const { return place_[k]; }
+  MOLMESH_HD void clear() { n_ = 0; }
 
 private:
   const TriangleFan& fan_;
@@ -122,7 +122,7 @@ private:
 /// where one of them is below it, below that one; no vertex goes farther from the isosurface than 0.45 spacings, or
 /// than it is.
 template <class Surface, class Star>
-HD bool move_nearer(const NearerView& v, const Surface& surface, int32_t c, Star& star) {
+MOLMESH_HD bool move_nearer(const NearerView& v, const Surface& surface, int32_t c, Star& star) {
   constexpr double most_distance = 0.45, slack = 1.01, least_gain = 0.1;
   const RelaxView& r = v.r;
   const int32_t vertex = r.vertex[c];
@@ -175,7 +175,7 @@ HD bool move_nearer(const NearerView& v, const Surface& surface, int32_t c, Star
 
 /// Or, off the surface, to where its worst element is better.
 template <class Surface, class Star>
-HD bool move_nearer_or_make_room(const NearerView& v, const Surface& surface, int32_t c, Star& star) {
+MOLMESH_HD bool move_nearer_or_make_room(const NearerView& v, const Surface& surface, int32_t c, Star& star) {
   if (v.r.bound.on_surface(v.r.vertex[c]))
     return move_nearer(v, surface, c, star);
   RelaxView better = v.r;

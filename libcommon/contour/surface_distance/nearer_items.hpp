@@ -15,14 +15,14 @@ struct CentroidDistance {
   static constexpr float of_a_wall = -1; ///< such a triangle is left alone
 
   /// What moves and divisions lower.
-  HD static double cost(float off) {
+  MOLMESH_HD static double cost(float off) {
     const double more = off > least ? double(off) - least : 0;
     return more * more;
   }
 
   /// Of the place c, whose distance (Å) to first order it is.
   template <class Surface>
-  HD static float measured(const Surface& surface, Vec3d c, double distance) {
+  MOLMESH_HD static float measured(const Surface& surface, Vec3d c, double distance) {
     const double spacing = surface.spacing();
     const auto off = static_cast<float>(std::fabs(distance) / spacing);
     Vec3d foot = c;
@@ -31,7 +31,7 @@ struct CentroidDistance {
     return off < beyond ? off : beyond;
   }
   template <class Surface>
-  HD static float of(const Surface& surface, Vec3d c) {
+  MOLMESH_HD static float of(const Surface& surface, Vec3d c) {
     double distance;
     Vec3d normal;
     return surface.probe(c, distance, normal) ? measured(surface, c, distance) : beyond;
@@ -44,19 +44,19 @@ struct MeasureTriangles {
   ElementsView e;
   Surface isosurface;
   float* off; ///< [tris]
-  HD void operator()(int64_t t) const {
+  MOLMESH_HD void operator()(int64_t t) const {
     off[t] = is_surface(t) ? CentroidDistance::of(isosurface, centroid(t)) : CentroidDistance::of_a_wall;
   }
-  HD bool is_surface(int64_t t) const { return e.boundary[t] == surface; }
-  HD Vec3d centroid(int64_t t) const { return (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.; }
+  MOLMESH_HD bool is_surface(int64_t t) const { return e.boundary[t] == surface; }
+  MOLMESH_HD Vec3d centroid(int64_t t) const { return (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.; }
 
 private:
-  HD const Vec3d& corner(int64_t t, size_t i) const { return e.position[e.tri[t][i]]; }
+  MOLMESH_HD const Vec3d& corner(int64_t t, size_t i) const { return e.position[e.tri[t][i]]; }
 };
 struct FarTriangles {
   const float* off;
   const int32_t* among; ///< null: all
-  HD int64_t operator()(int64_t i, int32_t* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, int32_t* out) const {
     const int64_t t = among ? among[i] : i;
     if (off[t] > CentroidDistance::most && out)
       *out = static_cast<int32_t>(t);
@@ -70,7 +70,7 @@ struct WantCorners {
   const Cell* cell;
   const int32_t* which;
   uint8_t* wanted; ///< [vertices]
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     for (const int32_t v : cell[which[i]])
       par::raise(wanted[v]);
   }
@@ -81,7 +81,7 @@ struct NearTriangles {
   ElementsView e;
   const uint8_t* wanted;
   const int32_t* among; ///< null: all
-  HD int64_t operator()(int64_t i, int32_t* out) const {
+  MOLMESH_HD int64_t operator()(int64_t i, int32_t* out) const {
     const int64_t t = among ? among[i] : i;
     const Tri& v = e.tri[t];
     if (out) // wanted or not, since there is no telling: the next one takes the place
@@ -93,13 +93,13 @@ struct NearTriangles {
 struct TriangleCandidate {
   const Tri* tri;
   const int32_t *near, *number;
-  HD int64_t operator()(int64_t i) const { return number[tri[near[i / 3]][i % 3]]; }
+  MOLMESH_HD int64_t operator()(int64_t i) const { return number[tri[near[i / 3]][i % 3]]; }
 };
 /// In the order of the candidates, then of the triangles.
 struct PlaceTriangleStars {
   TriangleCandidate of;
   int32_t *triangle, *owner;
-  HD void operator()(int64_t slot, int64_t i) const {
+  MOLMESH_HD void operator()(int64_t slot, int64_t i) const {
     triangle[slot] = of.near[i / 3];
     owner[slot] = static_cast<int32_t>(of(i));
   }
@@ -119,7 +119,7 @@ struct StartNearer {
   NearerView v;
   const int32_t* active;
   int round;
-  HD void operator()(int64_t i) const {
+  MOLMESH_HD void operator()(int64_t i) const {
     const int32_t c = active[i];
     v.r.update_worst(c);
     v.r.turn[c] = wants(c) ? turn(c, round) : RelaxView::at_rest;
@@ -127,7 +127,7 @@ struct StartNearer {
   }
 
 private:
-  HD bool wants(int32_t c) const {
+  MOLMESH_HD bool wants(int32_t c) const {
     if (!v.r.bound.on_surface(v.r.vertex[c]))
       return v.r.worst[c] < v.room;
     for (int64_t k = v.first[c]; k < v.first[c + 1]; ++k)

@@ -14,7 +14,7 @@ struct Box {
 };
 
 /// Squared distance between two boxes, Å²; 0 when they touch.
-HD inline double distance2(const Box& a, const Box& b) {
+MOLMESH_HD inline double distance2(const Box& a, const Box& b) {
   double sum = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double below = a.lo[axis] - b.hi[axis], above = b.lo[axis] - a.hi[axis];

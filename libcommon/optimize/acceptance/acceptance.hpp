@@ -19,7 +19,7 @@ struct Fit {
 
 /// Deficit of an element below the goal: goal / q - 1 when the worst matter most, (1 - q / goal)² when all do;
 /// nothing where only the worst element counts, and from the goal on. Host and device.
-HD inline float deficit(float q, float goal, bool worst_first, const Guard& guard) {
+MOLMESH_HD inline float deficit(float q, float goal, bool worst_first, const Guard& guard) {
   return q >= goal || guard.lift > 0 ? 0
          : worst_first               ? goal / (q > 1e-4f ? q : 1e-4f) - 1
                                      : (1 - q / goal) * (1 - q / goal);

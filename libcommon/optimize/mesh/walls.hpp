@@ -11,7 +11,7 @@ struct Walls {
   double rounding = 0; ///< Å: how far points of one wall may lie apart
 
   /// No nearer to a wall than `apart` (Å), or than it was at `from`.
-  HD bool allow(Vec3d from, Vec3d to, double apart) const {
+  MOLMESH_HD bool allow(Vec3d from, Vec3d to, double apart) const {
     bool clear = true;
     for (int a = 0; a < 3; ++a) {
       const double above = from[a] - low[a], below = high[a] - from[a];
@@ -21,14 +21,14 @@ struct Walls {
     return clear;
   }
   /// No nearer to a wall than `apart`.
-  HD bool clear(Vec3d at, double apart) const {
+  MOLMESH_HD bool clear(Vec3d at, double apart) const {
     bool far = true;
     for (int a = 0; a < 3; ++a)
       far = far && at[a] - low[a] >= apart && high[a] - at[a] >= apart;
     return far;
   }
   /// The triangle lies in one.
-  HD bool hold(Vec3d p, Vec3d q, Vec3d r) const {
+  MOLMESH_HD bool hold(Vec3d p, Vec3d q, Vec3d r) const {
     bool in = false;
     for (int a = 0; a < 3; ++a) {
       const double at_low = low[a] + rounding, at_high = high[a] - rounding;

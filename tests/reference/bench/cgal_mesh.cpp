@@ -1,4 +1,5 @@
 // cgal_mesh.cpp — Labeled_mesh_domain_3 on a function, default refinement.
+#include "cgal_mesh.hpp"
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Labeled_mesh_domain_3.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
@@ -6,8 +7,6 @@
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/make_mesh_3.h>
 #include <map>
-
-#include "cgal_mesh.hpp" // last: CGAL has a type named HD
 
 namespace molmesh::reference {
 
