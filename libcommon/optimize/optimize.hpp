@@ -12,13 +12,13 @@
 namespace molmesh::optimize {
 
 struct Options {
-  /// No better elements are aimed at: few meshes come so far, and time goes into all of their elements.
+  /// Better elements than these are not aimed at: few meshes come so far, and all of their elements take time.
   static constexpr double most_min_dihedral = 34, least_max_dihedral = 125;
   double min_dihedral = 26, max_dihedral = 138.5; ///< degrees aimed at; the work stops where they are reached
   int iterations = 15;                            ///< rounds at most; 0 leaves the mesh as it is
   double sharp = 50; ///< degrees; without a density, edges of the surface that bend by more are kept
   int threads = 1;
-  /// Result::measure() is left to the caller, to run beside what is serial. It needs the density still.
+  /// The caller runs Result::measure(), beside what is serial. It still needs the density.
   bool measure_later = false;
 };
 
@@ -30,7 +30,7 @@ struct Result {
   Fidelity fidelity; ///< after (with a density)
   /// [4 tets] The tetrahedron beyond each face, -1: none; empty where the mesh stayed as it came.
   LargeArray<int32_t> across;
-  /// Where it was put off: what sets `after` and `fidelity`, and gives the memory worked in back.
+  /// With measure_later: sets `after` and `fidelity`, and frees the working memory.
   std::function<void(Result&)> rest;
   void measure() {
     if (rest)

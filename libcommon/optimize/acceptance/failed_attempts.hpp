@@ -1,5 +1,4 @@
-// failed_attempts.hpp — operations that could not be done, and what was at their vertices: while that is the same,
-// they fail again.
+// failed_attempts.hpp — remembers operations that failed: while their vertices are the same, they fail again.
 #pragma once
 #include <bit>
 #include <cstddef>

@@ -8,12 +8,12 @@
 
 namespace molmesh::optimize {
 
-/// The elements of a part below a goal, as operations go on.
+/// Lists the elements of a part below a goal, and keeps the list up to date while operations go on.
 class LowElements {
 public:
-  /// slots: all that elements of the part may be in. log: of the region, kept.
+  /// slots: every slot that may hold an element of the part. log: the region's, which must be kept.
   LowElements(const DynamicMesh& m, const std::vector<int32_t>& slots, const ChangeLog& log, float goal);
-  /// In the order of the slots.
+  /// The list, in the order of the slots.
   const std::vector<int32_t>& operator()();
 
 private:
@@ -30,24 +30,24 @@ private:
 struct Faults {
   int64_t off = 0, bent = 0, below = 0;
   float worst = 2; ///< quality of those below
-  /// Fewer points are off than before, and no more triangles bent, or so many at most for a point.
+  /// Fewer points are off than before, and at most so many more triangles are bent for each point that came back.
   bool fewer_than(const Faults& before, int64_t bent_for_a_point) const {
     return off < before.off && bent <= before.bent + bent_for_a_point * (before.off - off);
   }
 };
 
-/// Counts them. slots: all that elements of the part may be in.
+/// Counts the faults of a part. slots: every slot that may hold an element of it.
 class FaultCount {
 public:
-  static constexpr float share = 0.937f; ///< of the goal, 139.99°: elements under it are faults
+  static constexpr float share = 0.937f; ///< of the goal: an element below it is a fault (139.99° by default)
 
-  /// Of that guard and goal. Keeps the region's log, and by it looks at what has been written alone.
+  /// accept: its guard and goal say what a fault is. Keeps the region's log, and looks only at what was written.
   FaultCount(Region& r, const std::vector<int32_t>& slots, const Acceptance& accept)
       : r_(r), slots_(slots), accept_(accept), low_(r.mesh, slots, r.log, share * accept.goal) {
     r.log.keep();
   }
   Faults operator()();
-  /// Faults::fewer_than, no more elements are below the goal, and the worst of such is no worse.
+  /// Faults::fewer_than holds, no more elements are below the goal, and the worst of these is no worse.
   bool better_than(const Faults& before, int64_t bent_for_a_point);
   std::vector<int32_t> points_off(); ///< ascending
 

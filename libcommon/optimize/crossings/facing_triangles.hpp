@@ -1,5 +1,4 @@
-// facing_triangles.hpp — the triangles where a mesh ends in a curved surface: which face others so near that they
-// might come to cross them.
+// facing_triangles.hpp — finds the triangles on the end of a mesh that face others so near that they might cross.
 #pragma once
 #include "isosurface/target.hpp"
 #include "optimize/crossings/free_triangles.hpp"

@@ -1,5 +1,5 @@
-// free_triangles.hpp — the triangles where a mesh ends in a curved surface, by place: hash grids of their boxes.
-// Nothing on the other side keeps such a triangle from crossing another one of the surface.
+// free_triangles.hpp — finds the triangles where a mesh ends in a curved surface by place, in hash grids of boxes.
+// Nothing on the other side keeps such a triangle from crossing another one.
 #pragma once
 #include "base/large_array.hpp"
 #include "base/open_table.hpp"
@@ -12,7 +12,7 @@
 
 namespace molmesh::optimize {
 
-/// With its box when it was put down.
+/// A triangle with its box when it was inserted.
 struct FreeTriangle : Boxf {
   std::array<int32_t, 3> v{-1, -1, -1}; ///< seen from outside
   int64_t face = -1;                    ///< 4 element + face; -1: no longer there
@@ -24,7 +24,7 @@ struct FreeTriangle : Boxf {
   }
 };
 
-/// Of two triangles: which vertices of either the other has not, a bit each.
+/// Which vertices of either of two triangles the other has not, a bit each.
 struct Apart {
   unsigned of_first = 7, of_second = 7;
   Apart(const std::array<int32_t, 3>& a, const std::array<int32_t, 3>& b) {
@@ -43,7 +43,7 @@ struct Apart {
 bool side_by_side(const std::vector<Vec3d>& point, const FreeTriangle& a, const FreeTriangle& b,
                   const Apart& apart);
 
-/// What has become of some faces.
+/// Faces that have been inserted or erased.
 struct FreeTriangleChanges {
   std::vector<FreeTriangle> there;
   std::vector<int64_t> gone;
@@ -53,24 +53,24 @@ FreeTriangle free_triangle(const std::vector<Vec3d>& point, std::array<int32_t, 
 
 class FreeTriangles {
 public:
-  /// Cells of this size (Å), larger ones for larger triangles. A few of the triangles' edges is best.
+  /// cell: size of the cells (Å); larger triangles get larger ones. A few edges of the triangles is best.
   explicit FreeTriangles(double cell) : cell_(cell) {}
   double cell() const { return cell_; }
   void reserve(size_t triangles, int threads); ///< of a surface
-  /// In place of what was known of that face.
+  /// Replaces what was known of that face.
   void insert(const FreeTriangle& t);
   void erase(int64_t face);
-  /// Whether that face was ever inserted or erased here.
+  /// Whether that face was ever inserted or erased.
   bool knows(int64_t face) const { return face_.find(uint64_t(face)) != nullptr; }
-  /// All that was ever inserted or erased here, as it is now.
+  /// All that was ever inserted or erased, as it is now.
   FreeTriangleChanges changes() const;
-  /// Moves triangles that are known and stay in their cells, and takes them out of `later`. At the same time as for
-  /// other faces, while nothing else changes.
+  /// Moves triangles that are known and stay in their cells, and takes them out of `later`. Threads may do so for
+  /// different faces at once, while nothing else changes.
   void move_along(FreeTriangleChanges& later);
   void merge(const FreeTriangleChanges& later);
   size_t alive() const { return triangle_.size() - free_.size(); }
   size_t boxes() const; ///< that cells hold: 27 for each triangle at most
-  /// True as soon as f(triangle) is, over all whose boxes t's meets, each once.
+  /// True as soon as f(triangle) is, for the triangles whose boxes meet t, each once.
   template <class F>
   bool any(const Boxf& t, F&& f) const;
 

@@ -1,5 +1,4 @@
-// change_log.hpp — which elements of a part were written, in order: what is known of all of them needs to be found
-// anew for these alone.
+// change_log.hpp — records which elements of a part were written, so that only these are looked at again.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -16,7 +15,7 @@ public:
     uint64_t era = 0; ///< of none
     size_t at = 0;
   };
-  /// Nothing is kept before.
+  /// Recording begins here.
   void keep() { kept_ = true; }
   bool kept() const { return kept_; }
   void add(int32_t element) {
@@ -24,7 +23,7 @@ public:
       written_.push_back(element);
   }
   Moment now() const { return {era_, written_.size()}; }
-  /// Those written since, each once, ascending. False when that is not known: it may be all of them.
+  /// Elements written since then, each once, ascending. False when they are not known: it may be all of them.
   bool since(Moment then, std::vector<int32_t>& out) const {
     if (!kept_ || then.era != era_)
       return false;
@@ -33,7 +32,7 @@ public:
     out.erase(std::unique(out.begin(), out.end()), out.end());
     return true;
   }
-  /// All may have been written.
+  /// Any element may have been written.
   void forget() {
     written_.clear();
     ++era_;

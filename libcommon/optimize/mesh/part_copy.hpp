@@ -1,4 +1,4 @@
-// part_copy.hpp — a part of a mesh by itself, where operations can be tried without changing it.
+// part_copy.hpp — copies a part of a mesh, so that operations can be tried without changing it.
 #pragma once
 #include "optimize/mesh/dynamic_mesh.hpp"
 #include "optimize/mesh/parts.hpp"
@@ -9,10 +9,10 @@
 
 namespace molmesh::optimize {
 
-/// Of elements and vertices the numbers are others, in the same order: what an operation does there is what it
-/// would do in the mesh. Surface triangles beyond the part are not known.
+/// Elements and vertices have other numbers in the same order: an operation does there what it would do in the
+/// mesh. Surface triangles beyond the part are not known.
 struct PartCopy {
-  DynamicMesh mesh; ///< elements of the part, those beside them, and what it has in reserve
+  DynamicMesh mesh; ///< elements of the part, their neighbours, and the reserved slots
   Parts parts;
   PartRoom room;
   std::vector<int32_t> slots;   ///< as given
@@ -23,7 +23,7 @@ struct PartCopy {
   }
 };
 
-/// slots: all that elements of the part may be in.
+/// slots: every slot that may hold an element of the part.
 PartCopy copy_part(const DynamicMesh& mesh, const Parts& parts, const PartRoom& room,
                    const std::vector<int32_t>& slots);
 

@@ -1,5 +1,4 @@
-// parts.hpp — the parts of one pass: cells of a coarse lattice, or boxes of such cells, each with the vertices in
-// it when the pass began.
+// parts.hpp — divides a mesh among threads: cells of a coarse lattice, or boxes of such cells.
 #pragma once
 #include "geom/vec.hpp"
 #include <algorithm>
@@ -20,18 +19,19 @@ struct PointBox {
   }
 };
 
-/// Parts are disjoint and convex: what keeps to its own never meets what keeps to another.
+/// Parts are disjoint and convex: a triangle that stays in its part never meets one that stays in another.
 struct Parts {
-  std::vector<int32_t> owner; ///< [vertices] part it began in, or is reserved for; -1: none, or a free slot
-  Vec3d low;                  ///< of all points, or of the boxes' surroundings
+  std::vector<int32_t>
+      owner; ///< [vertices] the part that a vertex began in or is reserved for; -1: none, or a free slot
+  Vec3d low; ///< of all points, or of the boxes' surroundings
   double cell = 1;
   std::array<double, 3> offset{}; ///< in cells, in [0, 1)
   std::array<int64_t, 3> n{1, 1, 1};
-  std::vector<int32_t> box_of; ///< [cells] which box it is of, -1: none; empty: every cell is a part
+  std::vector<int32_t> box_of; ///< [cells] the box that a cell belongs to, -1: none; empty: every cell is a part
   int32_t boxes = 0;
 
-  /// Every cell over the box is a part; owner is as it was. Other shifts are other places of the lattice. Cells of
-  /// that size, or doubled until there are no more than `most`.
+  /// Makes every cell over the box a part; owner stays. shift: another one moves the lattice. size: of the cells
+  /// (Å), doubled until there are no more than `most`.
   void set_lattice(const PointBox& box, double size, int shift, double most);
   int32_t cells() const { return static_cast<int32_t>(n[0] * n[1] * n[2]); }
   int32_t count() const { return box_of.empty() ? cells() : boxes; }
@@ -50,7 +50,7 @@ struct Parts {
     const int32_t c = number(cell_at(p));
     return box_of.empty() ? c : box_of[c];
   }
-  /// One more part: the cells up to `reach` from the one at p. False where one of them is of another part.
+  /// Adds a part: the cells up to `reach` from the one at p. False where one of them belongs to another part.
   bool add_box(Vec3d p, int32_t reach);
   bool owns(int32_t part, const std::array<int32_t, 4>& v) const {
     return owner[v[0]] == part && owner[v[1]] == part && owner[v[2]] == part && owner[v[3]] == part;

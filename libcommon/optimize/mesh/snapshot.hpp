@@ -1,4 +1,4 @@
-// snapshot.hpp — what the operations on one part may touch, how many were done, and all of it put by.
+// snapshot.hpp — counts of operations, the slots of a part, and its state at one moment.
 #pragma once
 #include "optimize/crossings/free_triangles.hpp"
 #include "optimize/mesh/change_log.hpp"
@@ -10,7 +10,7 @@
 
 namespace molmesh::optimize {
 
-/// Operations done.
+/// How many operations were done.
 struct Counts {
   int64_t moves = 0, edge_removals = 0, surface_flips = 0, face_swaps = 0, contractions = 0, splits = 0,
           retreats = 0, cavity_shrinks = 0;
@@ -20,13 +20,13 @@ struct Counts {
   }
 };
 
-/// What one part may touch. Reserved slots are those of dead elements and vertices.
+/// Slots reserved for new elements and vertices of one part; nothing lives in them.
 struct PartRoom {
   int32_t part = 0;
   std::vector<int32_t> element, vertex;
 };
 
-/// What Region::restore() needs.
+/// The state of a part, for Region::restore().
 struct Snapshot {
   struct Corner {
     int32_t id;

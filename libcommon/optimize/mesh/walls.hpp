@@ -1,5 +1,4 @@
-// walls.hpp — the planes that a mesh ends at: where nothing is meshed on a surface's other side, they alone keep it
-// in the box. Host and device.
+// walls.hpp — keeps points within the planes that a mesh ends at. Host and device.
 #pragma once
 #include "geom/vec.hpp"
 

@@ -1,7 +1,7 @@
-// follow_neck.cpp — where the target is narrower than the grid, the surface around follows it down, in shells
-// (local_scaling.hpp). The surface is a tube there: a ring of its edges crosses the plane at the narrowest place.
-// The elements at these edges shrink towards that place, and the tube runs into it from either side as a cone does.
-// What its points are off then is small beside the elements they belong to.
+// follow_neck.cpp — the surface follows the target down where that is narrower than the grid.
+// The surface is a tube there: a ring of its edges crosses the plane at the narrowest place. The elements at these
+// edges shrink towards that place, in shells (local_scaling.hpp), and the tube runs into it from either side as a
+// cone does. What its points are off then is small beside the elements they belong to.
 #include "optimize/acceptance/surface_fit.hpp"
 #include "optimize/operations/local_scaling.hpp"
 #include "optimize/operations/operations.hpp"

@@ -1,5 +1,4 @@
-// shrink_cavity.cpp — a closed surface smaller than the grid comes to the target's size and place, in shells of its
-// own surroundings (local_scaling.hpp).
+// shrink_cavity.cpp — shrinks a closed surface smaller than the grid to the target's size and place.
 #include "optimize/acceptance/surface_fit.hpp"
 #include "optimize/operations/local_scaling.hpp"
 #include "optimize/operations/operations.hpp"

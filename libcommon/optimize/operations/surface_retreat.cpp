@@ -1,5 +1,4 @@
-// surface_retreat.cpp — a surface vertex that finds no place on the target leaves the surface: the elements on its
-// wrong side change sides.
+// surface_retreat.cpp — lets a vertex off the target leave the surface: elements on its wrong side change sides.
 #include "optimize/operations/moving_vertex.hpp"
 #include <algorithm>
 

@@ -12,11 +12,11 @@
 
 namespace molmesh::optimize {
 
-/// What parts keep for new elements, and which are worked on first.
+/// How many slots a part reserves for new elements, and which parts are worked on first.
 struct PartShares {
   double slots_per_item = 2;
-  size_t slots = 64;                               ///< beside these
-  std::function<size_t(int32_t part)> weight = {}; ///< largest first; none: of items
+  size_t slots = 64;                               ///< and so many more
+  std::function<size_t(int32_t part)> weight = {}; ///< the largest comes first; none: the number of items
 };
 
 /// Runs passes over a mesh that lives as long as it.
@@ -26,16 +26,16 @@ public:
   /// Every part works off its elements below the goal, worst first. Parts are the cells of a coarse lattice,
   /// shifted from pass to pass: what lies across two parts now lies inside one the next time.
   Counts run(const Pass& pass);
-  /// Surface triangles that do not keep the guard, and surface vertices off the target: made to fit, where no
-  /// element falls under the goal.
+  /// Makes surface triangles that do not keep the guard, and surface vertices off the target, fit where no element
+  /// falls under the goal.
   Counts fit_surface(const Pass& pass);
-  /// Parts around the few places that a strategy is for, each searched. Nothing else changes.
+  /// Searches in parts around the few places that the strategy is for. Nothing else changes.
   Counts search(const Strategy& strategy);
   /// Puts surface vertices on the target where no element falls under `floor`; floor ≥ 1 means: an element may lose
   /// at most half its quality.
   Counts project(float floor, const Guard& guard);
-  /// Where the mesh ends in a curved surface it is kept from crossing itself: near triangles that face each other
-  /// within that many spacings and what they are off the target now and may be later; or everywhere, from now on.
+  /// Where the mesh ends in a curved surface, operations keep it from crossing itself: near triangles that face
+  /// each other within `apart` spacings, beside what they are off the target; or everywhere, from now on.
   void watch_crossings(double apart);
   static constexpr double everywhere = 1e300;
   /// Each triangle stays within a quarter of a spacing (Guard::distance), or what it is off.
@@ -45,8 +45,8 @@ public:
   /// How many parts of that size, in the schedule's cells, hold a point of the surface.
   int64_t parts_at_surface(double cell);
   int64_t below(float goal) const;
-  /// Size of parts, in the schedule's cells, of which one nearly always holds the whole mesh. 0 where no edge is
-  /// longer than a quarter of parts of `cell`: they will do.
+  /// Size of parts, in the schedule's cells, so large that one nearly always holds the whole mesh; 0 where no edge
+  /// is longer than a quarter of a part of size `cell`, which will do then.
   double cell_of_all(double cell) const;
 
 private:
@@ -55,9 +55,9 @@ private:
   bool is_hopeless(size_t points_off) const;
   std::vector<int32_t> places_to_search(const Strategy& s);
   using Work = std::function<void(Region&, std::vector<int32_t>&)>;
-  /// It is below the goal, and has changed since it was last tried.
+  /// The element is below the goal, and has changed since it was last tried.
   bool worthwhile(int32_t element, float goal) const;
-  /// Worthwhile, or all below the goal.
+  /// Worthwhile elements; tried_too: all below the goal.
   std::vector<int32_t> low_elements(float goal, bool tried_too = false);
   bool in_few_parts(const std::vector<int32_t>& items, int shift, double cell);
   Counts work_off(const std::vector<int32_t>& items, const Pass& pass, int shift, double cell);
@@ -89,9 +89,9 @@ private:
   par::Helpers helpers_;        ///< threads that wait for the last parts
   std::vector<uint32_t> stamp_; ///< of the regions
   uint32_t last_stamp_ = 0;
-  /// As they are when all that was given to add() is in.
+  /// free_triangles_ with all that was given to add().
   FreeTriangles& free_triangles();
-  /// work() on free_triangles_, beside the passes that do not ask for them.
+  /// Runs work() on free_triangles_ beside the passes that do not ask for them.
   void add(std::function<void()> work);
   FreeTriangles free_triangles_; ///< where the mesh ends in curved surfaces
   std::future<void> adding_;

@@ -1,5 +1,4 @@
-// search_part.cpp — points off the target come back, or leave the surface, where the elements around can be
-// repaired after; elements below the goal come over it.
+// search_part.cpp — brings points back to the target and elements over the goal, with repair after every trial.
 #include "optimize/search/search_part.hpp"
 #include "optimize/acceptance/surface_fit.hpp"
 #include "optimize/search/local_search.hpp"

@@ -1,5 +1,4 @@
-// chunks_test.cpp — what is known of chunks of elements holds after every kind of pass, and memory that is
-// lent.
+// chunks_test.cpp — what is known of chunks of elements holds after every kind of pass.
 #include "isosurface/isosurface.hpp"
 #include "lattice_mesh.hpp"
 #include "recovery_pass.hpp"
