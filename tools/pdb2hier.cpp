@@ -2,6 +2,7 @@
 #include "cli/file.hpp"
 #include "cli/run.hpp"
 #include "formats/pdb/pdb.hpp"
+#include "molecule/limits.hpp"
 #include "molecule/words.hpp"
 #include <sstream>
 
@@ -91,7 +92,6 @@ void resolve(Options& o) {
     p.levels.push_back(level);
   if (p.select.empty())
     usage("--select", "", "a selection ('*' is everything)");
-
   const bool number = !p.model.empty() && std::all_of(p.model.begin(), p.model.end(), is_digit);
   if (p.model != "first" && p.model != "all" && !number)
     usage("--model", p.model, "first, all or a number");
@@ -101,7 +101,7 @@ void resolve(Options& o) {
   p.waters = o.waters == "keep";
   p.hetatm = o.hetatm == "keep";
   p.unknown_radius = o.unknown == "refuse" ? 0 : decimal(o.unknown).value_or(-1);
-  if (!(p.unknown_radius > 0) && o.unknown != "refuse")
+  if (!(p.unknown_radius > 0 && p.unknown_radius <= largest_radius) && o.unknown != "refuse")
     usage("--unknown", o.unknown, "a radius > 0 (Å) or refuse");
   if (o.radii != "bondi") {
     cli::InputFile file(o.radii);
@@ -133,8 +133,8 @@ Status run(Options& o, cli::Run& run) {
                            {"radius_0", r.no_radius}};
   run.counts["dropped"]["outside_assembly"] = r.unassembled;
   run.counts["dropped_charge"] = r.no_radius_charge;
-  run.counts["passed_over"] = nlohmann::json(r.passed_over);
-  run.counts["guessed_elements"] = nlohmann::json(r.guessed_elements);
+  run.counts["passed_over"] = r.passed_over;
+  run.counts["guessed_elements"] = r.guessed_elements;
   run.counts["unknown_elements"] = nlohmann::json::object();
   for (const auto& [element, unknown] : r.unknown_elements)
     run.counts["unknown_elements"][element] = unknown.atoms;

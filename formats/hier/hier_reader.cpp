@@ -2,6 +2,7 @@
 #include "base/error.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/hier/text.hpp"
+#include "molecule/limits.hpp"
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -200,12 +201,30 @@ private:
     return v;
   }
 
-  double positive(const char* what) {
+  double coordinate(const char* what) {
+    const char* begin = at_;
+    const double v = number(what);
+    if (!(std::abs(v) <= largest_coordinate))
+      refuse("R8: found " + text_from(begin) + ", expected " + what + " of at most 1e7 Å in magnitude");
+    return v;
+  }
+
+  /// most: the largest that is allowed, in words too.
+  double positive(const char* what, double most, const char* in_words) {
     const char* begin = at_;
     const double v = number(what);
     if (!(v > 0))
-      refuse("R9: found " + shown({begin, static_cast<size_t>(at_ - begin)}) + ", expected " + what + " > 0");
+      refuse("R9: found " + text_from(begin) + ", expected " + what + " > 0");
+    if (v > most)
+      refuse("R9: found " + text_from(begin) + ", expected " + what + " of at most " + in_words);
     return v;
+  }
+
+  std::string text_from(const char* begin) const {
+    const char* end = at_;
+    while (end != begin && is_blank(end[-1]))
+      --end;
+    return shown({begin, static_cast<size_t>(end - begin)});
   }
 
   void record() {
@@ -283,7 +302,7 @@ private:
              h_.level[open_].name + " NAME P' first");
     const std::string_view text = name("a name");
     Group g{std::string(text), 1, children(l), 0};
-    g.exponent = positive("the exponent P");
+    g.exponent = positive("the exponent P", largest_exponent, "1000");
     expect_end("'LEVEL NAME P'");
     h_.level[l].group.push_back(std::move(g));
     open_ = l + 1;
@@ -295,10 +314,10 @@ private:
     Atom a;
     a.name = cache_.entry(name("the atom's name"), h_.names);
     a.element = cache_.entry(name("the element"), h_.names);
-    a.center.x = number("x");
-    a.center.y = number("y");
-    a.center.z = number("z");
-    a.radius = positive("the radius");
+    a.center.x = coordinate("x");
+    a.center.y = coordinate("y");
+    a.center.z = coordinate("z");
+    a.radius = positive("the radius", largest_radius, "10000 Å");
     if (at_ != stop_)
       a.charge = number("the charge");
     expect_end("'atom NAME ELEMENT X Y Z RADIUS [CHARGE]'");

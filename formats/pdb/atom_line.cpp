@@ -1,6 +1,8 @@
 // atom_line.cpp — columns taken out where a field before them was too wide.
 #include "formats/pdb/atom_line.hpp"
+#include "molecule/limits.hpp"
 #include "molecule/words.hpp"
+#include <cmath>
 
 namespace molmesh::formats {
 namespace {
@@ -32,7 +34,8 @@ bool is_shifted(std::string_view line) {
 } // namespace
 
 bool is_coordinate(std::string_view field) {
-  return signed_decimal(trimmed(field)).has_value();
+  const std::optional<double> value = signed_decimal(trimmed(field));
+  return value && std::abs(*value) <= largest_coordinate;
 }
 
 AtomLine in_columns(std::string_view line, std::string& room, bool coordinates) {

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/parse.hpp"
+#include "molecule/limits.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
 #include <cmath>
@@ -38,7 +39,7 @@ void check_coordinates(const cif::Loop& loop, const AtomColumns& columns, std::s
   for (const char* axis : {"Cartn_x", "Cartn_y", "Cartn_z"}) {
     const auto column = static_cast<size_t>(columns.find(axis));
     for (size_t i = column, row = 0; i < loop.values.size(); i += width, ++row)
-      if (!std::isfinite(cif::as_number(loop.values[i])))
+      if (!(std::abs(cif::as_number(loop.values[i])) <= largest_coordinate))
         fail_input(where + ":" + std::to_string(line_of_row(text, line, loop.tags.size(), row, loop.values[i])) +
                    ": found " + in_quotes(loop.values[i]) + " as " + axis + ", expected a coordinate (Å)");
   }

@@ -3,8 +3,10 @@
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/structure_builder.hpp"
+#include "molecule/limits.hpp"
 #include "molecule/words.hpp"
 #include <charconv>
+#include <cmath>
 
 namespace molmesh::formats {
 namespace {
@@ -97,7 +99,7 @@ private:
     double* const axis[] = {&atom.pos.x, &atom.pos.y, &atom.pos.z};
     for (size_t a = 0; a < 3; ++a) {
       const std::optional<double> value = width > 0 ? coordinate(line, a, width) : std::nullopt;
-      if (!value)
+      if (!value || std::abs(*value) > largest_coordinate)
         refuse("found " + in_quotes(line) +
                ", expected an atom (GROMACS): number, residue, name, serial, x, y, z (nm)");
       *axis[a] = *value;

@@ -93,7 +93,7 @@ bool is_pdb_after_all(std::string_view text) {
     if (!has_pdb_columns(line) || !has_occupancy(line))
       return;
     ++in_place;
-    large += decimal(trimmed(line.substr(60, 6))).value_or(0) > largest_radius;
+    large += decimal(trimmed(line.substr(60, 6))).value_or(0) > believed_radius;
     ones += line.substr(54, 6) == "  1.00" &&
             ion_element(trimmed(line.substr(12, 4)), trimmed(line.substr(17, 4))) == gemmi::El::X;
   });

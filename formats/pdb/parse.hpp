@@ -37,7 +37,7 @@ Parsed parse_structure(std::string text, const std::string& file, const std::str
 Parsed parse_pdb(std::string_view text, const std::string& file, const std::string& assembly);
 Parsed parse_mmcif(std::string_view text, const std::string& file, const std::string& assembly);
 Parsed parse_mmjson(std::string& text, const std::string& file, const std::string& assembly);
-/// believed: radii of any size; otherwise those beyond largest_radius are refused.
+/// believed: radii of any size; otherwise those beyond believed_radius are refused.
 Parsed parse_pqr(std::string_view text, const std::string& file, bool believed);
 Parsed parse_gro(std::string_view text, const std::string& file);
 Parsed parse_xyzr(std::string_view text, const std::string& file);
@@ -50,7 +50,7 @@ bool looks_like_xyzr(std::string_view text);
 bool looks_like_bcif(std::string_view bytes);
 
 /// Å. No atom is larger, nor a bead that stands for a few.
-inline constexpr double largest_radius = 10;
+inline constexpr double believed_radius = 10;
 
 /// Calls take(line, number) for each line, without its end.
 template <class Take>

@@ -5,9 +5,12 @@
 #include "formats/pdb/model_names.hpp"
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/passed_over.hpp"
+#include "molecule/limits.hpp"
 #include "molecule/words.hpp"
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <gemmi/resinfo.hpp>
 #include <set>
 #include <unordered_map>
@@ -77,7 +80,7 @@ public:
   void finish() const {
     passed_over_.report(parsed_);
     if (large_ > 0)
-      parsed_.notes.push_back("radii of more than " + shortest(largest_radius) + " Å: " + std::to_string(large_));
+      parsed_.notes.push_back("radii of more than " + shortest(believed_radius) + " Å: " + std::to_string(large_));
     if (after_end_ > 0)
       parsed_.notes.push_back("atom lines after END, not read: " + std::to_string(after_end_));
     if (parsed_.pqr.empty())
@@ -183,10 +186,14 @@ private:
   }
 
   void add(const PqrAtom& a, bool hetero) {
-    if (a.radius > largest_radius && !believed_)
-      refuse("found radius " + shortest(a.radius) + ", expected one of at most " + shortest(largest_radius) +
+    if (a.radius > believed_radius && !believed_)
+      refuse("found radius " + shortest(a.radius) + ", expected one of at most " + shortest(believed_radius) +
              " Å (--format pqr believes it)");
-    large_ += a.radius > largest_radius;
+    large_ += a.radius > believed_radius;
+    if (std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}) > largest_coordinate)
+      refuse("found a coordinate of more than 1e7 Å in magnitude, expected atoms of a molecule");
+    if (a.radius > largest_radius)
+      refuse("found radius " + shortest(a.radius) + ", expected at most " + shortest(largest_radius) + " Å");
     if (a.radius < 0)
       refuse("found radius " + std::to_string(a.radius) + ", expected a number ≥ 0 (Å)");
     if (!in_model_)

@@ -27,7 +27,7 @@ std::string reason(const std::string& what) {
 }
 
 [[noreturn]] void wrong(const std::string& what) {
-  throw std::invalid_argument(what);
+  throw std::invalid_argument(" (" + what + ")");
 }
 
 /// Where the quoted text that begins at `at` ends: behind its closing quote. Two quotes within it are one.
@@ -134,7 +134,7 @@ Selection::Selection(const std::string& text, const std::string& where, bool aro
     std::vector<std::string_view> field(static_cast<size_t>(omitted));
     field.insert(field.end(), given.begin(), given.end());
     if (field.size() > 4)
-      wrong("more than four fields");
+      throw std::invalid_argument("");
     const auto has = [&](size_t f) { return f >= static_cast<size_t>(omitted) && f < field.size(); };
     if (has(1)) {
       chains_ = read_list(field[1], "[]()!*:;");
@@ -180,8 +180,7 @@ Selection::Selection(const std::string& text, const std::string& where, bool aro
   } catch (const Error&) {
     throw;
   } catch (const std::invalid_argument& e) {
-    fail(status, where + ": found selection " + in_quotes(text) + " with " + e.what() +
-                     ", expected gemmi's syntax and names in double quotes");
+    fail(status, where + ": found selection " + in_quotes(text) + ", expected gemmi's syntax" + e.what());
   } catch (const std::exception& e) {
     fail(status, where + ": found selection " + in_quotes(text) + ", expected gemmi's syntax" + reason(e.what()));
   }

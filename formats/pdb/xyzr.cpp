@@ -3,10 +3,12 @@
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/structure_builder.hpp"
+#include "molecule/limits.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 namespace molmesh::formats {
@@ -67,7 +69,7 @@ Parsed parse_xyzr(std::string_view text, const std::string& file) {
     std::array<double, 4> value{};
     for (size_t i = 0; i < value.size(); ++i) {
       const std::optional<double> v = i < word.size() ? signed_decimal(word[i]) : std::nullopt;
-      if (!v || (i == 3 && *v < 0))
+      if (!v || std::abs(*v) > (i == 3 ? largest_radius : largest_coordinate) || (i == 3 && *v < 0))
         fail_input(file + ":" + std::to_string(number) + ": found " + in_quotes(line) +
                    ", expected x, y, z and a radius ≥ 0 (Å)");
       value[i] = *v;

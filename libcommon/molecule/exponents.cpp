@@ -1,5 +1,6 @@
 // exponents.cpp — parses rules and applies them to the groups.
 #include "molecule/exponents.hpp"
+#include "molecule/limits.hpp"
 #include "molecule/words.hpp"
 
 namespace molmesh {
@@ -28,6 +29,8 @@ Rule parse_rule(const std::string& text, const std::string& where, Status status
     *exponent = decimal(last.substr(4));
     if (!*exponent || **exponent <= 0)
       fail(status, found + "a number > 0");
+    if (**exponent > largest_exponent)
+      fail(status, found + "at most 1000");
     rest = blank == std::string_view::npos ? std::string_view{} : trimmed(rest.substr(0, blank));
   }
   if (!rule.residue && !rule.chain && !rule.domain)

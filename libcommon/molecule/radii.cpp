@@ -1,6 +1,7 @@
 // radii.cpp — holds the table of radii and reads a user's own.
 #include "molecule/radii.hpp"
 #include "base/error.hpp"
+#include "molecule/limits.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
 #include <istream>
@@ -86,8 +87,9 @@ Radii read_radii(std::istream& in, const std::string& file) {
       fail_input(where + ": found " + std::to_string(word.size()) +
                  " fields, expected ELEMENT RADIUS or RESIDUE ATOM RADIUS");
     const std::optional<double> radius = decimal(word.back());
-    if (!radius || *radius <= 0)
-      fail_input(where + ": found radius '" + std::string(word.back()) + "', expected a number > 0 (Å)");
+    if (!radius || *radius <= 0 || *radius > largest_radius)
+      fail_input(where + ": found radius '" + std::string(word.back()) +
+                 "', expected a number > 0, at most 10000 (Å)");
     if (word.size() == 3 && word[1].find('.') != std::string_view::npos && decimal(word[1]))
       fail_input(where + ": found atom '" + std::string(word[1]) +
                  "', expected ELEMENT RADIUS or RESIDUE ATOM RADIUS");
