@@ -1,4 +1,4 @@
-// foreign.hpp — what meshes of other programs lack.
+// foreign.hpp — fills in what meshes of other programs leave out.
 #pragma once
 #include "formats/vtu/vtu.hpp"
 

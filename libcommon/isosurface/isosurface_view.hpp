@@ -148,7 +148,7 @@ struct IsosurfaceView {
   }
 
 private:
-  /// std::floor, which is a call where processors may lack the instruction.
+  /// std::floor, which is a call where a processor may be without the instruction.
   MOLMESH_HD static int32_t lower(double x) {
     const auto towards_zero = static_cast<int32_t>(x);
     return towards_zero - (x < towards_zero);

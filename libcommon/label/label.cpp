@@ -38,7 +38,7 @@ public:
   double evaluate(Vec3d p, const std::vector<int32_t>& cluster) {
     collect(p, cluster);
     for (Sum& s : sum_[0]) {
-      // What a residue lacks matters by its share of G, at most e^(Q·ln S - ln G).
+      // What a residue is without matters by its share of G, at most e^(Q·ln S - ln G).
       const double range = reach_.bounded() ? small_term + reach_.power(s.group) * s.top - least_ : 2 * small_term;
       add_up(s, std::max(range, 1.0));
     }

@@ -25,8 +25,8 @@ inline int32_t region_across(const TetMesh& m, const LargeArray<int32_t>& across
   return f < 0 ? 0 : m.region[static_cast<size_t>(f) / 4];
 }
 
-/// Faces towards another region or nothing, ascending; those between two regions from both of their sides, crowded
-/// ones left out.
+/// Faces towards another region or nothing, ascending; those between two regions from both of their sides.
+/// Faces of more than two tetrahedra are left out.
 std::vector<int64_t> boundary_faces(const TetMesh& m, const LargeArray<int32_t>& across, int threads);
 
 /// Two triangles on the same points: do they go round the same way?

@@ -17,13 +17,13 @@ constexpr int64_t previous_half(int64_t h) {
   return h % 3 == 0 ? h + 2 : h - 1;
 }
 
-/// torn: crowded, and with more triangles that run along it one way than the other.
-enum Kind : uint8_t { none, good, open, crowded, torn };
+/// torn: several, with more triangles that run along it one way than the other.
+enum Kind : uint8_t { none, good, open, several, torn };
 
 struct HalfEdges {
   std::vector<int32_t> mate;   ///< [halves] the half edge on the other side, or -1
   std::vector<uint8_t> edge;   ///< [halves] Kind of the edge, at its first half; none elsewhere
-  std::vector<uint8_t> corner; ///< [halves] Kind of the point, at its first corner; crowded: several fans
+  std::vector<uint8_t> corner; ///< [halves] Kind of the point, at its first corner; several: several fans
 };
 
 class Walker {
@@ -66,7 +66,7 @@ HalfEdges pair_halves(const std::vector<Tri>& tri, const std::vector<int32_t>& l
           e.mate[h[1]] = static_cast<int32_t>(h[0]);
         }
         const auto one_way = std::count_if(h, h + n, [&](uint32_t k) { return from(k) == from(h[0]); });
-        e.edge[h[0]] = n == 1 ? open : 2 * one_way != n ? torn : n == 2 ? good : crowded;
+        e.edge[h[0]] = n == 1 ? open : 2 * one_way != n ? torn : n == 2 ? good : several;
       });
   const Walker walker(e.mate);
   for_each_group(
@@ -74,7 +74,7 @@ HalfEdges pair_halves(const std::vector<Tri>& tri, const std::vector<int32_t>& l
       [&](int64_t h) {
         return GroupKey{from(h), label_bits(h)};
       },
-      [&](const uint32_t* c, int n) { e.corner[c[0]] = walker.fan(c[0]) == n ? good : crowded; });
+      [&](const uint32_t* c, int n) { e.corner[c[0]] = walker.fan(c[0]) == n ? good : several; });
   return e;
 }
 
@@ -109,9 +109,9 @@ std::vector<SurfaceSummary> summarize_surfaces(const std::vector<Vec3d>& point, 
         s.faults.open_edge = ends;
       if (e.edge[h] == torn)
         s.volume = std::nan("");
-      if ((e.edge[h] == crowded || e.edge[h] == torn) && s.faults.crowded_edges++ == 0)
+      if ((e.edge[h] == several || e.edge[h] == torn) && s.faults.crowded_edges++ == 0)
         s.faults.crowded_edge = ends;
-      if (e.corner[h] == crowded && s.faults.pinched_points++ == 0)
+      if (e.corner[h] == several && s.faults.pinched_points++ == 0)
         s.faults.pinched_point = tri[t][i];
     }
   }

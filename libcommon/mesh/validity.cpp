@@ -140,7 +140,7 @@ private:
   void check_regions() {
     v_.region = summarize_regions(m_, side_, threads_);
     SurfaceFaults all;
-    std::string open, crowded, pinched;
+    std::string open, crowded_edge, pinched;
     for (const RegionSummary& r : v_.region) {
       const SurfaceFaults& f = r.boundary.faults;
       const std::string of = " of region " + std::to_string(r.region);
@@ -150,7 +150,7 @@ private:
       if (all.open_edges == 0 && f.open_edges)
         open = edge(f.open_edge);
       if (all.crowded_edges == 0 && f.crowded_edges)
-        crowded = edge(f.crowded_edge);
+        crowded_edge = edge(f.crowded_edge);
       if (all.pinched_points == 0 && f.pinched_points)
         pinched = "point " + std::to_string(f.pinched_point) + of;
       all.open_edges += f.open_edges;
@@ -159,7 +159,7 @@ private:
       v_.volume += r.volume;
     }
     fault("open_edge", all.open_edges, open);
-    fault("crowded_edge", all.crowded_edges, crowded);
+    fault("crowded_edge", all.crowded_edges, crowded_edge);
     fault("pinched_point", all.pinched_points, pinched);
     std::vector<Tri> surface;
     for (size_t t = 0; t < m_.tri.size(); ++t)

@@ -32,9 +32,10 @@ std::vector<int32_t> point_twins(const std::vector<Vec3d>& point, int threads) {
 }
 
 std::vector<int64_t> tet_copies(const TetMesh& m, const LargeArray<int32_t>& across) {
-  // Two faces cover all four points: tetrahedra that share two are the same. Those with crowded faces are few.
+  // Two faces cover all four points: tetrahedra that share two are the same. Those with a face in more than two are
+  // few.
   std::vector<int64_t> copies;
-  std::vector<std::pair<Tet, int64_t>> crowded;
+  std::vector<std::pair<Tet, int64_t>> suspect;
   for (size_t i = 0; i < m.tet.size(); ++i) {
     int faces = 0;
     bool copy = false;
@@ -49,14 +50,14 @@ std::vector<int64_t> tet_copies(const TetMesh& m, const LargeArray<int32_t>& acr
     if (copy) {
       copies.push_back(static_cast<int64_t>(i));
     } else if (faces >= 2) {
-      crowded.emplace_back(m.tet[i], static_cast<int64_t>(i));
-      std::sort(crowded.back().first.begin(), crowded.back().first.end());
+      suspect.emplace_back(m.tet[i], static_cast<int64_t>(i));
+      std::sort(suspect.back().first.begin(), suspect.back().first.end());
     }
   }
-  std::sort(crowded.begin(), crowded.end());
-  for (size_t i = 1; i < crowded.size(); ++i)
-    if (crowded[i].first == crowded[i - 1].first)
-      copies.push_back(crowded[i].second);
+  std::sort(suspect.begin(), suspect.end());
+  for (size_t i = 1; i < suspect.size(); ++i)
+    if (suspect[i].first == suspect[i - 1].first)
+      copies.push_back(suspect[i].second);
   std::sort(copies.begin(), copies.end());
   return copies;
 }

@@ -21,7 +21,7 @@ std::vector<Tri> molecular_surface(const TetMesh& m) {
 
 } // namespace
 
-TEST_CASE("1TII: the molecular surface is closed, nests, and does not cross itself, as TetGen sees too") {
+TEST_CASE("1TII: the molecular surface is closed, bounds a volume, and does not cross itself, as TetGen sees too") {
   const BlockGrid grid = reference::density_of(MOLMESH_SOURCE_DIR "/tests/data/1tii.pdb", 1.0);
   for (double adapt : {0.0, 0.25}) {
     INFO("adapt " << adapt);

@@ -8,8 +8,9 @@ namespace molmesh::reference {
 struct CgalSurface {
   bool manifold = false; ///< the soup is a polygon mesh; nothing below is known otherwise
   bool closed = false;
-  bool bounds_volume = false; ///< components nest with orientations that alternate; asked of closed surfaces
-  int64_t crossings = 0;      ///< pairs of triangles that cross, exact
+  bool bounds_volume =
+      false; ///< components lie in each other with orientations that alternate; asked of closed surfaces
+  int64_t crossings = 0; ///< pairs of triangles that cross, exact
   int64_t components = 0, euler = 0;
   double area = 0, volume = 0;
 };

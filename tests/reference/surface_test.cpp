@@ -13,7 +13,7 @@ namespace {
 
 /// Cubes of a body with a cavity and a handle, points of the mesh moved at random, but not so far that a
 /// tetrahedron turns.
-TetMesh shaken_body() {
+TetMesh displaced_body() {
   TetMesh m = cubes(11, [](Vec3i c) -> int32_t {
     if (c == Vec3i{4, 4, 4})
       return Region::cavity;
@@ -42,7 +42,7 @@ std::vector<Tri> region_boundary(const TetMesh& m, int32_t region) {
 } // namespace
 
 TEST_CASE("CGAL finds the same surfaces of regions, closed and without self-intersection") {
-  const TetMesh m = shaken_body();
+  const TetMesh m = displaced_body();
   const Validity v = check_validity(m, 1);
   REQUIRE(v.valid());
   CHECK(v.region[0].boundary.euler == 2); // a ring has 0, the cavity 2
@@ -59,7 +59,7 @@ TEST_CASE("CGAL finds the same surfaces of regions, closed and without self-inte
   }
 }
 
-TEST_CASE("CGAL refuses the surfaces that we call crowded or pinched, and sees what we cannot") {
+TEST_CASE("CGAL refuses the surfaces with crowded_edge or pinched_point, and sees what we cannot") {
   const auto diagonal = [](Vec3i second) {
     return cubes(4, [second](Vec3i c) -> int32_t { return c == Vec3i{1, 1, 1} || c == second ? 1 : 2; });
   };
@@ -83,7 +83,7 @@ TEST_CASE("CGAL refuses the surfaces that we call crowded or pinched, and sees w
 }
 
 TEST_CASE("TetGen fills our surface with the same volume, and its mesh is valid by our rules") {
-  const TetMesh m = shaken_body();
+  const TetMesh m = displaced_body();
   const Validity v = check_validity(m, 1);
   TetMesh fill = reference::tetgen_fill(m.point, region_boundary(m, Region::molecule), {{4.5, 4.5, 4.5}});
   rebuild_triangles(fill);
@@ -103,7 +103,7 @@ TEST_CASE("as many pairs of triangles cross as CGAL counts") {
   std::mt19937_64 random(31);
   int64_t crossed = 0, on_lattice = 0;
   for (int n = 0; n < 60; ++n) {
-    TetMesh m = extract(shaken_body(), [](int32_t r) { return r == Region::molecule; });
+    TetMesh m = extract(displaced_body(), [](int32_t r) { return r == Region::molecule; });
     // Few points far, or all by little; on a lattice, so that touching and coplanar triangles are common.
     std::uniform_real_distribution<double> u(-1, 1);
     const bool lattice = n % 3 == 0;

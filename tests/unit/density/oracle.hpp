@@ -39,7 +39,7 @@ inline double exact_density(const Hierarchy& h, double decay, Vec3d p) {
   return std::exp(log_children(h, 0, 0, static_cast<int64_t>(n), decay, p));
 }
 
-/// Chains of `residues` residues of `atoms` atoms that wander through space; exponents by level, innermost first.
+/// Chains of `residues` residues of `atoms` atoms on a random walk; exponents by level, innermost first.
 inline Hierarchy random_chains(int chains, int residues, int atoms, std::vector<double> exponents, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> step(0, 1);

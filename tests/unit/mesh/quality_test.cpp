@@ -10,7 +10,7 @@ using namespace molmesh::testing;
 
 namespace {
 
-TetMesh shaken(int n) {
+TetMesh displaced(int n) {
   TetMesh m = cubes(n, [](Vec3i c) -> int32_t { return c.x < 2 ? 1 : 2; });
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> u(-0.2, 0.2);
@@ -35,7 +35,7 @@ TEST_CASE("Kuhn's tetrahedra have angles of 45, 60 and 90 degrees") {
 }
 
 TEST_CASE("quality of regions and of the whole is what a plain loop finds") {
-  const TetMesh m = shaken(16);
+  const TetMesh m = displaced(16);
   const MeshQuality quality = measure_quality(m, 2, {40, 100});
   REQUIRE(quality.region == std::vector<int32_t>{1, 2});
   for (size_t k = 0; k < 3; ++k) {
@@ -76,7 +76,7 @@ TEST_CASE("quality of regions and of the whole is what a plain loop finds") {
 }
 
 TEST_CASE("quality has the same bits at any number of threads") {
-  const TetMesh m = shaken(20);
+  const TetMesh m = displaced(20);
   const MeshQuality one = measure_quality(m, 1);
   for (int threads : {2, 5}) {
     const MeshQuality q = measure_quality(m, threads);

@@ -218,7 +218,7 @@ TEST_CASE("each rule is broken by a mesh made to break it") {
         std::swap(m.tri[t][0], m.tri[t][1]);
     CHECK(rules(m) == Rules{"triangle_orientation"});
   }
-  SECTION("crowded edge: two cubes that share an edge") {
+  SECTION("crowded_edge: two cubes that share an edge") {
     m = cubes(4, [](Vec3i c) -> int32_t {
       return c == Vec3i{1, 1, 1} || c == Vec3i{2, 2, 1} ? Region::molecule : Region::outside;
     });
@@ -232,7 +232,7 @@ TEST_CASE("each rule is broken by a mesh made to break it") {
     CHECK(rules(m) == Rules{"pinched_point"});
     CHECK(count(m, "pinched_point") == 2);
   }
-  SECTION("crowded face, and the open edges round it") {
+  SECTION("crowded_face, and the open edges round it") {
     const auto inner = static_cast<size_t>(std::find(m.region.begin(), m.region.end(), 1) - m.region.begin());
     m.point.push_back({3.1, 3.2, 3.3});
     m.tet.push_back({m.tet[inner][0], m.tet[inner][1], m.tet[inner][2], int32_t(m.point.size() - 1)});
@@ -281,7 +281,7 @@ TEST_CASE("surfaces agree with a slow count on random regions") {
     const TetMesh m = cubes(4, [&](Vec3i) { return int32_t(random() % 2 + 1); });
     const Validity v = check_validity(m, 2);
     const LargeArray<int32_t> across = face_neighbors(m, 1);
-    int64_t crowded = 0, pinched = 0;
+    int64_t crowded_edges = 0, pinched = 0;
     for (const RegionSummary& r : v.region) {
       std::map<std::array<int32_t, 2>, int> directed;
       std::map<int32_t, std::vector<std::array<int32_t, 2>>> link;
@@ -305,7 +305,7 @@ TEST_CASE("surfaces agree with a slow count on random regions") {
         if (k != 1 || directed.count({e[1], e[0]}) == 0 || directed.at({e[1], e[0]}) != 1)
           bad.insert(key);
       }
-      crowded += int64_t(bad.size());
+      crowded_edges += int64_t(bad.size());
       for (const auto& [p, opposite] : link) {
         // Walk the link: from edge to edge where exactly one continues across a good edge.
         std::set<size_t> seen{0};
@@ -328,7 +328,7 @@ TEST_CASE("surfaces agree with a slow count on random regions") {
       CHECK(r.boundary.volume == Approx(r.volume));
     }
     const auto faults = [&](const char* rule) { return count(m, rule); };
-    CHECK(faults("crowded_edge") == crowded);
+    CHECK(faults("crowded_edge") == crowded_edges);
     CHECK(faults("pinched_point") == pinched);
   }
 }

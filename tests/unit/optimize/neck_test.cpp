@@ -42,7 +42,7 @@ TEST_CASE("a neck is found where it is, and none where the passage is wide") {
   CHECK_FALSE(wide.neck(off, neck));
 }
 
-TEST_CASE("the surface follows a passage of hundredths of a spacing") {
+TEST_CASE("the surface follows a passage of hundredths of a spacing", "[slow]") {
   struct Case {
     int keep;
     double narrow, reach;
