@@ -1,167 +1,96 @@
 // help.cpp — names and units on the left; meaning, range and default on the right.
-#include "cli/help.hpp"
+#include "cli/pages.hpp"
+#include "cli/text.hpp"
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <sstream>
-#include <vector>
 
 namespace molmesh::cli {
 namespace {
 
-constexpr size_t left_width = 26, right_width = 70;
+constexpr size_t left_width = 26, right_width = 70, page_width = 100;
 
-/// What CLI11 knows of an option's values: "TYPE:check:check".
-struct Values {
-  std::string unit, range;
-  bool number = false;
-};
-
-/// "FLOAT in [0.01 - 10]" → "0.01..10", "{seq,omp}" → "seq, omp", "POSITIVE" → "> 0".
-std::string range_words(const std::string& check) {
-  if (check == "POSITIVE")
-    return "> 0";
-  if (check == "NONNEGATIVE")
-    return ">= 0";
-  if (check.size() > 2 && check.front() == '{' && check.back() == '}') {
-    std::string words;
-    for (char c : check.substr(1, check.size() - 2))
-      words += c == ',' ? ", " : std::string(1, c);
-    return words;
-  }
-  const size_t open = check.find(" in ["), dash = check.find(" - ");
-  if (open == std::string::npos || dash == std::string::npos || check.back() != ']')
-    return check;
-  return check.substr(open + 5, dash - open - 5) + ".." + check.substr(dash + 3, check.size() - dash - 4);
+std::string left(const Option& o) {
+  if (o.argument)
+    return "  " + o.name;
+  const std::string text = (o.letter.empty() ? "      --" : "  -" + o.letter + ", --") + o.name;
+  return o.flag() ? text : text + ' ' + o.shown_unit();
 }
 
-Values values(const CLI::Option& option) {
-  std::istringstream words(option.get_type_name());
-  Values v;
-  std::string word;
-  for (bool first = true; std::getline(words, word, ':'); first = false) {
-    const bool numeric = word == "POSITIVE" || word == "NONNEGATIVE" || word.rfind("FLOAT", 0) == 0 ||
-                         word.rfind("INT", 0) == 0 || word.rfind("UINT", 0) == 0;
-    v.number = v.number || numeric;
-    if (first)
-      v.unit = word == "FLOAT" ? "X" : word == "INT" || word == "UINT" ? "N" : word == "TEXT" ? "TEXT" : word;
-    else if (const std::string range = range_words(word); !range.empty())
-      v.range += (v.range.empty() ? "" : ", ") + range;
-  }
-  return v;
-}
-
-/// Columns that UTF-8 text takes, as far as the help uses it (Å, κ, ε).
-size_t columns(const std::string& text) {
-  return static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
-bool takes_value(const CLI::Option& option) {
-  return option.get_expected_min() > 0;
-}
-
-std::string left(const CLI::Option& option, const std::string& unit) {
-  if (!option.nonpositional())
-    return "  " + option.get_name(true);
-  std::string text = option.get_snames().empty() ? "      " : "  -" + option.get_snames().front();
-  if (!option.get_lnames().empty())
-    text += (option.get_snames().empty() ? "--" : ", --") + option.get_lnames().front();
-  return takes_value(option) ? text + ' ' + unit : text;
-}
-
-std::string right(const CLI::Option& option, const Values& v) {
-  std::string text = option.get_description(), notes = v.range;
-  const std::string fallback = option.get_default_str();
-  const auto add = [&](const std::string& note) { notes += (notes.empty() ? "" : "; ") + note; };
-  if (option.get_items_expected_max() > 1)
-    add("repeatable");
-  if (option.get_required())
-    add("required");
-  if (takes_value(option) && !fallback.empty() && fallback != "[]" && fallback != "{}")
-    add("default " + fallback);
-  return notes.empty() ? text : text + " (" + notes + ")";
-}
-
-void print(std::ostream& out, const CLI::Option& option) {
-  const Values v = values(option);
-  const std::string name = left(option, v.unit);
+void print(std::ostream& out, const Option& o) {
+  const std::string name = left(o), notes = notes_of(o);
   out << name;
-  size_t column = columns(name);
-  const auto indent = [&] {
-    out << '\n' << std::string(left_width, ' ');
-    column = left_width;
-  };
-  if (column + 2 > left_width)
-    indent();
-  else
-    out << std::string(left_width - column, ' ');
-  column = 0;
-  std::istringstream words(right(option, v));
-  for (std::string word; words >> word;) {
-    if (column > 0 && column + 1 + columns(word) > right_width) {
-      indent();
-      column = 0;
-    }
-    out << (column > 0 ? " " : "") << word;
-    column += columns(word) + (column > 0 ? 1 : 0);
+  bool fits = columns(name) + 2 <= left_width;
+  size_t gap = fits ? left_width - columns(name) : 0;
+  for (const std::string& line : wrapped(notes.empty() ? o.meaning : o.meaning + " (" + notes + ")", right_width)) {
+    if (!fits)
+      out << '\n';
+    out << std::string(fits ? gap : left_width, ' ') << line;
+    fits = false;
   }
   out << '\n';
 }
 
 } // namespace
 
-std::string help(const CLI::App& app) {
-  std::ostringstream out;
-  out << app.get_name() << ": " << app.get_description() << "\n\nusage: " << app.get_name() << " [OPTIONS]";
-  const auto options = app.get_options();
-  for (const CLI::Option* o : options)
-    if (o->get_positional())
-      out << (o->get_required() ? " " + o->get_name(true) : " [" + o->get_name(true) + ']');
-  out << '\n';
-  for (const CLI::Option* o : options)
-    if (o->get_positional())
-      out << '\n', print(out, *o);
-  out << "\noptions:\n";
-  for (const CLI::Option* o : options)
-    if (!o->get_positional())
-      print(out, *o);
-  out << "\nexit status: 0 good, 1 the run failed, 2 usage, 3 input unreadable or invalid, 4 output not written,\n"
-         "5 valid and written, but below the quality asked for, 6 the mode is not available here\n";
-  return out.str();
-}
-
-void check_values(const CLI::App& app) {
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& text : option->results())
-      if (text.empty() && values(*option).unit == "FILE")
-        throw CLI::ValidationError(option->get_name(), "found '', expected a file");
-    if (!values(*option).number)
+std::vector<OptionGroup> grouped(const Table& table) {
+  std::vector<OptionGroup> groups;
+  OptionGroup common{"common options", {}};
+  for (const Option& o : table.options) {
+    if (o.argument)
       continue;
-    for (const std::string& text : option->results()) {
-      double x = 0;
-      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
-      if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(x))
-        throw CLI::ValidationError(option->get_name(), "found '" + text + "', expected a finite decimal number");
+    if (o.group.empty()) {
+      common.options.push_back(&o);
+      continue;
     }
+    const auto same =
+        std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.heading == o.group; });
+    if (same != groups.end())
+      same->options.push_back(&o);
+    else
+      groups.push_back({o.group, {&o}});
   }
+  groups.push_back(std::move(common));
+  return groups;
 }
 
-std::string plain_error(const CLI::App& app, const CLI::ParseError& e) {
-  const std::string text = e.what();
-  if (!dynamic_cast<const CLI::ValidationError*>(&e) && !dynamic_cast<const CLI::ConversionError*>(&e))
-    return text;
-  try {
-    check_values(app);
-  } catch (const CLI::ValidationError& value) {
-    return value.what();
+std::string notes_of(const Option& o) {
+  std::string notes = o.shown_range();
+  const auto add = [&](const std::string& note) { notes += (notes.empty() ? "" : "; ") + note; };
+  if (o.several())
+    add("repeatable");
+  if (o.must_be_given)
+    add("required");
+  if (!o.flag() && !o.default_text.empty())
+    add("default " + o.default_text);
+  return notes;
+}
+
+std::string help(const Table& table) {
+  std::ostringstream out;
+  out << table.program << ": " << table.purpose << "\n\nusage: " << table.program << " [OPTIONS]";
+  for (const Option& o : table.options)
+    if (o.argument)
+      out << (o.must_be_given ? " " + o.name : " [" + o.name + ']');
+  out << "\n\n";
+  for (const Option& o : table.options)
+    if (o.argument)
+      print(out, o);
+  for (const OptionGroup& group : grouped(table)) {
+    out << '\n' << group.heading << ":\n";
+    for (const Option* o : group.options)
+      print(out, *o);
   }
-  for (const CLI::Option* option : app.get_options()) {
-    const Values v = values(*option);
-    const std::string name = option->get_name();
-    if (v.number && !v.range.empty() && !option->results().empty() && text.rfind(name + ": ", 0) == 0)
-      return name + ": found '" + option->results().back() + "', expected " + v.range;
-  }
-  return text;
+  if (!table.page.examples.empty())
+    out << "\nexamples:\n";
+  for (const Page::Example& e : table.page.examples)
+    out << "  " << e.command << '\n';
+  std::string statuses = "exit status:";
+  for (const ExitStatus& s : exit_statuses)
+    statuses += (s.status > 0 ? ", " : " ") + std::to_string(s.status) + ' ' + s.meaning;
+  out << '\n';
+  for (const std::string& line : wrapped(statuses, page_width))
+    out << line << '\n';
+  return out.str();
 }
 
 } // namespace molmesh::cli

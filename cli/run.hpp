@@ -1,21 +1,17 @@
-// run.hpp — what every tool shares: common options, the run report, main() around run(options).
+// run.hpp — what every program shares: common options, the run report, main() around run(options).
 #pragma once
 #include "base/error.hpp"
-#include "base/large_array.hpp"
-#include "base/memory.hpp"
-#include "cli/cleanup.hpp"
 #include "cli/file.hpp"
-#include <CLI/CLI.hpp>
+#include "cli/options.hpp"
+#include "cli/value.hpp"
 #include <chrono>
-#include <ios>
-#include <memory>
-#include <nlohmann/json.hpp>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace molmesh::cli {
 
-/// Options of every tool (docs/conventions.md). A tool's Options derives from it.
+/// Options of every program. A program's Options derives from it.
 struct Common {
   std::string input = "-", output = "-";
   std::string mode = "omp"; ///< seq, omp, cuda
@@ -29,7 +25,7 @@ struct Common {
   virtual std::vector<std::string> outputs() const { return {output}; }
   bool keep_input = true;
 
-  /// Set by tools that have a cuda mode: throws Error(mode_unavailable) where there is no device for it.
+  /// Set by programs that have a cuda mode: throws Error(mode_unavailable) where there is no device for it.
   void (*require_device)() = nullptr;
   bool on_device() const { return mode == "cuda"; }
   /// Threads to use on the host: 1 for seq. Throws Error(mode_unavailable) for cuda where that cannot be.
@@ -42,11 +38,11 @@ public:
   /// Ends the phase before, starts this one or goes on with it.
   void phase(const std::string& name);
   void end_phase();
-  nlohmann::ordered_json counts = nlohmann::ordered_json::object();
+  Value counts;
   /// It gets its name when the run is over and the report, too, could be written.
   void complete(OutputFile& output) { outputs.push_back(output.complete()); }
   std::vector<CompleteFile> outputs; ///< in the order in which they get their names
-  /// A line on stderr unless -q (prefixed with the tool's name): what the user should know, not an error.
+  /// A line on stderr unless -q (prefixed with the program's name): what the user should know, not an error.
   void note(const std::string& line) const;
   void notes(const std::vector<std::string>& lines) const {
     for (const std::string& line : lines)
@@ -67,52 +63,22 @@ private:
   size_t open_ = none; ///< of phases
 };
 
+std::string version();
 /// "hier2density 0.1.0"
 std::string creator(const std::string& tool);
 
-/// Numbers with a fixed count separated by commas ("0.9,1.1"), strictly parsed. Throws Error(usage).
-std::vector<double> numbers(const std::string& option, const std::string& text, size_t count);
+/// The whole of a program's main() but for what its table and its work are. Every exception becomes one line on
+/// stderr and its exit status; the flags of the quantities that an Error names stand in that line.
+int run_program(Table& table, Common& options, int argc, char** argv, const std::function<void()>& describe,
+                const std::function<Status(Run&)>& work);
 
-namespace detail {
-void describe_common(CLI::App& app, Common& o);
-/// Exit status when the run stops here (help, version, usage), else -1.
-int parse(CLI::App& app, int argc, char** argv);
-/// Opened before the run, so that a report that cannot be written stops it before any work. Null without --report.
-/// Throws Error(usage) for files that would be written over.
-std::unique_ptr<OutputFile> open_report(const CLI::App& app, const Common& o);
-int finish(const CLI::App& app, const Common& o, Run& run, OutputFile* report, Status status);
-int failed(const std::string& tool, const std::exception& e);
-} // namespace detail
-
-/// The whole of a tool's main(). describe(app, options) declares the tool's own options; run(options, run) works
-/// and returns a Status. Every exception becomes one line on stderr and its exit status.
-template <class Options, class Describe, class RunTool>
-int run_main(const char* tool, const char* purpose, int argc, char** argv, Describe describe, RunTool run_tool) {
-  try {
-    guard_process();
-    keep_freed_pages();
-    std::ios::sync_with_stdio(false);
-    Options options;
-    CLI::App app(purpose, tool);
-    detail::describe_common(app, options);
-    describe(app, options);
-    if (const int status = detail::parse(app, argc, argv); status >= 0)
-      return status;
-    const int threads = options.resolved_threads(); // a mode that is not here stops before any file is touched
-    if (!options.on_device())                       // whose driver sets aside addresses beyond any memory
-      limit_memory(threads);
-    const std::unique_ptr<OutputFile> report = detail::open_report(app, options);
-    Run run;
-    run.tool = tool;
-    run.quiet = options.quiet;
-    run.verbose = options.verbose;
-    if (options.threads > threads && options.mode == "seq")
-      run.note("-t " + std::to_string(options.threads) + ": --mode seq is one thread");
-    const Status result = run_tool(options, run);
-    return detail::finish(app, options, run, report.get(), result);
-  } catch (const std::exception& e) {
-    return detail::failed(tool, e);
-  }
+/// describe(table, options) declares the program's own options; work(options, run) works and returns a Status.
+template <class Options, class Describe, class Work>
+int run_main(const char* program, const char* purpose, int argc, char** argv, Describe describe, Work work) {
+  Options options;
+  Table table(program, purpose);
+  return run_program(
+      table, options, argc, argv, [&] { describe(table, options); }, [&](Run& run) { return work(options, run); });
 }
 
 } // namespace molmesh::cli

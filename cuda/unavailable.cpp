@@ -1,4 +1,4 @@
-// unavailable.cpp — what --mode cuda answers in a build without CUDA.
+// unavailable.cpp — what the mode cuda answers in a build without CUDA.
 #include "base/error.hpp"
 #include "cuda/contour/contour.hpp"
 #include "cuda/density/density.hpp"
@@ -8,7 +8,7 @@
 namespace molmesh::cuda {
 
 void require_device() {
-  fail(Status::mode_unavailable, "--mode cuda: not available in this build, use seq or omp");
+  fail(Status::mode_unavailable, "mode cuda: not available in this build, use seq or omp", {"mode"});
 }
 
 std::string device_name() {

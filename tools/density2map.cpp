@@ -1,16 +1,11 @@
 // density2map.cpp — the sparse density grid (.vdb) as a dense map that other viewers read (CCP4/MRC, OpenDX).
-#include "cli/file.hpp"
-#include "cli/run.hpp"
+#include "tools/options/density2map.hpp"
 #include "formats/map/map.hpp"
 #include "formats/vdb/vdb.hpp"
 
 using namespace molmesh;
 
 namespace {
-
-struct Options : cli::Common {
-  std::string format = "auto";
-};
 
 /// By the ending of the output's name.
 std::string format_of(const Options& o) {
@@ -26,14 +21,6 @@ std::string format_of(const Options& o) {
        "-o: found " + o.output + ", expected a name that ends in one of .map, .ccp4, .mrc, .dx, or --format");
 }
 
-void describe(CLI::App& app, Options& o) {
-  app.add_option(
-         "--format", o.format,
-         "ccp4: CCP4/MRC map, binary; dx: OpenDX, text; auto: by the output's name, ccp4 where it has no ending")
-      ->type_name("FORMAT")
-      ->check(CLI::IsMember({"auto", "ccp4", "dx"}));
-}
-
 Status run(const Options& o, cli::Run& r) {
   const int threads = o.resolved_threads();
   const std::string format = format_of(o);
@@ -42,7 +29,7 @@ Status run(const Options& o, cli::Run& r) {
   cli::OutputFile out(o.output, format == "dx" ? Content::text : Content::binary);
   r.phase("read");
   const BlockGrid grid = formats::read_vdb(in.stream(), in.name(), threads);
-  r.counts["grid_points"] = {grid.frame.points.x, grid.frame.points.y, grid.frame.points.z};
+  r.counts["grid_points"] = std::vector{grid.frame.points.x, grid.frame.points.y, grid.frame.points.z};
   r.phase("write");
   (format == "dx" ? formats::write_dx : formats::write_ccp4)(out.stream(), grid, in.name());
   r.complete(out);

@@ -1,9 +1,7 @@
 // density2tet.cpp — density grid (.vdb) to a conforming tetrahedral mesh (.vtu).
-#include "cli/file.hpp"
-#include "cli/run.hpp"
+#include "tools/options/density2tet.hpp"
 #include "contour/contour.hpp"
 #include "cuda/contour/contour.hpp"
-#include "cuda/par/device.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "tools/device_report.hpp"
@@ -13,12 +11,6 @@
 using namespace molmesh;
 
 namespace {
-
-struct Options : cli::Common {
-  Options() { require_device = cuda::require_device; }
-  std::string region = "interior", box = "auto", adapt = "auto", cavities = "keep";
-  double drop_below = 0;
-};
 
 contour::BoxRequest parse_box(const std::string& text) {
   contour::BoxRequest box;
@@ -54,29 +46,6 @@ std::optional<double> parse_adapt(const std::string& text) {
   return adapt;
 }
 
-void describe(CLI::App& app, Options& o) {
-  app.add_option("--region", o.region, "what to mesh: interior (the molecule), exterior (up to the box), both")
-      ->check(CLI::IsMember({"interior", "exterior", "both"}));
-  app.add_option(
-         "--box", o.box,
-         "outer box: auto (interior: the grid; else at least twice the surface's extents), tight (the grid), a "
-         "factor of the surface's extents (> 1), or x0,y0,z0,x1,y1,z1 in Å, which may cut the molecule")
-      ->type_name("BOX");
-  app.add_option(
-         "--adapt", o.adapt,
-         "auto or 0 to 100: how far the surface may lie from a coarser cell's mean plane, in grid spacings, and "
-         "less where the chords of a small body would cost it volume; 0: uniform cells; auto: 0.1, or as many as "
-         "0.2 Å are, at most 0.85; cells are the grid's own and larger, bodies of few spacings get halves or "
-         "quarters")
-      ->type_name("ERROR");
-  app.add_option("--cavities", o.cavities, "closed cavities: keep (region 3) or fill (region 1)")
-      ->check(CLI::IsMember({"keep", "fill"}));
-  app.add_option("--drop-below", o.drop_below,
-                 "parts of the molecule smaller than this become what is round them; those that the box cuts stay")
-      ->type_name("Å³")
-      ->check(CLI::Range(0., 1e300));
-}
-
 Status run_tool(const Options& o, cli::Run& run) {
   contour::Options options;
   options.meshed = o.region == "interior"   ? contour::Options::interior
@@ -100,9 +69,9 @@ Status run_tool(const Options& o, cli::Run& run) {
     mesh = o.on_device() ? cuda::contour_mesh(grid, options, summary, phase, device)
                          : contour::contour(grid, options, summary, phase);
     if (o.on_device())
-      run.counts["device"] = cuda::json(device);
+      run.counts["device"] = device_value(device);
   } catch (const Error& e) {
-    fail(e.status, (e.status == Status::usage ? "" : input.name() + ": ") + e.what());
+    fail(e.status, (e.status == Status::usage ? "" : input.name() + ": ") + e.what(), e.quantities);
   }
   run.counts["points"] = mesh.point.size();
   run.counts["tetrahedra"] = mesh.tet.size();

@@ -1,13 +1,13 @@
-// device_report.hpp — a run on the device as JSON, for the run report.
+// device_report.hpp — a run on the device, for the run report.
 #pragma once
+#include "cli/value.hpp"
 #include "cuda/par/backend.hpp"
-#include <nlohmann/json.hpp>
 
-namespace molmesh::cuda {
+namespace molmesh {
 
-inline nlohmann::ordered_json json(const DeviceReport& r) {
-  nlohmann::ordered_json kernels = nlohmann::ordered_json::array();
-  for (const KernelTime& k : r.kernels)
+inline cli::Value device_value(const cuda::DeviceReport& r) {
+  cli::Value::List kernels;
+  for (const cuda::KernelTime& k : r.kernels)
     kernels.push_back({{"name", k.name},
                        {"launches", k.launches},
                        {"items", k.items},
@@ -15,13 +15,13 @@ inline nlohmann::ordered_json json(const DeviceReport& r) {
                        {"bytes", k.work.bytes},
                        {"multiply_adds", k.work.multiply_adds},
                        {"in_double", k.work.in_double}});
-  nlohmann::ordered_json out = {{"name", r.device},
-                                {"most_bytes", r.most_used.own},
-                                {"most_paged_bytes", r.most_used.paged},
-                                {"kernels", kernels}};
+  cli::Value out = {{"name", r.device},
+                    {"most_bytes", r.most_used.own},
+                    {"most_paged_bytes", r.most_used.paged},
+                    {"kernels", kernels}};
   if (!r.note.empty())
     out["note"] = r.note;
   return out;
 }
 
-} // namespace molmesh::cuda
+} // namespace molmesh

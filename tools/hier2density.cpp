@@ -1,9 +1,7 @@
 // hier2density.cpp — molecular hierarchy (.hier) to the sparse density grid near its surface (.vdb).
-#include "cli/file.hpp"
+#include "tools/options/hier2density.hpp"
 #include "cli/progress.hpp"
-#include "cli/run.hpp"
 #include "cuda/density/density.hpp"
-#include "cuda/par/device.hpp"
 #include "density/density.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/vdb/leaves.hpp"
@@ -16,40 +14,6 @@
 using namespace molmesh;
 
 namespace {
-
-struct Options : cli::Common {
-  Options() { require_device = cuda::require_device; }
-  std::optional<double> spacing;
-  int64_t grid = 0;
-  std::string margin = "auto";
-  double decay = 1, isovalue = 1, tolerance = 1e-4;
-  std::string band = "0.9,1.1", search = "neighbor", atoms = "bvh";
-};
-
-void describe(CLI::App& app, Options& o) {
-  app.add_option("--spacing", o.spacing, "grid spacing h")
-      ->type_name("Å")
-      ->check(CLI::PositiveNumber)
-      ->default_str("0.5");
-  app.add_option("--grid", o.grid,
-                 "points along the longest axis, 4 or more, instead of --spacing; 0: use --spacing")
-      ->check(CLI::Range(0, 1 << 29));
-  app.add_option(
-         "--margin", o.margin,
-         "grid beyond the outermost atom centres, 0 or more; auto: as far as the surface and its band can reach")
-      ->type_name("Å");
-  app.add_option("--decay", o.decay, "decay rate of an atom's term")->type_name("Å⁻²")->check(CLI::PositiveNumber);
-  app.add_option("--isovalue", o.isovalue, "the surface is where the field has this value")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--band", o.band, "limits of the band to keep, in multiples of the isovalue, 0 < LO < 1 < HI")
-      ->type_name("LO,HI");
-  app.add_option("--tolerance", o.tolerance, "largest error of a value G, in units of max(1, G)")
-      ->check(CLI::Range(1e-6, 1e-2));
-  app.add_option("--search", o.search, "neighbor: only near the surface, full: every grid point")
-      ->check(CLI::IsMember({"neighbor", "full"}));
-  app.add_option("--atoms", o.atoms, "how contributing atoms are found: bvh: boxes of the hierarchy, kdtree, all")
-      ->check(CLI::IsMember({"bvh", "kdtree", "all"}));
-}
 
 density::Options density_options(const Options& o) {
   density::Options d;
@@ -85,7 +49,7 @@ density::Options density_options(const Options& o) {
 void report(cli::Run& r, const Band& band, const formats::Leaves& leaves, const density::Counts& counts) {
   const Vec3i n = band.frame.points;
   r.counts["atoms"] = band.info.atoms;
-  r.counts["grid_points"] = {n.x, n.y, n.z};
+  r.counts["grid_points"] = std::vector{n.x, n.y, n.z};
   r.counts["spacing"] = band.frame.spacing;
   r.counts["margin"] = counts.margin;
   r.counts["analyzed_points"] = band.info.analyzed_points;
@@ -121,7 +85,7 @@ Status run(const Options& o, cli::Run& r) {
     if (o.on_device()) {
       cuda::DeviceReport device;
       band = cuda::compute_density(h, d, counts, device);
-      r.counts["device"] = cuda::json(device);
+      r.counts["device"] = device_value(device);
     } else {
       band = density::compute(h, d, counts);
     }

@@ -1,7 +1,5 @@
 // pdb2hier.cpp — atomic structure (PDB, mmCIF, mmJSON, PQR) to molecular hierarchy (.hier).
-#include "cli/file.hpp"
-#include "cli/run.hpp"
-#include "formats/pdb/pdb.hpp"
+#include "tools/options/pdb2hier.hpp"
 #include "molecule/limits.hpp"
 #include "molecule/words.hpp"
 #include <sstream>
@@ -9,51 +7,6 @@
 using namespace molmesh;
 
 namespace {
-
-struct Options : cli::Common {
-  formats::PdbOptions pdb;
-  std::string levels = "chain,residue", radii = "bondi", unknown = "2";
-  std::string hydrogens = "keep", waters = "drop", hetatm = "keep";
-  std::vector<std::string> domains, rules, resolution;
-};
-
-void describe(CLI::App& app, Options& o) {
-  const auto keep_or_drop = CLI::IsMember({"keep", "drop"});
-  app.add_option("--format", o.pdb.format,
-                 "of the input; auto: PQR where the name ends in .pqr, else from its contents")
-      ->type_name("FORMAT")
-      ->check(CLI::IsMember({"auto", "pdb", "mmcif", "bcif", "mmjson", "pqr", "gro", "xyzr"}));
-  app.add_option("--model", o.pdb.model, "first, all, or a model's number")->type_name("MODEL");
-  app.add_option("--assembly", o.pdb.assembly, "identifier of a biological assembly, or none")->type_name("ID");
-  app.add_option("--levels", o.levels, "group levels, outermost first, of domain, chain, residue; or none")
-      ->type_name("LEVELS");
-  app.add_option("--domains", o.domains, "file of lines NAME SELECTION, or entity, or copy (of the assembly)")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  app.add_option("-r,--rule", o.rules,
-                 "'SELECTION P_R=… P_C=… P_D=…': exponents (> 0) of all residues, chains and domains that the "
-                 "selection touches; 'around SELECTION Å P_R=…' is a lens; later rules win")
-      ->type_name("RULE")
-      ->allow_extra_args(false);
-  app.add_option("--resolution", o.resolution, "file of rules, one a line, applied before those of -r")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  app.add_option("--select", o.pdb.select, "keep only these atoms (gemmi's selection syntax)")
-      ->type_name("SELECTION");
-  app.add_option("--hydrogens", o.hydrogens, "keep or drop")->type_name("WHAT")->check(keep_or_drop);
-  app.add_option("--waters", o.waters, "keep or drop")->type_name("WHAT")->check(keep_or_drop);
-  app.add_option("--hetatm", o.hetatm, "hetero residues other than waters: keep or drop")
-      ->type_name("WHAT")
-      ->check(keep_or_drop);
-  app.add_option("--altloc", o.pdb.altloc,
-                 "alternative locations: occupancy (the highest), first, all, or the letter to prefer")
-      ->type_name("WHICH");
-  app.add_option(
-         "--radii", o.radii,
-         "bondi, or a file of lines ELEMENT Å or RESIDUE ATOM Å over it; PQR keeps its own unless a file is given")
-      ->type_name("FILE");
-  app.add_option("--unknown", o.unknown, "radius of elements that have none (Å, > 0), or refuse")->type_name("Å");
-}
 
 [[noreturn]] void usage(const std::string& option, const std::string& found, const std::string& expected) {
   fail(Status::usage, option + ": found '" + found + "', expected " + expected);
@@ -135,7 +88,7 @@ Status run(Options& o, cli::Run& run) {
   run.counts["dropped_charge"] = r.no_radius_charge;
   run.counts["passed_over"] = r.passed_over;
   run.counts["guessed_elements"] = r.guessed_elements;
-  run.counts["unknown_elements"] = nlohmann::json::object();
+  run.counts["unknown_elements"] = cli::Value();
   for (const auto& [element, unknown] : r.unknown_elements)
     run.counts["unknown_elements"][element] = unknown.atoms;
   return Status::good;

@@ -1,6 +1,5 @@
 // tetconvert.cpp — a mesh (.vtu) in the formats of other programs.
-#include "cli/file.hpp"
-#include "cli/run.hpp"
+#include "tools/options/tetconvert.hpp"
 #include "formats/gmsh/gmsh.hpp"
 #include "formats/mcsf/mcsf.hpp"
 #include "formats/medit/medit.hpp"
@@ -16,24 +15,11 @@ using namespace molmesh;
 
 namespace {
 
-struct Options : cli::Common {
-  std::string format = "auto";
-  std::vector<std::string> outputs() const override;
-};
-
 /// By the ending of the output's name. Those of several files are named by any of them.
 const std::vector<std::pair<const char*, const char*>> endings = {
     {".msh", "gmsh"},   {".msh2", "gmsh22"}, {".mesh", "medit"}, {".node", "tetgen"},
     {".ele", "tetgen"}, {".face", "tetgen"}, {".xdmf", "xdmf"},  {".h5", "xdmf"},
     {".m", "mcsf"},     {".stl", "stl"},     {".ply", "ply"},    {".off", "off"}};
-
-void describe(CLI::App& app, Options& o) {
-  app.add_option("--format", o.format,
-                 "gmsh: .msh 4.1; gmsh22: .msh 2.2; medit: .mesh; tetgen: .node, .ele, .face; xdmf: .xdmf, .h5; "
-                 "mcsf: FEtk's .m; of the molecular surface alone: stl, ply, off; auto: by the output's name")
-      ->type_name("FORMAT")
-      ->check(CLI::IsMember({"auto", "gmsh", "gmsh22", "medit", "tetgen", "xdmf", "mcsf", "stl", "ply", "off"}));
-}
 
 std::string ending(const std::string& path) {
   const size_t name = path.rfind('/') + 1, dot = path.rfind('.');
@@ -62,7 +48,9 @@ std::string stem(const Options& o, const std::string& format) {
   return o.output.substr(0, o.output.size() - (known ? end.size() : 0));
 }
 
-std::vector<std::string> Options::outputs() const {
+} // namespace
+
+std::vector<std::string> molmesh::Options::outputs() const {
   const std::string f = format_of(*this);
   if (f != "tetgen" && f != "xdmf")
     return {output};
@@ -70,6 +58,8 @@ std::vector<std::string> Options::outputs() const {
   return f == "xdmf" ? std::vector{name + ".xdmf", name + ".h5"}
                      : std::vector{name + ".node", name + ".ele", name + ".face"};
 }
+
+namespace {
 
 /// In the order of Options::outputs().
 using Outputs = std::deque<cli::OutputFile>;

@@ -1,6 +1,5 @@
 // tetlabel.cpp — a mesh (.vtu) and its structure (.hier) to the mesh with the structure's labels.
-#include "cli/file.hpp"
-#include "cli/run.hpp"
+#include "tools/options/tetlabel.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/pdb/hier_selection.hpp"
 #include "formats/vtu/names.hpp"
@@ -17,30 +16,6 @@
 using namespace molmesh;
 
 namespace {
-
-struct Options : cli::Common {
-  Options() { keep_input = false; } // a mesh may be labelled in its place
-  std::string hierarchy;
-  std::string decay = "auto";
-  std::vector<std::string> boundary;
-};
-
-void describe(CLI::App& app, Options& o) {
-  app.add_option("hierarchy", o.hierarchy, "the structure (.hier) that the mesh was made from")
-      ->type_name("STRUCTURE")
-      ->required();
-  app.add_option(
-         "--decay", o.decay,
-         "decay rate of an atom's term (> 0), as hier2density had it; auto: as the mesh says, 1 where it does not")
-      ->type_name("Å⁻²");
-  app.add_option(
-         "--boundary", o.boundary,
-         "NAME=SELECTION: triangles of the molecular surface that belong to these atoms (gemmi's selection "
-         "syntax, or around SELECTION Å) are a boundary of their own in the array `patch`; later ones win, a name "
-         "given again adds to it")
-      ->type_name("BOUNDARY")
-      ->allow_extra_args(false);
-}
 
 std::vector<label::NamedBoundary> select(const Options& o, const Hierarchy& h) {
   std::vector<label::NamedBoundary> boundary;

@@ -1,11 +1,7 @@
 // tetsmooth.cpp — tetrahedral mesh (.vtu) to a better one: every element good enough to solve on.
-#include "cli/file.hpp"
-#include "cli/limits.hpp"
-#include "cli/run.hpp"
+#include "tools/options/tetsmooth.hpp"
 #include "cuda/optimize/optimize.hpp"
-#include "cuda/par/device.hpp"
 #include "formats/hier/hier.hpp"
-#include "formats/report/optimization.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "mesh/attribute_transfer.hpp"
@@ -15,35 +11,13 @@
 #include "molecule/hierarchy.hpp"
 #include "optimize/optimize.hpp"
 #include "tools/device_report.hpp"
+#include "tools/optimization_report.hpp"
 #include <optional>
 #include <utility>
 
 using namespace molmesh;
 
 namespace {
-
-struct Options : cli::Common {
-  Options() {
-    require_device = cuda::require_device;
-    keep_input = false; // a mesh may be improved in its place
-  }
-  std::string density, hier;
-  int iterations = 15, parts = 8;
-  double min_dihedral = 0, max_dihedral = 180; // degrees asked for
-};
-
-void describe(CLI::App& app, Options& o) {
-  app.add_option("--density", o.density, "density grid (.vdb): surface points are kept on its isosurface")
-      ->type_name("FILE");
-  app.add_option("--hier", o.hier, "hierarchy (.hier): names what is nearest to elements that miss the quality")
-      ->type_name("FILE");
-  app.add_option("--iterations", o.iterations, "rounds at most; 0 leaves the mesh as it is")
-      ->check(CLI::Range(0, 1000));
-  app.add_option("--parts", o.parts,
-                 "parts (METIS) that the elements are numbered by in the output, one an element at most")
-      ->check(CLI::Range(1, 1000000));
-  cli::add_dihedral_limits(app, o.min_dihedral, o.max_dihedral, ", and aimed at up to 34 and 125");
-}
 
 Status run_tool(const Options& o, cli::Run& run) {
   const int threads = o.resolved_threads();
@@ -67,7 +41,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   if (grid)
     require_same_source(mesh, !notes.isovalue_missing, grid->info, density->name());
   const AttributeTransfer arrays(mesh);
-  run.counts.update({{"elements_before", mesh.tet.size()}, {"points_before", mesh.point.size()}});
+  run.counts.add({{"elements_before", mesh.tet.size()}, {"points_before", mesh.point.size()}});
   optimize::Options options{.iterations = o.iterations, .threads = threads, .measure_later = true};
   options.min_dihedral = std::max(options.min_dihedral, o.min_dihedral);
   options.max_dihedral = std::min(options.max_dihedral, o.max_dihedral);
@@ -80,28 +54,28 @@ Status run_tool(const Options& o, cli::Run& run) {
     result = o.on_device() ? cuda::improve_mesh(mesh, grid ? &*grid : nullptr, options, phase, device)
                            : optimize::improve(mesh, grid ? &*grid : nullptr, options, phase);
     if (o.on_device())
-      run.counts["device"] = cuda::json(device);
+      run.counts["device"] = device_value(device);
   } catch (const Error& e) {
-    fail(e.status, input.name() + ": " + e.what());
+    fail(e.status, input.name() + ": " + e.what(), e.quantities);
   }
   run.phase("partition");
   mesh.part = partition(mesh, o.parts, threads, std::move(result.across), [&] { result.measure(); });
   const optimize::Counts& c = result.counts;
-  run.counts.update({{"elements", mesh.tet.size()},
-                     {"points", mesh.point.size()},
-                     {"rounds", result.rounds},
-                     {"moves", c.moves},
-                     {"edge_removals", c.edge_removals},
-                     {"surface_flips", c.surface_flips},
-                     {"face_swaps", c.face_swaps},
-                     {"contractions", c.contractions},
-                     {"splits", c.splits},
-                     {"hand_overs", c.retreats},
-                     {"nestings", c.cavity_shrinks},
-                     {"quality_before", json(result.before)},
-                     {"quality_after", json(result.after)}});
+  run.counts.add({{"elements", mesh.tet.size()},
+                  {"points", mesh.point.size()},
+                  {"rounds", result.rounds},
+                  {"moves", c.moves},
+                  {"edge_removals", c.edge_removals},
+                  {"surface_flips", c.surface_flips},
+                  {"face_swaps", c.face_swaps},
+                  {"contractions", c.contractions},
+                  {"splits", c.splits},
+                  {"hand_overs", c.retreats},
+                  {"nestings", c.cavity_shrinks},
+                  {"quality_before", angles_value(result.before)},
+                  {"quality_after", angles_value(result.after)}});
   if (grid && o.iterations > 0)
-    run.counts["surface"] = json(result.fidelity);
+    run.counts["surface"] = fidelity_value(result.fidelity);
   if (result.rejected)
     run.note("as it came: the worst element was worse after " + std::to_string(result.rounds) + " rounds");
   else if (grid && o.iterations > 0 && 2 * result.fidelity.points_off > result.fidelity.points)

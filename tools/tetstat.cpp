@@ -1,28 +1,12 @@
 // tetstat.cpp — validity and quality of a tetrahedral mesh (.vtu), for people or as JSON.
+#include "tools/options/tetstat.hpp"
 #include "formats/tetstat/tetstat.hpp"
-#include "cli/file.hpp"
-#include "cli/limits.hpp"
-#include "cli/run.hpp"
 #include <optional>
 #include <ostream>
 
 using namespace molmesh;
 
 namespace {
-
-struct Options : cli::Common {
-  bool json = false, crossings = false;
-  std::string compare;
-  double min_dihedral = 0, max_dihedral = 180; // degrees
-};
-
-void describe(CLI::App& app, Options& o) {
-  app.add_flag("--json", o.json, "one JSON object instead of text (formats/tetstat/TETSTATv1.md)");
-  app.add_flag("--crossings", o.crossings, "also look for surface triangles that cross (exact)");
-  app.add_option("--compare", o.compare, "a mesh to compare with: --compare BEFORE AFTER; the status is AFTER's")
-      ->type_name("FILE");
-  cli::add_dihedral_limits(app, o.min_dihedral, o.max_dihedral);
-}
 
 formats::MeshReport report(const std::string& path, const Options& o, cli::Run& run) {
   const int threads = o.resolved_threads();
@@ -52,8 +36,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   const formats::MeshReport mesh = report(o.input, o, run);
   run.phase("write");
   if (o.json) {
-    const nlohmann::ordered_json j = before ? formats::compare_json(*before, mesh) : formats::tetstat_json(mesh);
-    output.stream() << j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    output.stream() << (before ? formats::compare_json(*before, mesh) : formats::tetstat_json(mesh));
   } else {
     output.stream() << (before ? formats::compare_text(*before, mesh) : formats::tetstat_text(mesh));
   }

@@ -1,4 +1,4 @@
-// contour.hpp — density2tet --mode cuda.
+// contour.hpp — a density grid to tetrahedra on a GPU.
 #pragma once
 #include "contour/contour.hpp"
 #include "cuda/par/backend.hpp"

@@ -125,7 +125,7 @@ private:
     if (total[4] > 0)
       fail(Status::failed, "contour: a sign-change edge without a ring");
     if (number + total[3] >= int64_t{1} << 30)
-      fail(Status::failed, "--mode cuda: the mesh has more than 2^30 points, use seq or omp");
+      fail(Status::failed, "mode cuda: the mesh has more than 2^30 points, use seq or omp", {"mode"});
     if (Make::check && !more)
       return {};
     ElementRun<Backend> run{b_.template array<Tet>(total[0]),

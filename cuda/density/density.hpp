@@ -1,4 +1,4 @@
-// density.hpp — computes the density on the GPU (hier2density --mode cuda).
+// density.hpp — computes the density on the GPU.
 #pragma once
 #include "cuda/par/backend.hpp"
 #include "density/density.hpp"

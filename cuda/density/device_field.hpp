@@ -41,9 +41,10 @@ public:
     d.steepest = f.steepest;
     d.levels = f.plain_above ? 1 : static_cast<int>(f.level.size());
     if (d.levels > FieldView::most_levels)
-      fail(Status::failed, "--mode cuda: found " + std::to_string(d.levels) +
-                               " levels of groups, expected at most " + std::to_string(FieldView::most_levels) +
-                               "; use seq or omp");
+      fail(Status::failed,
+           "mode cuda: found " + std::to_string(d.levels) + " levels of groups, expected at most " +
+               std::to_string(FieldView::most_levels) + "; use seq or omp",
+           {"mode"});
     d.x = up(x_, f.x), d.y = up(y_, f.y), d.z = up(z_, f.z), d.peak = up(peak_, f.peak);
     d.begin = up(begin_, f.begin), d.group = up(group_, f.group), d.box = up(box_, f.box);
     d.ln_peak = up(ln_peak_, f.ln_peak), d.cutoff2 = up(cutoff2_, f.cutoff2);

@@ -30,7 +30,8 @@ public:
       frame_.first[a] = frame.lower[a] >> 3;
       frame_.blocks[a] = ((frame.lower[a] + frame.points[a] + 7) >> 3) - frame_.first[a];
       if (frame_.blocks[a] >= 1 << key_bits)
-        fail(Status::failed, "--mode cuda: the grid has more than 2^24 points along an axis, use seq or omp");
+        fail(Status::failed, "mode cuda: the grid has more than 2^24 points along an axis, use seq or omp",
+             {"mode"});
     }
   }
 

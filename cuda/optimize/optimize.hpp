@@ -1,4 +1,4 @@
-// optimize.hpp — tetsmooth --mode cuda.
+// optimize.hpp — a better tetrahedral mesh on a GPU.
 #pragma once
 #include "cuda/par/backend.hpp"
 #include "optimize/optimize.hpp"

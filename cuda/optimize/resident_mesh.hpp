@@ -28,7 +28,7 @@ public:
     const int64_t had = std::exchange(elements, static_cast<int64_t>(m.element.size())),
                   had_points = std::exchange(points, static_cast<int64_t>(m.point.size()));
     if (4 * elements > int64_t{1} << 32)
-      fail(Status::failed, "--mode cuda: the mesh has more than 2^30 elements, use seq or omp");
+      fail(Status::failed, "mode cuda: the mesh has more than 2^30 elements, use seq or omp", {"mode"});
     const ElementChanges e = known_.element_changes(m);
     send(e.slot, e.corners, had, elements, corners);
     send(e.slot, e.faces, had, elements, faces_);

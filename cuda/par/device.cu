@@ -11,26 +11,29 @@ void require_device() {
   int n = 0;
   const cudaError_t e = cudaGetDeviceCount(&n);
   if (e != cudaSuccess || n == 0)
-    fail(Status::mode_unavailable, std::string("--mode cuda: no GPU here (") +
-                                       (e == cudaSuccess ? "no device" : cudaGetErrorString(e)) +
-                                       "), use seq or omp");
+    fail(Status::mode_unavailable,
+         std::string("mode cuda: no GPU here (") + (e == cudaSuccess ? "no device" : cudaGetErrorString(e)) +
+             "), use seq or omp",
+         {"mode"});
   int major = 0, minor = 0;
   if (cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, 0) != cudaSuccess ||
       cudaDeviceGetAttribute(&minor, cudaDevAttrComputeCapabilityMinor, 0) != cudaSuccess)
-    fail(Status::mode_unavailable, "--mode cuda: the GPU does not answer, use seq or omp");
+    fail(Status::mode_unavailable, "mode cuda: the GPU does not answer, use seq or omp", {"mode"});
   if (10 * major + minor < 75)
-    fail(Status::mode_unavailable, "--mode cuda: found a GPU of compute capability " + std::to_string(major) + "." +
-                                       std::to_string(minor) + ", expected 7.5 or higher; use seq or omp");
+    fail(Status::mode_unavailable,
+         "mode cuda: found a GPU of compute capability " + std::to_string(major) + "." + std::to_string(minor) +
+             ", expected 7.5 or higher; use seq or omp",
+         {"mode"});
   int has_pools = 0;
   if (cudaDeviceGetAttribute(&has_pools, cudaDevAttrMemoryPoolsSupported, 0) != cudaSuccess || has_pools == 0)
-    fail(Status::mode_unavailable, "--mode cuda: found a GPU without memory pools, use seq or omp");
+    fail(Status::mode_unavailable, "mode cuda: found a GPU without memory pools, use seq or omp", {"mode"});
 }
 
 std::string device_name() {
   require_device();
   cudaDeviceProp p{};
   if (cudaGetDeviceProperties(&p, 0) != cudaSuccess)
-    fail(Status::mode_unavailable, "--mode cuda: the GPU does not answer, use seq or omp");
+    fail(Status::mode_unavailable, "mode cuda: the GPU does not answer, use seq or omp", {"mode"});
   return std::string(p.name) + ", " + std::to_string(p.multiProcessorCount) + " multiprocessors, " +
          std::to_string(p.totalGlobalMem >> 30) + " GiB";
 }

@@ -56,14 +56,6 @@ std::string angle_rows(const Distribution& a, const Distribution& b) {
 
 } // namespace
 
-nlohmann::ordered_json compare_json(const MeshReport& a, const MeshReport& b) {
-  nlohmann::ordered_json j;
-  j["tetstat_compare"] = 1;
-  j["a"] = tetstat_json(a);
-  j["b"] = tetstat_json(b);
-  return j;
-}
-
 std::string compare_text(const MeshReport& a, const MeshReport& b) {
   std::string s = "A  " + a.file + (a.creator.empty() ? "" : ", made by " + plain(a.creator)) + "\nB  " + b.file +
                   (b.creator.empty() ? "" : ", made by " + plain(b.creator)) + "\n\n";

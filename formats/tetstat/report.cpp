@@ -2,6 +2,7 @@
 #include "formats/tetstat/tetstat.hpp"
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 namespace molmesh::formats {
@@ -32,33 +33,7 @@ json quality_json(const Quality& q) {
           {"outside", q.outside}};
 }
 
-} // namespace
-
-MeshReport report_mesh(const TetMesh& m, const std::string& file, const VtuNotes& notes, Validity validity,
-                       AngleLimits asked, int threads) {
-  MeshReport r;
-  r.file = file;
-  r.source = m.source;
-  r.creator = m.creator;
-  r.isovalue = m.isovalue;
-  r.points = static_cast<int64_t>(m.point.size());
-  r.tets = static_cast<int64_t>(m.tet.size());
-  r.triangles = static_cast<int64_t>(m.tri.size());
-  std::map<int32_t, int64_t> labels;
-  for (int32_t b : m.boundary)
-    ++labels[b];
-  for (const auto& [label, count] : labels)
-    r.labels.push_back({label, count});
-  r.parts = static_cast<int64_t>(std::set<int32_t>(m.part.begin(), m.part.end()).size());
-  r.notes = notes;
-  r.validity = std::move(validity);
-  if (!r.validity.region.empty())
-    r.quality = measure_quality(m, threads, asked);
-  r.asked = asked;
-  return r;
-}
-
-json tetstat_json(const MeshReport& r) {
+json mesh_json(const MeshReport& r) {
   const Validity& v = r.validity;
   json j;
   j["tetstat"] = 1;
@@ -96,6 +71,48 @@ json tetstat_json(const MeshReport& r) {
                             {"quality", quality_json(r.quality->of[i])}});
   }
   return j;
+}
+
+std::string text_of(const json& j) {
+  return j.dump(2, ' ', false, json::error_handler_t::replace) + '\n';
+}
+
+} // namespace
+
+MeshReport report_mesh(const TetMesh& m, const std::string& file, const VtuNotes& notes, Validity validity,
+                       AngleLimits asked, int threads) {
+  MeshReport r;
+  r.file = file;
+  r.source = m.source;
+  r.creator = m.creator;
+  r.isovalue = m.isovalue;
+  r.points = static_cast<int64_t>(m.point.size());
+  r.tets = static_cast<int64_t>(m.tet.size());
+  r.triangles = static_cast<int64_t>(m.tri.size());
+  std::map<int32_t, int64_t> labels;
+  for (int32_t b : m.boundary)
+    ++labels[b];
+  for (const auto& [label, count] : labels)
+    r.labels.push_back({label, count});
+  r.parts = static_cast<int64_t>(std::set<int32_t>(m.part.begin(), m.part.end()).size());
+  r.notes = notes;
+  r.validity = std::move(validity);
+  if (!r.validity.region.empty())
+    r.quality = measure_quality(m, threads, asked);
+  r.asked = asked;
+  return r;
+}
+
+std::string tetstat_json(const MeshReport& r) {
+  return text_of(mesh_json(r));
+}
+
+std::string compare_json(const MeshReport& a, const MeshReport& b) {
+  json j;
+  j["tetstat_compare"] = 1;
+  j["a"] = mesh_json(a);
+  j["b"] = mesh_json(b);
+  return text_of(j);
 }
 
 } // namespace molmesh::formats

@@ -3,7 +3,6 @@
 #include "formats/vtu/vtu.hpp"
 #include "mesh/quality.hpp"
 #include "mesh/validity.hpp"
-#include <nlohmann/json.hpp>
 #include <optional>
 
 namespace molmesh::formats {
@@ -26,11 +25,12 @@ struct MeshReport {
 MeshReport report_mesh(const TetMesh& m, const std::string& file, const VtuNotes& notes, Validity validity,
                        AngleLimits asked, int threads);
 
-nlohmann::ordered_json tetstat_json(const MeshReport& r);
+/// One JSON object and a line end.
+std::string tetstat_json(const MeshReport& r);
 std::string tetstat_text(const MeshReport& r);
 
 /// Two meshes side by side, `a` before and `b` after.
-nlohmann::ordered_json compare_json(const MeshReport& a, const MeshReport& b);
+std::string compare_json(const MeshReport& a, const MeshReport& b);
 std::string compare_text(const MeshReport& a, const MeshReport& b);
 
 } // namespace molmesh::formats

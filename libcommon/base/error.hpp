@@ -2,6 +2,8 @@
 #pragma once
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace molmesh {
 
@@ -16,13 +18,16 @@ enum class Status {
 };
 
 /// what() is one line without a final newline; for bad input "FILE:LINE: what was found, what was expected".
+/// quantities: what the caller may change to get further ("spacing", "box"), so that a program can name its flags.
 struct Error : std::runtime_error {
-  Error(Status s, const std::string& line) : std::runtime_error(line), status(s) {}
+  Error(Status s, const std::string& line, std::vector<std::string> changed = {})
+      : std::runtime_error(line), status(s), quantities(std::move(changed)) {}
   Status status;
+  std::vector<std::string> quantities;
 };
 
-[[noreturn]] inline void fail(Status status, const std::string& line) {
-  throw Error(status, line);
+[[noreturn]] inline void fail(Status status, const std::string& line, std::vector<std::string> quantities = {}) {
+  throw Error(status, line, std::move(quantities));
 }
 /// Input that is unreadable or invalid: status 3. What the input itself put into the message stays on the line.
 [[noreturn]] inline void fail_input(std::string line) {

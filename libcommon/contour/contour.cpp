@@ -32,9 +32,11 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   on_phase("assembly");
   TetMesh mesh = stages.assemble(options.meshed);
   if (mesh.tet.empty())
-    fail(Status::failed, "the region asked for has no part in the box" +
-                             std::string(options.drop_below > 0 ? ", or --drop-below has taken all of it" : "") +
-                             ": nothing to mesh");
+    fail(Status::failed,
+         "the region asked for has no part in the box" +
+             std::string(options.drop_below > 0 ? ", or all of it is smaller than drop-below" : "") +
+             ": nothing to mesh",
+         options.drop_below > 0 ? std::vector<std::string>{"drop-below"} : std::vector<std::string>{});
   mesh.isovalue = grid.info.isovalue;
   mesh.decay = grid.info.decay;
   mesh.source = grid.info.source;

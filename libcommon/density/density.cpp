@@ -17,18 +17,17 @@ void check_band(const Options& o) {
                room = std::min(o.band_upper - o.isovalue, o.isovalue - o.band_lower);
   char text[200];
   if (!(o.band_upper <= 1e38)) {
-    std::snprintf(text, sizeof text,
-                  "the band reaches up to %g, expected at most 1e38: a lower --isovalue or --band", o.band_upper);
-    fail(Status::usage, text);
+    std::snprintf(text, sizeof text, "the band reaches up to %g, expected at most 1e38: a lower isovalue or band",
+                  o.band_upper);
+    fail(Status::usage, text, {"isovalue", "band"});
   }
   if (off <= room * (1 + 1e-12))
     return;
-  std::snprintf(
-      text, sizeof text,
-      "--tolerance: found %g, expected at most %g, the band's reach from the isovalue of %g: a wider --band "
-      "or a larger --isovalue would do, too",
-      o.tolerance, room / std::max(1.0, o.isovalue), o.isovalue);
-  fail(Status::usage, text);
+  std::snprintf(text, sizeof text,
+                "tolerance: found %g, expected at most %g, the band's reach from the isovalue of %g: a wider band "
+                "or a larger isovalue would do, too",
+                o.tolerance, room / std::max(1.0, o.isovalue), o.isovalue);
+  fail(Status::usage, text, {"tolerance", "band", "isovalue"});
 }
 
 /// Terms over a block are known to κh²·1e-14 or so, and clusters near it to 1e-6 h (field.md §4).
@@ -37,9 +36,9 @@ void check_spacing(const Options& o, double h) {
   if (o.decay * h * h <= most)
     return;
   char text[200];
-  std::snprintf(text, sizeof text, "the spacing is %g Å, expected at most %g Å at this --decay: %s", h,
-                std::sqrt(most / o.decay), o.grid_points > 0 ? "a larger --grid" : "a smaller --spacing");
-  fail(Status::usage, text);
+  std::snprintf(text, sizeof text, "the spacing is %g Å, expected at most %g Å at this decay: %s", h,
+                std::sqrt(most / o.decay), o.grid_points > 0 ? "a larger grid" : "a smaller spacing");
+  fail(Status::usage, text, {o.grid_points > 0 ? "grid" : "spacing", "decay"});
 }
 
 /// enough: a margin that suffices.
@@ -64,8 +63,10 @@ void check_values(BandBlocks blocks) {
     for (const uint64_t word : b.active)
       n += std::popcount(word);
     if (!std::all_of(value, value + n, [](float v) { return std::isfinite(v); }))
-      fail(Status::usage, "next to the surface the field is above 3.4e38, beyond the file's single precision: "
-                          "expected a smaller --spacing, --decay or exponent");
+      fail(Status::usage,
+           "next to the surface the field is above 3.4e38, beyond the file's single precision: "
+           "expected a smaller spacing, decay or exponent",
+           {"spacing", "decay"});
   }
 }
 

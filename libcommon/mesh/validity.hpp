@@ -4,7 +4,7 @@
 
 namespace molmesh {
 
-/// Rules, in the order in which they are reported. Names are part of `tetstat --json`.
+/// Rules, in the order in which they are reported. Names are part of tetstat's JSON (TETSTATv1).
 ///   index                a corner names no point
 ///   volume               a tetrahedron without positive volume (exact)
 ///   duplicate_point      two points with the same coordinates (exact)

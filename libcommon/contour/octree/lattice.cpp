@@ -112,19 +112,22 @@ Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls, i
   for (int a = 0; a < 3; ++a)
     if (const double low = frame.position(frame.lower)[a], high = frame.position(grid_last)[a];
         !(lower[a] < high && upper[a] > low))
-      fail(Status::usage, "--box: found " + std::to_string(lower[a]) + " to " + std::to_string(upper[a]) +
-                              " Å along " + "xyz"[a] + ", expected a box that meets the grid, from " +
-                              std::to_string(low) + " to " + std::to_string(high));
+      fail(Status::usage,
+           "box: found " + std::to_string(lower[a]) + " to " + std::to_string(upper[a]) + " Å along " + "xyz"[a] +
+               ", expected a box that meets the grid, from " + std::to_string(low) + " to " + std::to_string(high),
+           {"box"});
   const double h = frame.spacing;
   double least = 1e300;
   for (int a = 0; a < 3; ++a) {
     const double extent = (upper[a] - lower[a]) / h;
     if (!(extent >= 4 * (1 - 1e-9)))
       fail(Status::usage,
-           "--box: found an extent of " + std::to_string(extent * h) + " Å, expected at least four grid spacings");
+           "box: found an extent of " + std::to_string(extent * h) + " Å, expected at least four grid spacings",
+           {"box"});
     if (!(extent < most_cells / 2))
       fail(Status::usage,
-           "--box: found " + std::to_string(extent) + " grid spacings along an axis, expected fewer than 524288");
+           "box: found " + std::to_string(extent) + " grid spacings along an axis, expected fewer than 524288",
+           {"box"});
     least = std::min(least, extent);
   }
   const bool exact = request.kind != BoxRequest::automatic;
@@ -224,8 +227,10 @@ bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
 }
 
 void refuse_surface_at_wall() {
-  fail(Status::failed, "the surface meets the wall of the box: give hier2density a larger --margin, or ask for the "
-                       "cut with --box x0,y0,z0,x1,y1,z1");
+  fail(Status::failed,
+       "the surface meets the wall of the box, expected a grid with a larger margin, or a box that is given "
+       "by its corners and cuts the surface",
+       {"margin", "box"});
 }
 
 } // namespace molmesh::contour

@@ -228,8 +228,10 @@ private:
     m_.for_n("count leaves", entry.n, entries);
     const int64_t leaves = m_.scan("scan", count.data(), entry.n), n = m_.scan("scan", blocks.data(), entry.n);
     if (leaves >= most_leaves)
-      fail(Status::failed, "the octree has " + std::to_string(leaves) + " leaves, expected fewer than " +
-                               std::to_string(most_leaves) + ": use a coarser grid or --adapt");
+      fail(Status::failed,
+           "the octree has " + std::to_string(leaves) + " leaves, expected fewer than " +
+               std::to_string(most_leaves) + ", or a larger adapt, or a coarser grid",
+           {"adapt"});
     LeafLists<Launcher> out{{m_.template array<uint64_t>(leaves), leaves},
                             {m_.template array<uint8_t>(leaves), leaves},
                             {m_.template array<OctreeView::Block>(n), n},

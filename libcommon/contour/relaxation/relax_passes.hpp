@@ -37,8 +37,10 @@ public:
   /// So many elements, if stars can name them.
   static int64_t numbered(int64_t elements) {
     if (constexpr int64_t most = INT32_MAX; elements > most)
-      fail(Status::failed, std::to_string(elements) + " elements on both sides, expected " + std::to_string(most) +
-                               " at most: a coarser spacing or a larger --adapt");
+      fail(Status::failed,
+           std::to_string(elements) + " elements on both sides, expected " + std::to_string(most) +
+               " at most: a coarser spacing or a larger adapt",
+           {"adapt"});
     return elements;
   }
 

@@ -51,8 +51,8 @@ bool BlockAtoms::place_exactly(Vec3d middle) {
       constant = std::max(constant, to.atom_constant[a] = atom.log2_term - center.log2_term);
       wide = std::max(wide, std::max(1.0, p) * most(slope));
     }
-    // Where powers are only added, one below 2^-200 (far away, with --atoms all) may be any such number; 2^31
-    // atoms.
+    // Where powers are only added, one below 2^-200 (far away, where all atoms are summed) may be any such number;
+    // 2^31 atoms.
     if (f_.plain_above && p * (center.log2_term + constant + 31) + 2 * wide < -200) {
       to.log2_term[u] = -900 / p;
       to.x[u] = to.y[u] = to.z[u] = 0;

@@ -203,9 +203,9 @@ Field make_field(const Hierarchy& h, double decay, double far_error, int threads
   if (!(f.ln_highest < 1e8)) {
     char text[160];
     std::snprintf(text, sizeof text,
-                  "the field's logarithm reaches %g, expected less than 1e8: a smaller --decay, radius or exponent",
+                  "the field's logarithm reaches %g, expected less than 1e8: a smaller decay, radius or exponent",
                   f.ln_highest);
-    fail(Status::usage, text);
+    fail(Status::usage, text, {"decay"});
   }
   for (size_t l = 1; l < f.level.size(); ++l)
     for (const double p : f.level[l].exponent)

@@ -67,12 +67,14 @@ GridFrame frame(Vec3d lo, Vec3d extent, double h, int longest, int64_t n) {
     // A corner that rounding puts a hair beyond the last point counts as on it.
     const double cells = a == longest ? static_cast<double>(n - 1) : std::ceil(extent[a] / h * (1 - 1e-12));
     if (!(cells < 1 << 29))
-      fail(Status::usage, "the grid would have more than 2^29 points along an axis, expected a larger --spacing or "
-                          "--decay, or a smaller --margin");
+      fail(Status::usage,
+           "the grid would have more than 2^29 points along an axis, expected a larger spacing or "
+           "decay, or a smaller margin",
+           {"spacing", "decay", "margin"});
     // The file's transform and the mesh's points are doubles: these are resolved to 1e-5 of a spacing there.
     if (!(std::max(std::abs(lo[a]), std::abs(lo[a] + extent[a])) < 1e10 * h))
       fail(Status::usage,
-           "atoms are over 10^10 spacings from the origin, expected a larger --spacing or nearer atoms");
+           "atoms are over 10^10 spacings from the origin, expected a larger spacing or nearer atoms", {"spacing"});
     f.points[a] = static_cast<int32_t>(std::max(1.0, cells)) + 1;
   }
   return f;

@@ -3,6 +3,7 @@
 #include "cli/run.hpp"
 #include "par/par.hpp"
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 using namespace molmesh;
 using namespace molmesh::test;
@@ -17,12 +18,12 @@ struct Options : cli::Common {
   std::vector<std::string> rules;
 };
 
-void describe(CLI::App& app, Options& o) {
-  app.add_option("--spacing", o.spacing, "distance of grid points")->type_name("Å")->check(CLI::Range(0.01, 10.0));
-  app.add_option("--parts", o.parts, "number of parts")->check(CLI::PositiveNumber);
-  app.add_option("-r,--rule", o.rules, "resolution rule");
-  app.add_option("--domains", o.domains, "domains of the structure")->type_name("FILE");
-  app.add_flag("--fill", o.fill, "fill cavities");
+void describe(cli::Table& table, Options& o) {
+  table.add("--spacing", o.spacing, "distance of grid points").unit("Å").within(0.01, 10);
+  table.add("--parts", o.parts, "number of parts").positive();
+  table.add("-r,--rule", o.rules, "resolution rule");
+  table.add("--domains", o.domains, "domains of the structure").unit("FILE");
+  table.add("--fill", o.fill, "fill cavities");
 }
 
 using Body = std::function<Status(const Options&, cli::Run&)>;

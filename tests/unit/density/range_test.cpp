@@ -72,7 +72,7 @@ TEST_CASE("a value that a float does not hold is refused where the file would ne
   h.atom.push_back({{0, 0, 0}, 40.0});
   density::Options o;
   o.spacing = 2;
-  CHECK(test::refusal(Status::usage, [&] { compute(h, o); }).find("--spacing") != std::string::npos);
+  CHECK(test::refusal(Status::usage, [&] { compute(h, o); }).find("a smaller spacing") != std::string::npos);
   o.decay = 1e6;
-  CHECK(test::refusal(Status::usage, [&] { compute(h, o); }).find("--decay") != std::string::npos);
+  CHECK(test::refusal(Status::usage, [&] { compute(h, o); }).find("a smaller decay") != std::string::npos);
 }

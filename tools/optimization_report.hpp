@@ -1,14 +1,15 @@
-// optimization.hpp — what was improved, and how near the surface is, as JSON for the run report (formats/report).
+// optimization_report.hpp — angles of a mesh, and how near its surface is, for the run report.
 #pragma once
+#include "cli/value.hpp"
 #include "optimize/mesh/measures.hpp"
-#include <nlohmann/json.hpp>
 
-namespace molmesh::optimize {
+namespace molmesh {
 
-inline nlohmann::ordered_json json(const Angles& a) {
+inline cli::Value angles_value(const optimize::Angles& a) {
   return {{"min_dihedral", a.min}, {"max_dihedral", a.max}, {"below_25", a.below_25}, {"above_140", a.above_140}};
 }
-inline nlohmann::ordered_json json(const Fidelity& f) {
+
+inline cli::Value fidelity_value(const optimize::Fidelity& f) {
   return {{"points", f.points},
           {"points_off", f.points_off},
           {"points_off_cavity", f.points_off_cavity},
@@ -21,4 +22,4 @@ inline nlohmann::ordered_json json(const Fidelity& f) {
           {"volume_missing", f.missing}};
 }
 
-} // namespace molmesh::optimize
+} // namespace molmesh

@@ -1,0 +1,51 @@
+// density2tet.hpp — options and page of density2tet.
+#pragma once
+#include "cli/run.hpp"
+#include "cuda/par/device.hpp"
+
+namespace molmesh {
+
+struct Options : cli::Common {
+  Options() { require_device = cuda::require_device; }
+  std::string region = "interior", box = "auto", adapt = "auto", cavities = "keep";
+  double drop_below = 0;
+};
+
+inline void describe(cli::Table& t, Options& o) {
+  t.group("mesh");
+  t.add("--region", o.region, "what to mesh: interior (the molecule), exterior (up to the box), both")
+      .one_of({"interior", "exterior", "both"});
+  t.add("--box", o.box,
+        "outer box: auto (interior: the grid; else at least twice the surface's extents), tight (the grid), a "
+        "factor of the surface's extents (> 1), or x0,y0,z0,x1,y1,z1 in Å, which may cut the molecule")
+      .unit("BOX");
+  t.add("--adapt", o.adapt,
+        "auto or 0 to 100: how far the surface may lie from a coarser cell's mean plane, in grid spacings, and "
+        "less where the chords of a small body would cost it volume; 0: uniform cells; auto: 0.1, or as many as "
+        "0.2 Å are, at most 0.85; cells are the grid's own and larger, bodies of few spacings get halves or "
+        "quarters")
+      .unit("ERROR");
+  t.group("small parts");
+  t.add("--cavities", o.cavities, "closed cavities: keep (region 3) or fill (region 1)").one_of({"keep", "fill"});
+  t.add("--drop-below", o.drop_below,
+        "parts of the molecule smaller than this become what is round them; those that the box cuts stay")
+      .unit("Å³")
+      .within(0, 1e300);
+  t.quantity("margin", "hier2density --margin");
+  t.page.about =
+      "Meshes the isosurface of a density grid by dual contouring on an octree: the inside of the molecule, its "
+      "surroundings up to a box, or both in one conforming mesh. The mesh is valid by construction: positive "
+      "volumes, every face in one or two tetrahedra, every region's boundary a closed manifold. Cells are "
+      "larger where the surface is flat. Regions of tetrahedra are 1 the molecule, 2 outside and 3 closed "
+      "cavities; boundaries of triangles are 1 the molecular surface and 2 to 7 the walls of the box.";
+  t.page.examples = {{"density2tet 1tii.vdb -o 1tii.tet.vtu", "the molecule alone"},
+                     {"density2tet --region both --box 3 1tii.vdb -o 1tii.tet.vtu",
+                      "the molecule and its surroundings, in a box three times its extents"},
+                     {"density2tet --region exterior --cavities fill --drop-below 50 1tii.vdb -o 1tii.tet.vtu",
+                      "the surroundings alone, without closed cavities and bodies of less than 50 Å³"}};
+  t.page.files = {{".vdb", "density grid (OpenVDB), read: formats/vdb/VDBv1.md"},
+                  {".vtu", "mesh (VTK), written: formats/vtu/VTUv1.md"}};
+  t.page.see_also = {"hier2density", "tetsmooth", "tetstat"};
+}
+
+} // namespace molmesh

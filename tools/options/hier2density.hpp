@@ -1,0 +1,50 @@
+// hier2density.hpp — options and page of hier2density.
+#pragma once
+#include "cli/run.hpp"
+#include "cuda/par/device.hpp"
+
+namespace molmesh {
+
+struct Options : cli::Common {
+  Options() { require_device = cuda::require_device; }
+  std::optional<double> spacing;
+  int64_t grid = 0;
+  std::string margin = "auto";
+  double decay = 1, isovalue = 1, tolerance = 1e-4;
+  std::string band = "0.9,1.1", search = "neighbor", atoms = "bvh";
+};
+
+inline void describe(cli::Table& t, Options& o) {
+  t.group("grid");
+  t.add("--spacing", o.spacing, "grid spacing h").unit("Å").positive().shown_default("0.5");
+  t.add("--grid", o.grid, "points along the longest axis, 4 or more, instead of --spacing; 0: use --spacing")
+      .within(0, 1 << 29);
+  t.add("--margin", o.margin,
+        "grid beyond the outermost atom centres, 0 or more; auto: as far as the surface and its band can reach")
+      .unit("Å");
+  t.group("density");
+  t.add("--decay", o.decay, "decay rate of an atom's term").unit("Å⁻²").positive();
+  t.add("--isovalue", o.isovalue, "the surface is where the field has this value").positive();
+  t.add("--band", o.band, "limits of the band to keep, in multiples of the isovalue, 0 < LO < 1 < HI")
+      .unit("LO,HI");
+  t.add("--tolerance", o.tolerance, "largest error of a value G, in units of max(1, G)").within(1e-6, 1e-2);
+  t.group("search");
+  t.add("--search", o.search, "neighbor: only near the surface, full: every grid point")
+      .one_of({"neighbor", "full"});
+  t.add("--atoms", o.atoms, "how contributing atoms are found: bvh: boxes of the hierarchy, kdtree, all")
+      .one_of({"bvh", "kdtree", "all"});
+  t.page.about =
+      "Computes the density of a molecular hierarchy on a grid, near the surface alone. The density is the sum "
+      "over "
+      "the outermost groups of (the sum over the members)^P, where an atom of radius r at distance d is "
+      "exp(-κ(d² - r²)), κ being the decay rate; the surface is where the density has the isovalue. Every stored "
+      "value is within the tolerance of that sum, and every grid cell that the surface crosses is in the file.";
+  t.page.examples = {{"hier2density --spacing 1 1tii.hier -o 1tii.vdb", "the density at a spacing of 1 Å"},
+                     {"hier2density --grid 257 1tii.hier -o 1tii.vdb", "257 grid points along the longest axis"},
+                     {"pdb2hier 1tii.pdb | hier2density --decay 0.5 -o 1tii.vdb", "a softer surface, from a pipe"}};
+  t.page.files = {{".hier", "molecular hierarchy, read: formats/hier/HIERv1.md"},
+                  {".vdb", "density grid (OpenVDB), written: formats/vdb/VDBv1.md"}};
+  t.page.see_also = {"pdb2hier", "density2tet", "density2map"};
+}
+
+} // namespace molmesh

@@ -1,0 +1,59 @@
+// pdb2hier.hpp — options and page of pdb2hier.
+#pragma once
+#include "cli/run.hpp"
+#include "formats/pdb/pdb.hpp"
+
+namespace molmesh {
+
+struct Options : cli::Common {
+  formats::PdbOptions pdb;
+  std::string levels = "chain,residue", radii = "bondi", unknown = "2";
+  std::string hydrogens = "keep", waters = "drop", hetatm = "keep";
+  std::vector<std::string> domains, rules, resolution;
+};
+
+inline void describe(cli::Table& t, Options& o) {
+  const std::vector<std::string> keep_or_drop = {"keep", "drop"};
+  t.group("structure");
+  t.add("--format", o.pdb.format, "of the input; auto: PQR where the name ends in .pqr, else from its contents")
+      .unit("FORMAT")
+      .one_of({"auto", "pdb", "mmcif", "bcif", "mmjson", "pqr", "gro", "xyzr"});
+  t.add("--model", o.pdb.model, "first, all, or a model's number").unit("MODEL");
+  t.add("--assembly", o.pdb.assembly, "identifier of a biological assembly, or none").unit("ID");
+  t.group("levels and resolution");
+  t.add("--levels", o.levels, "group levels, outermost first, of domain, chain, residue; or none").unit("LEVELS");
+  t.add("--domains", o.domains, "file of lines NAME SELECTION, or entity, or copy (of the assembly)").unit("FILE");
+  t.add("-r,--rule", o.rules,
+        "'SELECTION P_R=… P_C=… P_D=…': exponents (> 0) of all residues, chains and domains that the "
+        "selection touches; 'around SELECTION Å P_R=…' is a lens; later rules win")
+      .unit("RULE");
+  t.add("--resolution", o.resolution, "file of rules, one a line, applied before those of -r").unit("FILE");
+  t.group("atoms");
+  t.add("--select", o.pdb.select, "keep only these atoms (gemmi's selection syntax)").unit("SELECTION");
+  t.add("--hydrogens", o.hydrogens, "keep or drop").unit("WHAT").one_of(keep_or_drop);
+  t.add("--waters", o.waters, "keep or drop").unit("WHAT").one_of(keep_or_drop);
+  t.add("--hetatm", o.hetatm, "hetero residues other than waters: keep or drop").unit("WHAT").one_of(keep_or_drop);
+  t.add("--altloc", o.pdb.altloc,
+        "alternative locations: occupancy (the highest), first, all, or the letter to prefer")
+      .unit("WHICH");
+  t.add("--radii", o.radii,
+        "bondi, or a file of lines ELEMENT Å or RESIDUE ATOM Å over it; PQR keeps its own unless a file is given")
+      .unit("FILE");
+  t.add("--unknown", o.unknown, "radius of elements that have none (Å, > 0), or refuse").unit("Å");
+  t.page.about =
+      "Reads the atoms of a structure, gives each a radius and writes who belongs to which residue, chain and "
+      "domain. "
+      "Every group has an exponent P that says how sharp it is drawn: a small one blurs the group, a large one "
+      "shows its members. Rules set the exponents; by default P_R (residues) is 0.3, P_C (chains) and P_D "
+      "(domains) are 1. Input may be plain or gzip. What is dropped is said on standard error.";
+  t.page.examples = {
+      {"pdb2hier 1tii.pdb -o 1tii.hier", "the whole structure with the default exponents"},
+      {"pdb2hier -r '* P_R=0.05 P_C=0.5' -r '//D P_R=0.5 P_C=1' 1tii.pdb -o 1tii.hier", "blurred, but for chain D"},
+      {"pdb2hier --assembly 1 --select //A,B --waters keep 4hhb.cif.gz -o 4hhb.hier",
+       "chains A and B of a biological assembly, with waters"}};
+  t.page.files = {{".pdb, .cif, .bcif, .json, .pqr, .gro, .xyzr", "atomic structure, also as .gz, read: formats/pdb/PDB.md"},
+                  {".hier", "molecular hierarchy, written: formats/hier/HIERv1.md"}};
+  t.page.see_also = {"hier2density", "tetlabel"};
+}
+
+} // namespace molmesh

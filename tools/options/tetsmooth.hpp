@@ -1,0 +1,47 @@
+// tetsmooth.hpp — options and page of tetsmooth.
+#pragma once
+#include "cli/limits.hpp"
+#include "cli/run.hpp"
+#include "cuda/par/device.hpp"
+
+namespace molmesh {
+
+struct Options : cli::Common {
+  Options() {
+    require_device = cuda::require_device;
+    keep_input = false; // a mesh may be improved in its place
+  }
+  std::string density, hier;
+  int iterations = 15, parts = 8;
+  double min_dihedral = 0, max_dihedral = 180; // degrees asked for
+};
+
+inline void describe(cli::Table& t, Options& o) {
+  t.group("improvement");
+  t.add("--density", o.density, "density grid (.vdb): surface points are kept on its isosurface").unit("FILE");
+  t.add("--hier", o.hier, "hierarchy (.hier): names what is nearest to elements that miss the quality")
+      .unit("FILE");
+  t.add("--iterations", o.iterations, "rounds at most; 0 leaves the mesh as it is").within(0, 1000);
+  t.add("--parts", o.parts, "parts (METIS) that the elements are numbered by in the output, one an element at most")
+      .within(1, 1000000);
+  t.group("quality");
+  cli::add_dihedral_limits(t, o.min_dihedral, o.max_dihedral, ", and aimed at up to 34 and 125");
+  t.page.about =
+      "Improves a tetrahedral mesh by swaps, contractions, moves and splits. It never inverts an element and never "
+      "makes the worst one worse. With a density, surface points are put on the isosurface and kept there; "
+      "without, they move on the surface that came in. Regions, boundaries and labels stay. It aims at "
+      "dihedral angles from 26° to 138.5°; asked for more, it aims at that and takes longer. When the mesh, "
+      "valid and written, is below what was asked for, the exit status is 5.";
+  t.page.examples = {
+      {"tetsmooth --density 1tii.vdb 1tii.tet.vtu -o 1tii.vtu", "better elements, the surface on the isosurface"},
+      {"tetsmooth --min-dihedral 20 --hier 1tii.hier 1tii.tet.vtu -o 1tii.vtu",
+       "status 5 below 20°, and what is nearest to the elements that miss it"},
+      {"tetsmooth --parts 64 --density 1tii.vdb 1tii.tet.vtu -o 1tii.vtu",
+       "elements in 64 parts for a parallel solver"}};
+  t.page.files = {{".vtu", "mesh (VTK), read and written: formats/vtu/VTUv1.md"},
+                  {".vdb", "density grid (OpenVDB), read: formats/vdb/VDBv1.md"},
+                  {".hier", "molecular hierarchy, read: formats/hier/HIERv1.md"}};
+  t.page.see_also = {"density2tet", "tetstat", "tetlabel", "tetconvert"};
+}
+
+} // namespace molmesh

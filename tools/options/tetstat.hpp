@@ -1,0 +1,36 @@
+// tetstat.hpp — options and page of tetstat.
+#pragma once
+#include "cli/limits.hpp"
+#include "cli/run.hpp"
+
+namespace molmesh {
+
+struct Options : cli::Common {
+  bool json = false, crossings = false;
+  std::string compare;
+  double min_dihedral = 0, max_dihedral = 180; // degrees
+};
+
+inline void describe(cli::Table& t, Options& o) {
+  t.group("report");
+  t.add("--json", o.json, "one JSON object instead of text (formats/tetstat/TETSTATv1.md)");
+  t.add("--crossings", o.crossings, "also look for surface triangles that cross (exact)");
+  t.add("--compare", o.compare, "a mesh to compare with: --compare BEFORE AFTER; the status is AFTER's")
+      .unit("FILE");
+  t.group("quality");
+  cli::add_dihedral_limits(t, o.min_dihedral, o.max_dihedral);
+  t.page.about =
+      "Says whether a tetrahedral mesh is valid and how good its elements are: orientation by an exact predicate; "
+      "every "
+      "face, edge and vertex of every region's boundary; volumes and areas; dihedral angles, Joe-Liu's Q and η, "
+      "edge ratio. Any tetrahedral .vtu will do. The exit status is 5 when the mesh is invalid or has angles "
+      "outside those asked for.";
+  t.page.examples = {{"tetstat 1tii.vtu", "the report on one screen"},
+                     {"tetstat --min-dihedral 20 --json 1tii.vtu -o 1tii.json", "for programs; status 5 below 20°"},
+                     {"tetstat --compare 1tii.tet.vtu 1tii.vtu", "two meshes side by side"}};
+  t.page.files = {{".vtu", "mesh (VTK), read: formats/vtu/VTUv1.md"},
+                  {".json", "the report for programs, written: formats/tetstat/TETSTATv1.md"}};
+  t.page.see_also = {"tetsmooth", "density2tet"};
+}
+
+} // namespace molmesh
