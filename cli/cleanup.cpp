@@ -1,11 +1,13 @@
 // cleanup.cpp — a fixed table of paths, since a signal handler may neither allocate nor lock.
 #include "cli/cleanup.hpp"
 #include "base/error.hpp"
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <iterator>
 #include <unistd.h>
 
 namespace molmesh::cli {
@@ -20,9 +22,12 @@ struct Slot {
 Slot table[slots];
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-// What ends a process: people, batch systems and their limits, timers, std::terminate.
-constexpr int deadly[] = {SIGHUP,  SIGINT,  SIGQUIT, SIGTERM,   SIGUSR1, SIGUSR2,
-                          SIGXCPU, SIGALRM, SIGPROF, SIGVTALRM, SIGABRT};
+// Faults of the program itself: the handler has a stack of its own, since the fault may be that there is none left.
+constexpr int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL};
+// Those that end no process by default, or are errors of a write here.
+constexpr int harmless[] = {SIGCHLD, SIGCONT, SIGSTOP, SIGTSTP,  SIGTTIN, SIGTTOU,
+                            SIGURG,  SIGKILL, SIGPIPE, SIGWINCH, SIGXFSZ};
+alignas(16) char fault_stack[1 << 16];
 
 void unlink_watched() {
   for (const Slot& slot : table)
@@ -34,8 +39,25 @@ void unlink_watched() {
 // the process.
 void die_clean(int signal) {
   unlink_watched();
+  if (getpid() == 1) // the system ignores default actions of a container's first process
+    _exit(128 + signal);
   std::signal(signal, SIG_DFL); // delivered when this returns: the caller sees which signal it was
   raise(signal);
+}
+
+bool is_in(const int* begin, const int* end, int signal) {
+  return std::find(begin, end, signal) != end;
+}
+
+/// nohup stays in force, and so do a sanitizer's reports of faults.
+void watch(int signal, const struct sigaction& action) {
+  struct sigaction before {};
+  if (sigaction(signal, nullptr, &before) != 0) // the C library keeps some for itself
+    return;
+  const bool is_default = (before.sa_flags & SA_SIGINFO) == 0 && before.sa_handler == SIG_DFL;
+  const bool ignored = (before.sa_flags & SA_SIGINFO) == 0 && before.sa_handler == SIG_IGN;
+  if (is_in(std::begin(faults), std::end(faults), signal) ? is_default : !ignored)
+    sigaction(signal, &action, nullptr);
 }
 
 } // namespace
@@ -52,16 +74,19 @@ void guard_process() {
   std::atexit(unlink_watched); // libgomp ends the process so when it gets no threads
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  stack_t stack{};
+  stack.ss_sp = fault_stack;
+  stack.ss_size = sizeof fault_stack;
+  sigaltstack(&stack, nullptr);
   struct sigaction action {};
   action.sa_handler = die_clean;
-  for (int signal : deadly)
-    sigaddset(&action.sa_mask, signal);
-  for (int signal : deadly) {
-    struct sigaction before {};
-    sigaction(signal, nullptr, &before);
-    if (before.sa_handler != SIG_IGN)
-      sigaction(signal, &action, nullptr); // nohup stays in force
-  }
+  action.sa_flags = SA_ONSTACK;
+  sigfillset(&action.sa_mask);
+  for (const int fault : faults) // one in the handler ends the process at once
+    sigdelset(&action.sa_mask, fault);
+  for (int signal = 1; signal <= SIGRTMAX; ++signal)
+    if (!is_in(std::begin(harmless), std::end(harmless), signal))
+      watch(signal, action);
 }
 
 Temporary::Temporary(const std::string& path) : slot_(0) {

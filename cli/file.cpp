@@ -1,4 +1,4 @@
-// file.cpp — opening, checking, renaming.
+// file.cpp — which file a path means, and whether what was written is there.
 #include "cli/file.hpp"
 #include "base/error.hpp"
 #include <cerrno>
@@ -119,10 +119,11 @@ std::string followed(fs::path path) {
 } // namespace
 
 OutputFile::OutputFile(const std::string& path, Content content)
-    : path_(path), target_(path), written_(path), standard_(standard_stream(path)),
+    : path_(path), standard_(standard_stream(path)),
       noting_(standard_ == STDOUT_FILENO   ? std::cout.rdbuf()
               : standard_ == STDERR_FILENO ? std::cerr.rdbuf()
-                                           : &file_) {
+                                           : &device_),
+      stream_(&noting_) {
   if (standard_ >= 0) {
     const int flags = fcntl(standard_, F_GETFL);
     if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY) { // closed by the caller
@@ -137,18 +138,14 @@ OutputFile::OutputFile(const std::string& path, Content content)
   const fs::file_status status = fs::status(path, none);
   if (content == Content::binary && fs::is_character_file(status) && is_terminal(path))
     refuse_terminal();
-  if (!fs::exists(status) || fs::is_regular_file(status)) {
-    target_ = followed(path);
-    written_ = target_ + ".tmp." + std::to_string(getpid());
-    temporary_ = std::make_unique<Temporary>(written_);
-  }
   errno = 0;
-  if (!file_.open(written_, std::ios::binary | std::ios::out | std::ios::trunc))
+  if (!fs::exists(status) || fs::is_regular_file(status)) {
+    work_ = std::make_unique<WorkFile>(followed(path));
+    stream_.rdbuf(work_.get());
+    if (work_->error != 0)
+      refuse("cannot open");
+  } else if (!device_.open(path, std::ios::binary | std::ios::out | std::ios::trunc))
     refuse("cannot open");
-}
-
-std::ostream& OutputFile::stream() {
-  return stream_;
 }
 
 namespace {
@@ -161,36 +158,22 @@ namespace {
 } // namespace
 
 void OutputFile::refuse(const char* what) const {
-  refuse_output(path_, what, noting_.error ? noting_.error : errno);
+  const int noted = work_ ? work_->error : noting_.error;
+  refuse_output(path_, what, noted ? noted : errno);
 }
 
 CompleteFile OutputFile::complete() {
   errno = 0;
-  stream().flush();
-  if (!stream())
+  stream_.flush();
+  if (!stream_ || (work_ && !work_->complete()) || (standard_ < 0 && !work_ && !device_.close()))
     refuse("cannot write");
-  if (standard_ >= 0)
-    return {path_, {}, {}, nullptr};
-  if (!file_.close())
-    refuse("cannot write");
-  if (temporary_) {
-    const int fd = open(written_.c_str(), O_RDONLY);
-    const bool synced = fd >= 0 && fsync(fd) == 0;
-    if (fd >= 0)
-      close(fd);
-    if (!synced)
-      refuse("cannot write");
-  }
-  return {path_, written_, target_, std::move(temporary_)};
+  stream_.rdbuf(nullptr);
+  return {path_, std::move(work_)};
 }
 
 void CompleteFile::publish() {
-  if (!temporary)
-    return;
-  errno = 0;
-  if (std::rename(written.c_str(), target.c_str()) != 0)
-    refuse_output(path, "cannot rename", errno);
-  temporary->keep();
+  if (file && !file->publish())
+    refuse_output(path, "cannot rename", file->error);
 }
 
 } // namespace molmesh::cli

@@ -1,6 +1,6 @@
 // file.hpp — inputs that may be stdin, outputs that are whole or absent (I10).
 #pragma once
-#include "cli/cleanup.hpp"
+#include "cli/work_file.hpp"
 #include <fstream>
 #include <iosfwd>
 #include <memory>
@@ -47,36 +47,36 @@ private:
 
 /// All of it is on the disk, and it waits for its name.
 struct CompleteFile {
-  std::string path, written, target;    ///< for messages; where it is; what it becomes
-  std::unique_ptr<Temporary> temporary; ///< null: there is nothing to rename
+  std::string path;               ///< for messages
+  std::unique_ptr<WorkFile> file; ///< null: there is nothing to name
   /// Throws Error(not_written).
   void publish();
 };
 
-/// "-" is standard output, and so is the regular file it was redirected to. A regular file is written as
-/// PATH.tmp.PID beside it and renamed when it is complete; until then, or when a signal ends the process, nothing
-/// is left behind and an older file of that name stays as it was. A symbolic link is followed; a device or named
-/// pipe is written directly. Throws Error(not_written), and Error(usage) for binary content on a terminal.
+/// "-" is standard output, and so is the regular file it was redirected to. A regular file is written beside its
+/// place and gets its name when it is complete (work_file.hpp); until then, or when a signal ends the process,
+/// nothing is left behind and an older file of that name stays as it was. A symbolic link is followed; a device or
+/// named pipe is written directly. Throws Error(not_written), and Error(usage) for binary content on a terminal.
 class OutputFile {
 public:
   enum class Content { text, binary }; ///< binary: not to a terminal
   explicit OutputFile(const std::string& path, Content content = Content::text);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
-  std::ostream& stream();
-  /// Flush, check, sync, close.
+  std::ostream& stream() { return stream_; }
+  /// Flush, check, sync.
   CompleteFile complete();
-  /// And rename.
+  /// And give it its name.
   void commit() { complete().publish(); }
 
 private:
   [[noreturn]] void refuse(const char* what) const;
-  std::string path_, target_, written_;
-  std::unique_ptr<Temporary> temporary_; ///< before file_: that is closed first, then removed
-  std::filebuf file_;
-  int standard_; ///< as standard_stream(path)
-  NotingBuffer noting_;
-  std::ostream stream_{&noting_};
+  std::string path_;
+  int standard_;                   ///< as standard_stream(path)
+  std::unique_ptr<WorkFile> work_; ///< a regular file's
+  std::filebuf device_;
+  NotingBuffer noting_; ///< of standard streams and devices
+  std::ostream stream_;
 };
 
 } // namespace molmesh::cli

@@ -136,6 +136,8 @@ int run_program(Table& table, Common& options, int argc, char** argv, const std:
     const int threads = options.resolved_threads(); // a mode that is not here stops before any file is touched
     if (!options.on_device())                       // whose driver sets aside addresses beyond any memory
       limit_memory(threads);
+    if (threads > 1)
+      require_threads(threads);
     const std::unique_ptr<OutputFile> report = open_report(table, options);
     Run run;
     run.tool = table.program;

@@ -77,10 +77,10 @@ void set_exponents(Grouping& g, const Exponents& defaults, const std::vector<Rul
                             (rule.domain && has_level(levels, "domain"));
     if (!has_effect)
       fail_input(rule.where +
-                 ": found exponents that have no effect alone, expected one of a level that --levels has");
+                 ": found exponents that have no effect alone, expected one of a level that the hierarchy has");
     const auto note_idle = [&](const std::optional<double>& exponent, const char* name, const char* level) {
       if (exponent && !has_level(levels, level))
-        notes.push_back(rule.where + ": " + name + " has no effect, --levels has no " + level);
+        notes.push_back(rule.where + ": " + name + " has no effect, the hierarchy has no level " + level);
     };
     note_idle(rule.residue, "P_R", "residue");
     note_idle(rule.chain, "P_C", "chain");

@@ -36,19 +36,19 @@ bool has_level(const Levels& levels, const std::string& level) {
 }
 
 void check_levels(const Levels& levels, bool domains_are_defined) {
-  const auto refuse = [](const std::string& what) { fail(Status::usage, what); };
+  const auto refuse = [](const std::string& what) { fail(Status::usage, what, {"levels"}); };
   for (auto level = levels.begin(); level != levels.end(); ++level) {
     if (*level != "domain" && *level != "chain" && *level != "residue")
-      refuse("--levels: found '" + *level + "', expected domain, chain or residue");
+      refuse("levels: found '" + *level + "', expected domain, chain or residue");
     if (std::find(levels.begin(), level, *level) != level)
-      refuse("--levels: found '" + *level + "' twice, expected each level once");
+      refuse("levels: found '" + *level + "' twice, expected each level once");
     if (*level == "residue" && level + 1 != levels.end())
-      refuse("--levels: found a level within 'residue', expected it innermost");
+      refuse("levels: found a level within 'residue', expected it innermost");
   }
   if (has_level(levels, "domain") && !domains_are_defined)
-    refuse("--levels has 'domain', expected --domains too");
+    fail(Status::usage, "levels has 'domain', expected domains to be defined, too", {"levels", "domains"});
   if (!has_level(levels, "domain") && domains_are_defined)
-    refuse("--domains is given, expected 'domain' in --levels");
+    fail(Status::usage, "found domains, expected 'domain' among the levels", {"domains", "levels"});
 }
 
 std::vector<DomainPart> read_domains(std::istream& in, const std::string& file) {
@@ -122,7 +122,7 @@ void check_domains(const Grouping& g, const Levels& levels, const std::string& f
       fail_input(file + ": found chain " + g.chain[residue.chain] + " in domains '" +
                  g.domain[g.residue[f].domain] + "' (" + structure.first_atom(f) + ") and '" +
                  g.domain[residue.domain] + "' (" + structure.first_atom(static_cast<int64_t>(r)) +
-                 "), expected each chain in one domain; --levels chain,domain,residue has domains within chains");
+                 "), expected each chain in one domain; the levels chain,domain,residue have domains within chains");
   }
 }
 

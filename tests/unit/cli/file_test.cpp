@@ -5,7 +5,9 @@
 #include "unit/refusal.hpp"
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <cstring>
 #include <fcntl.h>
+#include <sched.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -38,7 +40,6 @@ TEST_CASE("a committed output has its name, its contents and no company") {
     cli::OutputFile file(folder / "a");
     file.stream() << "seven tetrahedra";
     CHECK_FALSE(std::filesystem::exists(folder / "a"));
-    CHECK(folder.files() == 1);
     file.commit();
   }
   CHECK(contents(folder / "a") == "seven tetrahedra");
@@ -94,22 +95,142 @@ TEST_CASE("an output through a symbolic link reaches the file behind it") {
   CHECK(contents(folder / "real") == std::string(3, '\0'));
 }
 
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool reports_faults = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+constexpr bool reports_faults = true;
+#else
+constexpr bool reports_faults = false;
+#endif
+#else
+constexpr bool reports_faults = false;
+#endif
+
+/// A file of a name and one without, unfinished when the signal comes.
+int die_of(int signal, const Folder& folder) {
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  if (!reports_faults) // the test's own handlers
+    for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL})
+      std::signal(fault, SIG_DFL);
+  cli::guard_process();
+  cli::WorkFile named(folder / "a", cli::WorkFile::Name::random), other(folder / "b");
+  std::ostream(&named) << "unfinished" << std::flush;
+  if (folder.files() == 0 || raise(signal) != 0)
+    return 1;
+  return 0;
+}
+
+} // namespace
+
 TEST_CASE("a signal removes the temporary file and still ends the process") {
-  for (int signal :
-       {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU, SIGALRM, SIGPROF, SIGVTALRM, SIGABRT}) {
+  std::vector<int> signals = {SIGHUP, SIGINT, SIGQUIT, SIGTERM,   SIGUSR1, SIGUSR2, SIGXCPU,  SIGALRM,
+                              SIGPROF, SIGVTALRM, SIGABRT, SIGIO, SIGPWR, SIGTRAP, SIGSYS, SIGSTKFLT};
+  for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal)
+    signals.push_back(signal);
+  if (!reports_faults) // a sanitizer's own handlers end the process first
+    signals.insert(signals.end(), {SIGSEGV, SIGBUS, SIGFPE, SIGILL});
+  for (const int signal : signals) {
     const Folder folder;
-    const Outcome o = in_child([&] {
-      const rlimit no_core{0, 0};
-      setrlimit(RLIMIT_CORE, &no_core);
-      cli::guard_process();
-      cli::OutputFile file(folder / "a"), report(folder / "b");
-      file.stream() << "unfinished" << std::flush;
-      raise(signal);
-      return 0;
-    });
+    const Outcome o = in_child([&] { return die_of(signal, folder); });
+    INFO(strsignal(signal));
     CHECK(o.signal == signal);
     CHECK(folder.files() == 0);
   }
+}
+
+TEST_CASE("the first process of a container ends on a signal, and nothing is left") {
+  constexpr int not_allowed = 77;
+  for (const int signal : {SIGTERM, SIGINT, SIGSEGV}) {
+    if (signal == SIGSEGV && reports_faults)
+      continue;
+    const Folder folder;
+    const Outcome o = in_child([&] {
+      if (unshare(CLONE_NEWPID) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWPID) != 0)
+        return not_allowed;
+      const pid_t first = fork();
+      if (first < 0)
+        return not_allowed;
+      if (first == 0)
+        _exit(die_of(signal, folder));
+      int status = 0;
+      waitpid(first, &status, 0);
+      return WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status);
+    });
+    if (o.status == not_allowed) {
+      WARN("skipped: no namespace of processes can be made here");
+      return;
+    }
+    CHECK(o.status == 128 + signal);
+    CHECK(folder.files() == 0);
+  }
+}
+
+TEST_CASE("a file is made under no name or a random one, and gets its own at the end") {
+  for (const auto kind : {cli::WorkFile::Name::none_if_possible, cli::WorkFile::Name::random}) {
+    const Folder folder;
+    for (const char* text : {"first", "second"}) { // the second takes the first's place
+      cli::WorkFile file(folder / "a", kind);
+      REQUIRE(file.error == 0);
+      std::ostream(&file) << text;
+      CHECK(folder.files() <= 2);
+      REQUIRE(file.complete());
+      CHECK((text == std::string("second")) == std::filesystem::exists(folder / "a"));
+      REQUIRE(file.publish());
+      CHECK(contents(folder / "a") == text);
+      CHECK(folder.files() == 1);
+    }
+    { cli::WorkFile never(folder / "a", kind); }
+    CHECK(folder.files() == 1);
+  }
+}
+
+TEST_CASE("the permissions of a file that is replaced are kept; a new one's are the caller's") {
+  const auto permissions = [](const std::string& file) {
+    struct stat status {};
+    stat(file.c_str(), &status);
+    return status.st_mode & 07777;
+  };
+  const mode_t before = umask(027);
+  const Folder folder;
+  CHECK(write(folder / "new", 1) == Status::good);
+  CHECK(permissions(folder / "new") == 0640);
+  for (const mode_t mode : {0600, 0644, 0664, 0444}) {
+    chmod((folder / "new").c_str(), mode);
+    CHECK(write(folder / "new", 2) == Status::good);
+    CHECK(permissions(folder / "new") == mode);
+  }
+  umask(before);
+}
+
+TEST_CASE("what lies under a foreseeable name is left alone") {
+  const Folder folder;
+  std::ofstream(folder / "victim") << "precious";
+  const std::string name = (folder / "a") + ".tmp." + std::to_string(getpid());
+  SECTION("a link") {
+    std::filesystem::create_symlink("victim", name);
+  }
+  SECTION("a pipe") {
+    REQUIRE(mkfifo(name.c_str(), 0600) == 0);
+  }
+  CHECK(write(folder / "a", 3) == Status::good);
+  CHECK(contents(folder / "victim") == "precious");
+  CHECK(folder.files() == 3);
+}
+
+TEST_CASE("names as long as the file system has them are written, longer ones refused before the work") {
+  const Folder folder;
+  for (const auto kind : {cli::WorkFile::Name::none_if_possible, cli::WorkFile::Name::random}) {
+    cli::WorkFile longest(folder / std::string(255, 'a'), kind);
+    REQUIRE(longest.error == 0);
+    CHECK(longest.complete());
+    CHECK(longest.publish());
+    CHECK(cli::WorkFile(folder / std::string(256, 'a'), kind).error == ENAMETOOLONG);
+  }
+  CHECK(folder.files() == 1);
 }
 
 TEST_CASE("a library that ends the process leaves no temporary file") {
