@@ -11,9 +11,9 @@ int cpus_granted(const SystemFiles& system = {});
 /// As many threads as OpenMP would use, and no more than are granted unless OMP_NUM_THREADS says so.
 int default_threads();
 
-/// Throws Error(failed) where the system does not start so many threads: OpenMP's own answer to that is the end of the
-/// process. Where addresses are limited (ulimit -v) they are started for good, before memory is taken for anything
-/// else.
+/// Throws Error(failed) where the system does not start so many threads: OpenMP's own answer to that is the end of
+/// the process. Where addresses are limited (ulimit -v) they are started for good, before memory is taken for
+/// anything else.
 void require_threads(int threads);
 
 } // namespace molmesh::cli

@@ -119,10 +119,9 @@ std::string followed(fs::path path) {
 } // namespace
 
 OutputFile::OutputFile(const std::string& path, Content content)
-    : path_(path), standard_(standard_stream(path)),
-      noting_(standard_ == STDOUT_FILENO   ? std::cout.rdbuf()
-              : standard_ == STDERR_FILENO ? std::cerr.rdbuf()
-                                           : &device_),
+    : path_(path), standard_(standard_stream(path)), noting_(standard_ == STDOUT_FILENO   ? std::cout.rdbuf()
+                                                             : standard_ == STDERR_FILENO ? std::cerr.rdbuf()
+                                                                                          : &device_),
       stream_(&noting_) {
   if (standard_ >= 0) {
     const int flags = fcntl(standard_, F_GETFL);

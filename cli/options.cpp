@@ -148,7 +148,13 @@ std::string Option::shown_range() const {
   std::string text;
   for (const std::string& word : words)
     text += (text.empty() ? "" : ", ") + word;
-  return above_zero ? "> 0" : limited ? shown(least, whole_number()) + ".." + shown(most, whole_number()) : text;
+  if (above_zero)
+    return "> 0";
+  if (!limited)
+    return text;
+  constexpr double no_limit = 1e300;
+  const std::string lower = shown(least, whole_number());
+  return most >= no_limit ? ">= " + lower : lower + ".." + shown(most, whole_number());
 }
 
 Table::Table(const std::string& program_, const std::string& purpose_) : program(program_), purpose(purpose_) {

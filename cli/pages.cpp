@@ -1,6 +1,7 @@
 // pages.cpp — man page, page of the docs, completion in bash.
 #include "cli/pages.hpp"
 #include "cli/run.hpp"
+#include "cli/text.hpp"
 #include <algorithm>
 #include <cstdio>
 #include <sstream>
@@ -63,9 +64,10 @@ std::string roff_name(const Option& o) {
   return o.flag() ? text : text + " \\fI" + roff(o.shown_unit()) + "\\fR";
 }
 
+/// Not capitalized: it may begin with a word of the command line.
 std::string with_notes(const Option& o) {
-  const std::string notes = notes_of(o), meaning = capitalized(o.meaning);
-  return meaning + "." + (notes.empty() ? "" : " (" + notes + ")");
+  const std::string notes = notes_of(o);
+  return notes.empty() ? o.meaning : o.meaning + " (" + notes + ")";
 }
 
 std::string synopsis_arguments(const Table& table) {
@@ -76,12 +78,21 @@ std::string synopsis_arguments(const Table& table) {
   return text;
 }
 
-/// A cell of a table.
+/// A cell of a table; pages of formats are links.
 std::string cell(const std::string& text) {
   std::string out;
   for (const char c : text)
     out += c == '|' ? std::string("\\|") : std::string(1, c);
+  if (const size_t page = out.find("formats/"); page != std::string::npos) {
+    const std::string path = out.substr(page, out.find_first_of(" )", page) - page);
+    out.replace(page, path.size(), "[" + path + "](../../" + path + ")");
+  }
   return out;
+}
+
+/// The line of a man page that whatis(1) shows.
+std::string without_stop(const std::string& text) {
+  return !text.empty() && text.back() == '.' ? text.substr(0, text.size() - 1) : text;
 }
 
 } // namespace
@@ -91,8 +102,8 @@ std::string man_page(const Table& table) {
   out << ".TH " << upper(table.program) << " 1 \"\" \"" << roff("molmesh " + version()) << "\" \"molmesh\"\n"
       << ".nh\n.ad l\n" // no hyphens in names, no stretched lines
       << ".SH NAME\n"
-      << roff(table.program) << " \\- " << roff(table.purpose) << "\n.SH SYNOPSIS\n.B " << roff(table.program)
-      << "\n[\\fIOPTIONS\\fR]" << roff(synopsis_arguments(table)) << "\n.SH DESCRIPTION\n"
+      << roff(table.program) << " \\- " << roff(without_stop(table.purpose)) << "\n.SH SYNOPSIS\n.B "
+      << roff(table.program) << "\n[\\fIOPTIONS\\fR]" << roff(synopsis_arguments(table)) << "\n.SH DESCRIPTION\n"
       << roff(table.page.about) << '\n';
   for (const Option& o : table.options)
     if (o.argument)
@@ -125,8 +136,9 @@ std::string markdown_page(const Table& table) {
   out << "# " << table.program
       << "\n\n<!-- Made from the program's options by `cmake --build build --target program_pages`. "
          "-->\n\n"
-      << table.purpose << "\n\n    " << table.program << " [OPTIONS]" << synopsis_arguments(table) << "\n\n"
-      << table.page.about << '\n';
+      << table.purpose << "\n\n    " << table.program << " [OPTIONS]" << synopsis_arguments(table) << "\n\n";
+  for (const std::string& line : wrapped(table.page.about, 120))
+    out << line << '\n';
   out << "\n| argument | meaning |\n|---|---|\n";
   for (const Option& o : table.options)
     if (o.argument)
@@ -140,9 +152,8 @@ std::string markdown_page(const Table& table) {
       if (o->several())
         range += std::string(range.empty() ? "" : "; ") + "repeatable";
       out << "| `" << (o->letter.empty() ? "" : "-" + o->letter + ", ") << "--" << o->name
-          << (o->flag() ? "" : " " + cell(o->shown_unit())) << "` | " << cell(capitalized(o->meaning)) << " | "
-          << cell(range) << " | " << (o->flag() || o->default_text.empty() ? "" : "`" + o->default_text + "`")
-          << " |\n";
+          << (o->flag() ? "" : " " + cell(o->shown_unit())) << "` | " << cell(o->meaning) << " | " << cell(range)
+          << " | " << (o->flag() || o->default_text.empty() ? "" : "`" + o->default_text + "`") << " |\n";
     }
   }
   if (!table.page.examples.empty())

@@ -9,9 +9,9 @@
 namespace molmesh::cli {
 
 /// A new file in the folder of `target`. Where the file system and /proc allow it the file has no name until
-/// publish(), so that nothing of a process that ends is left; else it has a random name, made exclusively and watched
-/// by Temporary. Nobody can foresee the name: neither a link nor a pipe that lies in the folder is ever followed.
-/// Where there is a `target` its permissions are kept.
+/// publish(), so that nothing of a process that ends is left; else it has a random name, made exclusively and
+/// watched by Temporary. Nobody can foresee the name: neither a link nor a pipe that lies in the folder is ever
+/// followed. Where there is a `target` its permissions are kept.
 class WorkFile : public std::streambuf {
 public:
   enum class Name { none_if_possible, random };

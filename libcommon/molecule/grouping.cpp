@@ -119,10 +119,11 @@ void check_domains(const Grouping& g, const Levels& levels, const std::string& f
     if (f == none)
       f = static_cast<int64_t>(r);
     if (g.residue[f].domain != residue.domain)
-      fail_input(file + ": found chain " + g.chain[residue.chain] + " in domains '" +
-                 g.domain[g.residue[f].domain] + "' (" + structure.first_atom(f) + ") and '" +
-                 g.domain[residue.domain] + "' (" + structure.first_atom(static_cast<int64_t>(r)) +
-                 "), expected each chain in one domain; the levels chain,domain,residue have domains within chains");
+      fail_input(
+          file + ": found chain " + g.chain[residue.chain] + " in domains '" + g.domain[g.residue[f].domain] +
+          "' (" + structure.first_atom(f) + ") and '" + g.domain[residue.domain] + "' (" +
+          structure.first_atom(static_cast<int64_t>(r)) +
+          "), expected each chain in one domain; the levels chain,domain,residue have domains within chains");
   }
 }
 

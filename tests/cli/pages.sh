@@ -3,6 +3,7 @@
 #
 #   pages.sh BUILD SOURCE PROGRAM...     BUILD: build folder, with bin/
 set -u
+export LC_ALL=C.UTF-8
 build=$1 source=$2
 shift 2
 failures=0
@@ -25,7 +26,7 @@ for program; do
   done
   [ "$("$build/bin/$program" --help | wc -l)" -le 60 ] || fail "$program --help: more than 60 lines"
   if command -v groff >/dev/null; then
-    groff -man -Tutf8 -ww "$work/man" >"$work/page" 2>"$work/warnings"
+    groff -man -Tutf8 -ww "$work/man" 2>"$work/warnings" | sed 's/.\x08//g' >"$work/page" # no overstrikes
     [ ! -s "$work/warnings" ] || fail "$program --help=man: $(head -n 1 "$work/warnings")"
     for part in NAME SYNOPSIS DESCRIPTION OPTIONS EXAMPLES 'EXIT STATUS' FILES 'SEE ALSO'; do
       grep -q "$part" "$work/page" || fail "$program --help=man: has no $part"

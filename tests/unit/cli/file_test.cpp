@@ -127,8 +127,8 @@ int die_of(int signal, const Folder& folder) {
 } // namespace
 
 TEST_CASE("a signal removes the temporary file and still ends the process") {
-  std::vector<int> signals = {SIGHUP, SIGINT, SIGQUIT, SIGTERM,   SIGUSR1, SIGUSR2, SIGXCPU,  SIGALRM,
-                              SIGPROF, SIGVTALRM, SIGABRT, SIGIO, SIGPWR, SIGTRAP, SIGSYS, SIGSTKFLT};
+  std::vector<int> signals = {SIGHUP,  SIGINT,    SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU, SIGALRM,
+                              SIGPROF, SIGVTALRM, SIGABRT, SIGIO,   SIGPWR,  SIGTRAP, SIGSYS,  SIGSTKFLT};
   for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal)
     signals.push_back(signal);
   if (!reports_faults) // a sanitizer's own handlers end the process first

@@ -113,8 +113,9 @@ TEST_CASE("threads that cannot be started are refused in a line of ours") {
     try {
       cli::require_threads(1024);
     } catch (const Error& e) {
-      return e.status == Status::failed && std::string(e.what()).rfind("-t: found 1024, expected at most ", 0) == 0 ? 1
-                                                                                                                  : 2;
+      return e.status == Status::failed && std::string(e.what()).rfind("-t: found 1024, expected at most ", 0) == 0
+                 ? 1
+                 : 2;
     }
     return 0;
   });
