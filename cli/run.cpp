@@ -113,12 +113,25 @@ std::string with_flags(const Error& e, const Table& table) {
   return flags.empty() ? text : text + " (" + flags + ")";
 }
 
-int failed(const Table& table, const std::exception& e) {
+/// A quantity is out of range, and nobody gave it: by its default, it does not go with the input.
+bool blames_input(const Error& e, const Table& table) {
+  return e.status == Status::usage && !e.quantities.empty() &&
+         std::none_of(table.options.begin(), table.options.end(), [&](const Option& o) {
+           return !o.given.empty() && std::count(e.quantities.begin(), e.quantities.end(), o.name) > 0;
+         });
+}
+
+int failed(const Table& table, const Common& options, const std::exception& e) {
   const auto* error = dynamic_cast<const Error*>(&e);
   const bool memory = dynamic_cast<const std::bad_alloc*>(&e) || dynamic_cast<const std::length_error*>(&e);
-  const std::string text = memory ? "not enough memory" : error ? with_flags(*error, table) : e.what();
+  std::string text = memory ? "not enough memory" : error ? with_flags(*error, table) : e.what();
+  Status status = error ? error->status : Status::failed;
+  if (error && blames_input(*error, table)) {
+    text = (options.input == "-" ? "<stdin>" : options.input) + ": " + text;
+    status = Status::bad_input;
+  }
   std::cerr << table.program << ": " << one_line(text) << '\n';
-  return static_cast<int>(error ? error->status : Status::failed);
+  return static_cast<int>(status);
 }
 
 } // namespace
@@ -148,7 +161,7 @@ int run_program(Table& table, Common& options, int argc, char** argv, const std:
     const Status result = work(run);
     return finish(table, options, run, report.get(), result);
   } catch (const std::exception& e) {
-    return failed(table, e);
+    return failed(table, options, e);
   }
 }
 

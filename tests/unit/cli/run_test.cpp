@@ -2,6 +2,7 @@
 #include "child.hpp"
 #include "cli/run.hpp"
 #include "par/par.hpp"
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -113,6 +114,36 @@ TEST_CASE("every exception becomes one printable line and its status") {
   CHECK(thrown(std::runtime_error("found '\xff\x01\x7f', expected 'Å'")).err ==
         "doubler: found '\\xff\\x01\\x7f', expected 'Å'\n");
   CHECK(tool({}, [](const Options&, cli::Run&) { return Status::below_quality; }).status == 5);
+}
+
+TEST_CASE("the flags of the quantities that an error names stand in its line") {
+  const auto thrown = [](const Error& e, std::vector<std::string> args) {
+    return tool(std::move(args), [e](const Options&, cli::Run&) -> Status { throw e; });
+  };
+  const Error first(Status::usage, "spacing: found 9, expected 8", {"spacing"});
+  CHECK(thrown(first, {"--spacing", "9"}).err == "doubler: --spacing: found 9, expected 8\n");
+  CHECK(thrown(first, {"--spacing", "9"}).status == 2);
+  const Error two(Status::usage, "the grid is too large", {"spacing", "parts", "weight"});
+  CHECK(thrown(two, {"--parts", "2"}).err == "doubler: the grid is too large (--spacing, --parts)\n");
+  CHECK(thrown(two, {"--parts", "2"}).status == 2);
+  // Nobody gave one of them: the input does not go with their defaults.
+  CHECK(thrown(two, {"x.hier"}).err == "doubler: x.hier: the grid is too large (--spacing, --parts)\n");
+  CHECK(thrown(two, {"x.hier"}).status == 3);
+  CHECK(thrown(Error(Status::failed, "no room", {"parts"}), {}).err == "doubler: no room (--parts)\n");
+  CHECK(thrown(Error(Status::failed, "no room", {"parts"}), {}).status == 1);
+}
+
+TEST_CASE("pages hold every option") {
+  for (const char* kind : {"man", "markdown", "bash"}) {
+    const Outcome o = tool({std::string("--help=") + kind});
+    INFO(o.out);
+    CHECK(o.status == 0);
+    CHECK(o.err.empty());
+    for (const char* name : {"spacing", "parts", "rule", "fill", "mode", "threads", "report", "help"})
+      CHECK(o.out.find(name) != std::string::npos);
+    const bool ascii = std::all_of(o.out.begin(), o.out.end(), [](char c) { return c > 0; });
+    CHECK((ascii || kind == std::string("markdown")));
+  }
 }
 
 TEST_CASE("mode cuda in a build without CUDA is status 6 before any work") {
