@@ -1,6 +1,5 @@
 // cpus.cpp — the cpu controllers of control groups, versions 1 and 2.
 #include "cli/cpus.hpp"
-#include "base/error.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <atomic>
@@ -8,7 +7,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <new>
-#include <string>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <system_error>
@@ -43,14 +41,14 @@ int default_threads() {
   return granted > 0 && !std::getenv("OMP_NUM_THREADS") ? std::min(threads, granted) : threads;
 }
 
-void require_threads(int threads) {
+int startable_threads(int wanted) {
   constexpr size_t room = size_t{32} << 20; // bytes that must be left beside the stacks
   std::atomic<bool> all_started{false};
   std::vector<std::thread> started;
   void* const left = mmap(nullptr, room, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   bool good = left != MAP_FAILED;
   try {
-    while (good && static_cast<int>(started.size()) + 1 < threads)
+    while (good && static_cast<int>(started.size()) + 1 < wanted)
       started.emplace_back([&] { all_started.wait(false); });
   } catch (const std::system_error&) {
     good = false;
@@ -64,12 +62,11 @@ void require_threads(int threads) {
   if (left != MAP_FAILED)
     munmap(left, room);
   if (!good)
-    fail(Status::failed, "-t: found " + std::to_string(threads) + ", expected at most " +
-                             std::to_string(started.size() + 1) +
-                             ": no more threads can be started (limits of memory or processes)");
+    return static_cast<int>(started.size()) + 1;
   rlimit addresses{};
   if (getrlimit(RLIMIT_AS, &addresses) == 0 && addresses.rlim_cur != RLIM_INFINITY)
-    par::start_threads_during(threads, [] {});
+    par::start_threads_during(wanted, [] {});
+  return wanted;
 }
 
 } // namespace molmesh::cli

@@ -11,9 +11,9 @@ int cpus_granted(const SystemFiles& system = {});
 /// As many threads as OpenMP would use, and no more than are granted unless OMP_NUM_THREADS says so.
 int default_threads();
 
-/// Throws Error(failed) where the system does not start so many threads: OpenMP's own answer to that is the end of
-/// the process. Where addresses are limited (ulimit -v) they are started for good, before memory is taken for
-/// anything else.
-void require_threads(int threads);
+/// As many of the threads, this one among them, as the system starts: OpenMP's own answer to one that does not
+/// start is the end of the process. Where addresses are limited (ulimit -v) and all start, they are kept for OpenMP
+/// before memory is taken for anything else.
+int startable_threads(int wanted);
 
 } // namespace molmesh::cli

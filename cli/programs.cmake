@@ -10,9 +10,12 @@ foreach(program ${molmesh_programs})
   list(TRANSFORM made PREPEND ${CMAKE_BINARY_DIR}/)
   add_custom_command(OUTPUT ${made} DEPENDS ${program}
     COMMAND ${CMAKE_COMMAND} -E make_directory man completions programs
-    COMMAND $<TARGET_FILE:${program}> --help=man >man/${program}.1
-    COMMAND $<TARGET_FILE:${program}> --help=bash >completions/${program}
-    COMMAND $<TARGET_FILE:${program}> --help=markdown >programs/${program}.md
+    COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${program}> -DKIND=man -DTO=man/${program}.1
+            -P ${PROJECT_SOURCE_DIR}/cli/page.cmake
+    COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${program}> -DKIND=bash -DTO=completions/${program}
+            -P ${PROJECT_SOURCE_DIR}/cli/page.cmake
+    COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${program}> -DKIND=markdown -DTO=programs/${program}.md
+            -P ${PROJECT_SOURCE_DIR}/cli/page.cmake
     WORKING_DIRECTORY ${CMAKE_BINARY_DIR} VERBATIM)
   list(APPEND page_files ${made})
   list(APPEND docs_commands COMMAND ${CMAKE_COMMAND} -E copy ${CMAKE_BINARY_DIR}/programs/${program}.md

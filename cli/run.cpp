@@ -134,6 +134,19 @@ int failed(const Table& table, const Common& options, const std::exception& e) {
   return static_cast<int>(status);
 }
 
+/// Asked for and not there: refused. By default: half of what can be started, which leaves memory to work in.
+void settle_threads(Common& o, int threads) {
+  const int startable = startable_threads(threads);
+  if (startable == threads)
+    return;
+  if (o.threads > 0)
+    fail(Status::failed, "-t: found " + std::to_string(threads) + ", expected at most " +
+                             std::to_string(startable) +
+                             ": no more threads can be started (limits of memory or processes)");
+  o.threads = std::max(1, startable / 2);
+  startable_threads(o.threads);
+}
+
 } // namespace
 
 int run_program(Table& table, Common& options, int argc, char** argv, const std::function<void()>& describe,
@@ -149,8 +162,8 @@ int run_program(Table& table, Common& options, int argc, char** argv, const std:
     const int threads = options.resolved_threads(); // a mode that is not here stops before any file is touched
     if (!options.on_device())                       // whose driver sets aside addresses beyond any memory
       limit_memory(threads);
-    if (threads > 1)
-      require_threads(threads);
+    if (threads > 1 && options.uses_threads)
+      settle_threads(options, threads);
     const std::unique_ptr<OutputFile> report = open_report(table, options);
     Run run;
     run.tool = table.program;

@@ -4,7 +4,7 @@
 #   pages.sh BUILD SOURCE PROGRAM...     BUILD: build folder, with bin/
 set -u
 export LC_ALL=C.UTF-8
-build=$1 source=$2
+build=$(realpath "$1") source=$(realpath "$2")
 shift 2
 failures=0
 fail() { echo "$1"; failures=$((failures + 1)); }

@@ -6,6 +6,7 @@
 namespace molmesh {
 
 struct Options : cli::Common {
+  Options() { uses_threads = false; }
   formats::PdbOptions pdb;
   std::string levels = "chain,residue", radii = "bondi", unknown = "2";
   std::string hydrogens = "keep", waters = "drop", hetatm = "keep";

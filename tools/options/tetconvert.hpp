@@ -5,6 +5,7 @@
 namespace molmesh {
 
 struct Options : cli::Common {
+  Options() { uses_threads = false; }
   std::string format = "auto";
   std::vector<std::string> outputs() const override;
 };
