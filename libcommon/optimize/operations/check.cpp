@@ -4,6 +4,7 @@
 #include "geom/predicates.hpp" // exact sign of a volume
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace molmesh::optimize {
 namespace {
@@ -46,27 +47,32 @@ std::string find_fault(const Region& r) {
 }
 
 TetMesh as_mesh(const Region& r) {
-  std::vector<int32_t> owned;
-  for (int32_t t = 0; t < static_cast<int32_t>(r.mesh.element.size()); ++t)
-    if (r.mesh.element[t].alive() && r.owned(t))
-      owned.push_back(t);
-  PartCopy part = r.copy(owned);
-  std::vector<uint8_t> inside(part.mesh.element.size());
-  for (const int32_t t : part.slots)
-    inside[t] = 1;
-  for (size_t t = 0; t < inside.size(); ++t)
-    if (!inside[t])
-      part.mesh.element[t] = {};
-  for (const int32_t t : part.slots)
-    for (int32_t& n : part.mesh.element[t].n)
-      if (n >= 0 && !inside[n])
-        n = -1;
-  std::fill(part.mesh.incident.begin(), part.mesh.incident.end(), -1);
-  for (const int32_t t : part.slots)
-    for (const int32_t v : part.mesh.element[t].v)
-      part.mesh.incident[v] = t;
-  std::fill(part.mesh.labelled.begin(), part.mesh.labelled.end(), uint8_t{1});
-  return extract(part.mesh);
+  const DynamicMesh& m = r.mesh;
+  TetMesh out;
+  std::unordered_map<int32_t, int32_t> number;
+  const auto point = [&](int32_t v) {
+    const auto [at, is_new] = number.try_emplace(v, static_cast<int32_t>(out.point.size()));
+    if (is_new)
+      out.point.push_back(m.point[v]);
+    return at->second;
+  };
+  for (int32_t t = 0; t < static_cast<int32_t>(m.element.size()); ++t) {
+    const Element& e = m.element[t];
+    if (!e.alive() || !r.owned(t))
+      continue;
+    out.tet.push_back({point(e.v[0]), point(e.v[1]), point(e.v[2]), point(e.v[3])});
+    out.region.push_back(e.region);
+    for (size_t f = 0; f < 4; ++f)
+      if (e.label[f] != 0 && (m.counts_here(e, f) || !r.owned(e.n[f]))) {
+        const Label& label = m.labels[e.label[f]];
+        auto v = outward_triangle(e.v, f);
+        if (label.reversed)
+          std::swap(v[1], v[2]);
+        out.tri.push_back({point(v[0]), point(v[1]), point(v[2])});
+        out.boundary.push_back(label.name);
+      }
+  }
+  return out;
 }
 
 #ifdef MOLMESH_CHECK_OPERATIONS

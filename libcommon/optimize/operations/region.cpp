@@ -24,9 +24,6 @@ Region::Region(DynamicMesh& m, const Target* t, const FreeTriangles* free, const
     : mesh(m), target(t), room(r), crossings(m, free, parts, r.part, stamp), parts_(parts), stamp_(stamp),
       clock_(clock), table_(512) {}
 
-Region::Region(const Region& like, PartCopy& part, std::vector<uint32_t>& stamp)
-    : Region(part.mesh, like.target, nullptr, part.parts, stamp, part.room) {}
-
 void Region::note_side(int32_t e, size_t face) {
   if (const int32_t v = mesh.element[e].v[face]; parts_.owner[v] == room.part)
     mesh.state[v] = clock_;

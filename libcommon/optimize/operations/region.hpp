@@ -13,7 +13,6 @@
 #include "optimize/crossings/crossing_guard.hpp"
 #include "optimize/mesh/change_log.hpp"
 #include "optimize/mesh/dynamic_mesh.hpp"
-#include "optimize/mesh/part_copy.hpp"
 #include "optimize/mesh/parts.hpp"
 #include "optimize/mesh/snapshot.hpp"
 #include <array>
@@ -69,8 +68,6 @@ public:
   /// stamp [elements] is scratch: nothing above `clock`.
   Region(DynamicMesh& mesh, const Target* target, const FreeTriangles* free, const Parts& parts,
          std::vector<uint32_t>& stamp, PartRoom& room, uint32_t clock = 0);
-  /// A copy of `like`, which is_alone().
-  Region(const Region& like, PartCopy& part, std::vector<uint32_t>& stamp);
 
   DynamicMesh& mesh;
   const Target* const target;
@@ -142,9 +139,6 @@ public:
   /// Everything as it was: operations since save() were on those elements and on reserved slots. What has not been
   /// written since is left alone.
   void restore(const Snapshot& s);
-  PartCopy copy(const std::vector<int32_t>& slots) const {
-    return copy_part(mesh, parts_, room, slots);
-  }
 
 private:
   struct Face;

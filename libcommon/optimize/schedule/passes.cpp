@@ -251,7 +251,7 @@ Counts Schedule::search(const Strategy& s) {
                                     std::vector<int32_t> slots = list;
                                     slots.insert(slots.end(), r.room.element.begin(), r.room.element.end());
                                     r.time = time;
-                                    search_part(r, slots, s, searched, helpers_);
+                                    search_part(r, slots, s, searched);
                                     failed[part] = r.counts.total() == 0;
                                   },
                                   {.slots_per_item = 0.25,

@@ -233,10 +233,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
   FreeTriangles& free_now = free_triangles();
   std::atomic<size_t> next{0};
   par::for_n(jobs.empty() ? 0 : threads_, threads_, 1, [&](int64_t) {
-    for (const par::Helpers::Busy busy(helpers_);;) {
-      const size_t j = next++;
-      if (j >= jobs.size())
-        break;
+    for (size_t j; (j = next++) < jobs.size();) {
       Job& job = *largest_first[j];
       Region r(m_, target_, ends_in_surface_ ? &free_now : nullptr, parts_, stamp_, job.room, last_stamp_);
       work(r, job.items);
@@ -244,7 +241,6 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
       job.changes = r.crossings.take_changes();
       job.clock = r.clock();
     }
-    helpers_.help();
   });
   par::for_n(static_cast<int64_t>(jobs.size()), threads_, 1,
              [&](int64_t j) { free_now.move_along(jobs[j].changes); });

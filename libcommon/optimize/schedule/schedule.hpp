@@ -3,7 +3,6 @@
 #include "optimize/operations/region.hpp"
 #include "optimize/schedule/pass.hpp"
 #include "optimize/search/failed_searches.hpp"
-#include "par/helpers.hpp"
 #include <algorithm>
 #include <cstdint>
 #include <functional>
@@ -86,7 +85,6 @@ private:
   Pass last_;
   FailedSearches failed_searches_;
   Parts parts_;
-  par::Helpers helpers_;        ///< threads that wait for the last parts
   std::vector<uint32_t> stamp_; ///< of the regions
   uint32_t last_stamp_ = 0;
   /// free_triangles_ with all that was given to add().

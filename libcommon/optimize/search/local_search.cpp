@@ -3,7 +3,6 @@
 #include "optimize/acceptance/surface_fit.hpp"
 #include "par/par.hpp"
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 namespace molmesh::optimize {
@@ -158,60 +157,14 @@ LocalSearch::Outcome LocalSearch::attempt(const Trial& trial, Limit& limit) {
   return Outcome::worse;
 }
 
-// From trial `from` on, with the other threads' help: the first that does not leave all as it was, or that the next
-// would not follow like any other. Counts the trials down.
-size_t LocalSearch::first_telling(const std::vector<Trial>& all, size_t from, const Limit& limit,
-                                  const Snapshot& here, int& trials) {
-  const PartCopy copy = r_.copy(slots_);
-  std::vector<Outcome> outcome(all.size(), Outcome::none);
-  std::atomic<size_t> next{from}, telling{all.size()};
-  std::atomic<int> tried{0};
-  const auto work_off = [&](LocalSearch& search, const Snapshot& start, auto&& number) {
-    for (size_t i; tried < trials && (i = next++) < telling;) {
-      Limit its = limit;
-      outcome[i] = search.attempt({number(all[i].element), all[i].operation}, its);
-      if (outcome[i] == Outcome::idle)
-        continue;
-      ++tried;
-      if (outcome[i] == Outcome::better || !search.follows_repair()) {
-        outcome[i] = Outcome::better;
-        for (size_t first = telling; i < first && !telling.compare_exchange_weak(first, i);)
-          ;
-      }
-      search.r_.restore(start);
-      search.worst_first = !accept_.worst_first;
-    }
-  };
-  helpers_->share([&] { work_off(*this, here, [](int32_t t) { return t; }); },
-                  [&] {
-                    PartCopy part = copy;
-                    std::vector<uint32_t> stamp(part.mesh.element.size());
-                    Region region(r_, part, stamp);
-                    LocalSearch search(region, part.slots, accept_, leeway, nullptr);
-                    search.worst_first = !accept_.worst_first;
-                    work_off(search, region.save(search.elements()), [&](int32_t t) { return copy.number(t); });
-                  });
-  size_t i = from;
-  for (; i < all.size() && trials > 0 && (outcome[i] == Outcome::idle || outcome[i] == Outcome::worse); ++i)
-    trials -= outcome[i] == Outcome::worse;
-  return i;
-}
-
 void LocalSearch::climb(const Faults& before, int& trials) {
   Limit limit{before, faults().off, cost()};
   for (bool done = true; done && limit.least > 0;) {
     done = false;
     const Snapshot here = r_.save(elements());
-    std::vector<Trial> all;
-    for (const int32_t t : worst())
-      for (int k = 0; k < operations; ++k)
-        all.push_back({t, k});
-    for (size_t i = 0; i < all.size() && !done && trials > 0; ++i) {
-      if (helpers_ && helpers_->any_idle() && r_.is_alone() && follows_repair())
-        i = first_telling(all, i, limit, here, trials);
-      if (i == all.size() || trials == 0)
-        break;
-      const Outcome outcome = attempt(all[i], limit);
+    const std::vector<int32_t> around = worst();
+    for (size_t i = 0; i < around.size() * operations && !done && trials > 0; ++i) {
+      const Outcome outcome = attempt({around[i / operations], static_cast<int>(i % operations)}, limit);
       trials -= outcome != Outcome::idle;
       done = outcome == Outcome::better;
       if (outcome == Outcome::worse)

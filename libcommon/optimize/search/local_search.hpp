@@ -2,7 +2,6 @@
 #pragma once
 #include "optimize/acceptance/faults.hpp"
 #include "optimize/operations/on_element.hpp"
-#include "par/helpers.hpp"
 #include <cstdint>
 #include <vector>
 
@@ -20,10 +19,9 @@ struct Leeway {
 /// Works on the elements in `slots`, all that elements of the part may be in.
 class LocalSearch {
 public:
-  /// accept: guard and goal, and worst_first as Strategy has it. helpers: threads for hill climbing, or null.
-  LocalSearch(Region& r, const std::vector<int32_t>& slots, const Acceptance& accept, const Leeway& how_far,
-              par::Helpers* helpers)
-      : faults(r, slots, accept), leeway(how_far), r_(r), slots_(slots), accept_(accept), helpers_(helpers),
+  /// accept: guard and goal, and worst_first as Strategy has it.
+  LocalSearch(Region& r, const std::vector<int32_t>& slots, const Acceptance& accept, const Leeway& how_far)
+      : faults(r, slots, accept), leeway(how_far), r_(r), slots_(slots), accept_(accept),
         below_goal_(r.mesh, slots, r.log, accept.goal) {}
 
   FaultCount faults;
@@ -67,16 +65,12 @@ private:
   bool operate(const Trial& trial);
   void repair_after();
   struct Limit;
-  enum class Outcome : uint8_t { none, idle, worse, better };
+  enum class Outcome : uint8_t { idle, worse, better };
   Outcome attempt(const Trial& trial, Limit& limit);
-  bool follows_repair() const { return worst_first != accept_.worst_first; }
-  size_t first_telling(const std::vector<Trial>& all, size_t from, const Limit& limit, const Snapshot& here,
-                       int& trials);
 
   Region& r_;
   const std::vector<int32_t>& slots_;
   const Acceptance accept_;
-  par::Helpers* helpers_;
   LowElements below_goal_;
 };
 

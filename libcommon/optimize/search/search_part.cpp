@@ -35,8 +35,8 @@ bool at_wall(std::vector<int32_t> points, const DynamicMesh& m, double spacing) 
 
 class Recovery {
 public:
-  Recovery(Region& r, const std::vector<int32_t>& slots, const Strategy& strategy, par::Helpers& helpers)
-      : r_(r), slots_(slots), strategy_(strategy), search_(r, slots, acceptance_of(strategy), careful, &helpers) {}
+  Recovery(Region& r, const std::vector<int32_t>& slots, const Strategy& strategy)
+      : r_(r), slots_(slots), strategy_(strategy), search_(r, slots, acceptance_of(strategy), careful) {}
 
   void run(bool searched) {
     if (searched) {
@@ -262,14 +262,13 @@ private:
 
 } // namespace
 
-void search_part(Region& r, const std::vector<int32_t>& slots, const Strategy& strategy, bool searched,
-                 par::Helpers& helpers) {
+void search_part(Region& r, const std::vector<int32_t>& slots, const Strategy& strategy, bool searched) {
   const bool of_points = strategy.scope == Scope::points;
   if (of_points && strategy.goal_share == 1) {
-    Recovery(r, slots, strategy, helpers).run(searched);
+    Recovery(r, slots, strategy).run(searched);
     return;
   }
-  LocalSearch search(r, slots, acceptance_of(strategy), of_points ? yielding : of_elements, &helpers);
+  LocalSearch search(r, slots, acceptance_of(strategy), of_points ? yielding : of_elements);
   if (of_points && at_wall(search.faults.points_off(), r.mesh, r.spacing()))
     return;
   const Snapshot snapshot = r.save(search.elements());
@@ -280,7 +279,7 @@ void search_part(Region& r, const std::vector<int32_t>& slots, const Strategy& s
     Strategy lower = strategy;
     lower.goal_share = 1;
     lower.goal *= strategy.goal_share;
-    Recovery(r, slots, lower, helpers).run(false);
+    Recovery(r, slots, lower).run(false);
     if (r.counts.total() == snapshot.counts.total())
       return;
   } else {

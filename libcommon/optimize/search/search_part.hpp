@@ -2,7 +2,6 @@
 #pragma once
 #include "optimize/operations/region.hpp"
 #include "optimize/search/strategy.hpp"
-#include "par/helpers.hpp"
 #include <cstdint>
 #include <vector>
 
@@ -12,8 +11,7 @@ namespace molmesh::optimize {
 /// counts: Scope::points: fewer points are off, no more triangles bent than the moves allow for each, no more
 /// elements below the goal and the worst of them no worse; Scope::elements: fewer elements below the goal, the
 /// worst no worse, no more points off and no more triangles bent. searched: Moves::bold is known to do nothing
-/// here, and Moves::necks goes on from there. helpers: threads for hill climbing.
-void search_part(Region& r, const std::vector<int32_t>& slots, const Strategy& strategy, bool searched,
-                 par::Helpers& helpers);
+/// here, and Moves::necks goes on from there.
+void search_part(Region& r, const std::vector<int32_t>& slots, const Strategy& strategy, bool searched);
 
 } // namespace molmesh::optimize
