@@ -30,9 +30,6 @@ void project_to_surface(Region& r, const Acceptance& accept, const std::vector<i
 /// Moves a vertex of the surface or a trace towards the nearest place on the target that it finds, as far as no
 /// element falls under `floor`.
 bool step_to_surface(Region& r, const Acceptance& accept, int32_t v, float floor);
-/// Gives the elements on one side of a surface vertex that is off the target to the other side: the surface then
-/// runs past it. No element changes its shape but for a vertex that comes to lie on the surface.
-bool retreat_surface(Region& r, const Acceptance& accept, int32_t v);
 /// The closed surface of few triangles that v is on shrinks to what the target has there, in shells that get
 /// smaller by about `ratio`.
 bool shrink_cavity(Region& r, int32_t v, double ratio);

@@ -14,7 +14,6 @@ Counts& Counts::operator+=(const Counts& o) {
   face_swaps += o.face_swaps;
   contractions += o.contractions;
   splits += o.splits;
-  retreats += o.retreats;
   cavity_shrinks += o.cavity_shrinks;
   return *this;
 }

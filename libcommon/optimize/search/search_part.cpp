@@ -167,26 +167,6 @@ private:
     return done;
   }
 
-  // Edges of the surface at v flip until it can leave.
-  bool cut_off(const Acceptance& a, int32_t v) {
-    if (r_.mesh.vertex[v].kind != Kind::surface)
-      return false;
-    for (int flips = 0; flips < 8; ++flips) {
-      bool flipped = false;
-      for (size_t k = 0; k < slots_.size() && !flipped; ++k) {
-        const Element e = r_.mesh.element[slots_[k]];
-        const int i = e.alive() ? e.find(v) : -1;
-        for (int j = 0; i >= 0 && j < 4 && !flipped; ++j)
-          flipped = j != i && follows_target(r_.mesh.vertex[e.v[j]].kind) && remove_edge(r_, a, slots_[k], i, j);
-      }
-      if (!flipped)
-        return false;
-      if (retreat_surface(r_, a, v))
-        return true;
-    }
-    return false;
-  }
-
   // Where the target is narrow: this leaves elements as small as the neck, so it comes last.
   void follow_necks() {
     const double same = 0.1 * r_.spacing();
@@ -218,9 +198,7 @@ private:
   bool try_all(int32_t v, const Snapshot& snapshot) {
     const Faults before = search_.faults();
     const auto attempted = [&](auto&& operation) { return attempt(snapshot, before, operation); };
-    if (attempted([&](const Acceptance& a) { return smooth_vertex(r_, a, v); }) ||
-        attempted([&](const Acceptance& a) { return retreat_surface(r_, a, v); }) ||
-        attempted([&](const Acceptance& a) { return cut_off(a, v); }))
+    if (attempted([&](const Acceptance& a) { return smooth_vertex(r_, a, v); }))
       return true;
     if (search_.leeway.off_target)
       for (const float floor : {0.1f, 0.01f})

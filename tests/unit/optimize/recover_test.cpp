@@ -237,7 +237,6 @@ TEST_CASE("what is restored is as it was saved") {
             optimize::remove_edge(region, accept, inner[k], i, j) ||
                 optimize::split_edge(region, accept, inner[k], i, j) ||
                 optimize::contract_edge(region, accept, inner[k], i, j) ||
-                optimize::retreat_surface(region, accept, e.v[i]) ||
                 optimize::smooth_vertex(region, accept, e.v[i]);
       counts_as_anew();
     }
@@ -247,43 +246,4 @@ TEST_CASE("what is restored is as it was saved") {
     counts_as_anew();
   }
   CHECK(done > 20);
-}
-
-TEST_CASE("a surface point that leaves the surface leaves a surface behind") {
-  Case c;
-  optimize::Parts parts;
-  parts.owner.resize(c.m.point.size());
-  std::vector<uint32_t> stamp(c.m.element.size());
-  optimize::PartRoom room;
-  optimize::Region region(c.m, &c.surface, nullptr, parts, stamp, room);
-  optimize::Acceptance bold(recovery_guard);
-  bold.aim = optimize::Aim::fit;
-  bold.may_bend = true;
-  bold.goal = 1e-4f;
-  int gone = 0;
-  double volume = optimize::measure_fidelity(c.m, c.surface, 1).volume;
-  LargeArray<optimize::Element> before = c.m.element;
-  for (size_t v = 0; v < parts.owner.size() && gone < 40; ++v) {
-    std::fill(c.m.labelled.begin(), c.m.labelled.end(), uint8_t{0});
-    if (!optimize::retreat_surface(region, bold, static_cast<int32_t>(v)))
-      continue;
-    ++gone;
-    for (size_t e = 0; e < before.size(); ++e)
-      for (size_t f = 0; f < 4; ++f)
-        if (c.m.element[e].label[f] > before[e].label[f])
-          REQUIRE(c.m.labelled[e / size_t(optimize::DynamicMesh::chunk)]);
-    before = c.m.element;
-    std::fill(c.m.labelled.begin(), c.m.labelled.end(), uint8_t{1});
-    CHECK(c.m.vertex[v].kind == optimize::Kind::interior);
-    const double now = optimize::measure_fidelity(c.m, c.surface, 1).volume;
-    CHECK(now != volume);
-    volume = now;
-  }
-  CHECK(gone > 2);
-  std::fill(c.m.labelled.begin(), c.m.labelled.end(), uint8_t{1});
-  const TetMesh mesh = optimize::extract(c.m);
-  CHECK(surface_shape(mesh).euler() == 2);
-  const optimize::DynamicMesh again = optimize::build(mesh, 180, 1); // throws when faces or labels are wrong
-  for (size_t v = 0; v < again.point.size(); ++v)
-    REQUIRE(again.vertex[v].kind == c.m.vertex[v].kind);
 }
