@@ -100,7 +100,7 @@ std::string without_stop(const std::string& text) {
 std::string man_page(const Table& table) {
   std::ostringstream out;
   out << ".TH " << upper(table.program) << " 1 \"\" \"" << roff("molmesh " + version()) << "\" \"molmesh\"\n"
-      << ".nh\n.ad l\n" // no hyphens in names, no stretched lines
+      << ".nh\n.ad l\n" // no hyphens in names, no widened lines
       << ".SH NAME\n"
       << roff(table.program) << " \\- " << roff(without_stop(table.purpose)) << "\n.SH SYNOPSIS\n.B "
       << roff(table.program) << "\n[\\fIOPTIONS\\fR]" << roff(synopsis_arguments(table)) << "\n.SH DESCRIPTION\n"

@@ -86,42 +86,42 @@ bool is_line_number(std::string_view line) {
 
 void LabelColumns::look(std::string_view line) {
   const char fourth = column(line, fourth_at);
-  if (fourth == ' ' && stretch_.chain.empty()) {
+  if (fourth == ' ' && run_.chain.empty()) {
     if (line.size() > 26)
       before_.assign(line.substr(residue_at, 10));
     return;
   }
   const std::string labels = columns(line, residue_at, 10);
-  if (fourth == ' ' || labels.compare(3, 2, stretch_.chain) != 0)
-    end_stretch(labels);
+  if (fourth == ' ' || labels.compare(3, 2, run_.chain) != 0)
+    end_run(labels);
   if (fourth != ' ' && !is_wider(line)) {
-    if (stretch_.chain.empty()) {
-      stretch_.chain = labels.substr(3, 2);
-      stretch_.flanked = are_neighbours(labels, before_);
+    if (run_.chain.empty()) {
+      run_.chain = labels.substr(3, 2);
+      run_.flanked = are_neighbours(labels, before_);
     }
     const std::string name = labels.substr(0, 3);
-    stretch_.short_name |= name.find(' ') != std::string::npos;
+    run_.short_name |= name.find(' ') != std::string::npos;
     if (before_.compare(0, 5, labels, 0, 5) != 0 && is_amino_acid(name)) {
-      stretch_.amino_acids.insert(name);
-      stretch_.all_known = stretch_.all_known && is_named_with_four(labels.substr(0, 4));
+      run_.amino_acids.insert(name);
+      run_.all_known = run_.all_known && is_named_with_four(labels.substr(0, 4));
     }
   }
   before_ = labels;
 }
 
-void LabelColumns::end_stretch(std::string_view next) {
-  if (stretch_.chain.empty())
+void LabelColumns::end_run(std::string_view next) {
+  if (run_.chain.empty())
     return;
-  const bool flanked = stretch_.flanked || are_neighbours(before_, next);
+  const bool flanked = run_.flanked || are_neighbours(before_, next);
   // Without a letter in column 22 none of the usual programs means a chain.
-  const size_t wanted = stretch_.chain[1] == ' ' ? 2 : 1;
-  if (stretch_.short_name || (!flanked && !stretch_.all_known && stretch_.amino_acids.size() >= wanted))
-    two_letters_.insert(stretch_.chain);
-  stretch_ = {};
+  const size_t wanted = run_.chain[1] == ' ' ? 2 : 1;
+  if (run_.short_name || (!flanked && !run_.all_known && run_.amino_acids.size() >= wanted))
+    two_letters_.insert(run_.chain);
+  run_ = {};
 }
 
 void LabelColumns::finish() {
-  end_stretch({});
+  end_run({});
 }
 
 AtomLabels LabelColumns::of(std::string_view line) const {

@@ -24,13 +24,13 @@ public:
   AtomLabels of(std::string_view line) const;
 
 private:
-  void end_stretch(std::string_view next);
-  struct Stretch { ///< of lines with something in column 21 and the same two columns
+  void end_run(std::string_view next);
+  struct Run { ///< of lines with something in column 21 and the same two columns
     std::string chain;
     std::set<std::string> amino_acids;
     bool flanked = false, short_name = false, all_known = true;
     int first = 0, last = 0;
-  } stretch_;
+  } run_;
   std::string before_; ///< columns 18-27 of the line before
   std::set<std::string> two_letters_;
 };

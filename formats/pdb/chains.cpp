@@ -1,4 +1,4 @@
-// chains.cpp — stretches of chains named and joined, residues and chains by hash.
+// chains.cpp — runs of chains named and joined, residues and chains by hash.
 #include "formats/pdb/chains.hpp"
 #include "formats/pdb/atom_site.hpp"
 #include <gemmi/cifdoc.hpp>
@@ -66,7 +66,7 @@ void join_divided_chains(gemmi::Structure& structure) {
         at.clear();
         continue;
       }
-      std::vector<gemmi::Residue>& residues = whole.back().residues; // of the stretch before
+      std::vector<gemmi::Residue>& residues = whole.back().residues; // of the run before
       if (at.empty())
         for (size_t r = 0; r < residues.size(); ++r)
           at.emplace(key(residues[r]), r);

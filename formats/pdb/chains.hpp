@@ -11,7 +11,7 @@ namespace molmesh::formats {
 
 class AtomColumns;
 
-/// Before gemmi reads the table: further stretches of chains of many residues get names of their own. False: there
+/// Before gemmi reads the table: further runs of chains of many residues get names of their own. False: there
 /// is none.
 bool divide_long_chains(gemmi::cif::Loop& loop, AtomColumns& columns);
 /// Afterwards, where there was: they are one chain again, as gemmi would have read it undivided.

@@ -98,7 +98,7 @@ char conformer(const Place& place, const std::string& altloc) {
   return best;
 }
 
-/// One conformer a place. An atom that the place's conformer lacks stays in its own best one.
+/// One conformer a place. An atom that is not in the place's conformer stays in its own best one.
 int64_t keep_conformer(const Place& place, const std::string& altloc) {
   const char chosen = conformer(place, altloc);
   if (chosen == '\0')
@@ -111,7 +111,7 @@ int64_t keep_conformer(const Place& place, const std::string& altloc) {
     const bool all_alternative =
         std::all_of(atoms.begin(), atoms.end(), [](const gemmi::Atom& a) { return a.altloc != '\0'; });
     std::vector<gemmi::Atom> kept;
-    // Of a place with several residues, those that the conformer lacks go as a whole.
+    // Of a place with several residues, those that are not in the conformer go as a whole.
     if (place.size() == 1 || has || !all_alternative) {
       std::map<std::string, const gemmi::Atom*> best;
       for (const gemmi::Atom& a : atoms) {

@@ -131,7 +131,7 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
                    " with a number that is not finite");
       if (!is_rotation(op.transform.mat))
         fail_input(file + ": found operator " + op.name + " of assembly " + assembly +
-                   " that squeezes, stretches or mirrors, expected a rotation and a shift");
+                   " that scales, shears or mirrors, expected a rotation and a shift");
       int& copy = copies.try_emplace({op.name, numbers(op.transform)}, 0).first->second;
       if (copy == 0 || !used.insert(copy).second)
         used.insert(copy = ++count);

@@ -13,7 +13,7 @@ class Remark350 {
 public:
   /// where: "FILE:LINE". Throws Error(bad_input) for a matrix that is none.
   void take(std::string_view line, const std::string& where);
-  /// Throws where the last matrix lacks rows.
+  /// Throws where the last matrix is short of rows.
   void finish() const;
   std::vector<gemmi::Assembly> assemblies;
 

@@ -2,7 +2,7 @@
 // atoms.
 #pragma once
 #include "base/error.hpp"
-#define USE_STD_SNPRINTF // gemmi's own wants stb_sprintf.h, which Debian's gemmi-dev lacks; only messages are
+#define USE_STD_SNPRINTF // gemmi's own wants stb_sprintf.h, which is not in Debian's gemmi-dev; only messages are
                          // printed
 #include <algorithm>
 #include <gemmi/select.hpp>

@@ -1,4 +1,4 @@
-// structure_builder.cpp — a residue is a stretch of atoms, joined to an earlier one unless it repeats an atom.
+// structure_builder.cpp — a residue is a run of atoms, joined to an earlier one unless it repeats an atom.
 #include "formats/pdb/structure_builder.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
@@ -40,14 +40,14 @@ void StructureBuilder::add(std::string_view name, const gemmi::ResidueId& id, bo
     close_residue();
     open_chain(name);
   }
-  const bool begins_again = !has_number && !stretch_.atoms.empty() && label(stretch_.atoms[0]) == label(atom);
-  if (begins_again || !stretch_.matches(id))
+  const bool begins_again = !has_number && !run_.atoms.empty() && label(run_.atoms[0]) == label(atom);
+  if (begins_again || !run_.matches(id))
     close_residue();
-  if (stretch_.atoms.empty()) {
-    static_cast<gemmi::ResidueId&>(stretch_) = id;
-    stretch_.het_flag = hetero ? 'H' : 'A';
+  if (run_.atoms.empty()) {
+    static_cast<gemmi::ResidueId&>(run_) = id;
+    run_.het_flag = hetero ? 'H' : 'A';
   }
-  stretch_.atoms.push_back(std::move(atom));
+  run_.atoms.push_back(std::move(atom));
 }
 
 bool StructureBuilder::repeats(Slot& slot) const {
@@ -56,22 +56,22 @@ bool StructureBuilder::repeats(Slot& slot) const {
     for (const gemmi::Atom& a : structure_.models.back().chains.back().residues[slot.residue].atoms)
       slot.atoms->insert(label(a));
   }
-  return std::any_of(stretch_.atoms.begin(), stretch_.atoms.end(),
+  return std::any_of(run_.atoms.begin(), run_.atoms.end(),
                      [&](const gemmi::Atom& a) { return slot.atoms->count(label(a)) != 0; });
 }
 
 void StructureBuilder::close_residue() {
-  if (stretch_.atoms.empty())
+  if (run_.atoms.empty())
     return;
   std::vector<gemmi::Residue>& residues = chain().residues;
-  const auto [found, is_new] = slot_.try_emplace(stretch_, Slot{residues.size(), nullptr});
+  const auto [found, is_new] = slot_.try_emplace(run_, Slot{residues.size(), nullptr});
   Slot& slot = found->second;
   if (!is_new && !repeats(slot)) {
-    for (gemmi::Atom& a : stretch_.atoms) {
+    for (gemmi::Atom& a : run_.atoms) {
       slot.atoms->insert(label(a));
       residues[slot.residue].atoms.push_back(std::move(a));
     }
-    stretch_.atoms.clear();
+    run_.atoms.clear();
     return;
   }
   if (!is_new) {
@@ -79,9 +79,9 @@ void StructureBuilder::close_residue() {
     slot = Slot{residues.size(), nullptr};
   }
   if (after_ter_)
-    stretch_.entity_type = stretch_.is_water() ? gemmi::EntityType::Water : gemmi::EntityType::NonPolymer;
-  residues.push_back(std::move(stretch_));
-  stretch_ = gemmi::Residue();
+    run_.entity_type = run_.is_water() ? gemmi::EntityType::Water : gemmi::EntityType::NonPolymer;
+  residues.push_back(std::move(run_));
+  run_ = gemmi::Residue();
 }
 
 void StructureBuilder::end_polymer() {

@@ -12,7 +12,7 @@
 namespace molmesh::formats {
 
 /// Atoms of a PDB file in its order. A chain ends where the next atom's chain has another name. Within a chain,
-/// atoms of one number, insertion code, segment and name are a residue, also where they stand apart; but a stretch
+/// atoms of one number, insertion code, segment and name are a residue, also where they stand apart; but a run
 /// that repeats an atom of the residue is a residue of its own: its number has started again.
 class StructureBuilder {
 public:
@@ -44,7 +44,7 @@ private:
   bool chain_open_ = false, after_ter_ = false;
   std::unordered_map<std::string, size_t> chains_; ///< of the model: the first of each name
   std::unordered_map<gemmi::ResidueId, Slot> slot_;
-  gemmi::Residue stretch_; ///< consecutive atoms of one residue
+  gemmi::Residue run_; ///< consecutive atoms of one residue
   int64_t restarted_ = 0;
 };
 

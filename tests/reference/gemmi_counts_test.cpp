@@ -30,18 +30,18 @@ const std::map<std::string, std::string> gemmi_reads_otherwise = {
     {"mda_sameresid_diffresname.pdb", "POPC of chain S is no POP of chain CS"},
 };
 
-struct Stretches {
+struct Runs {
   int64_t residues = 0, chains = 0;
 };
 
 /// Residues as lines that follow each other, chains by column 22 or the segment: the first model alone.
-Stretches count_stretches(const std::string& path) {
+Runs count_runs(const std::string& path) {
   const gemmi::CharArray unpacked =
       gemmi::MaybeGzipped(path).uncompress_into_buffer(); // empty where it is not packed
   std::ostringstream plain;
   plain << std::ifstream(path, std::ios::binary).rdbuf();
   std::istringstream in(unpacked.size() > 0 ? std::string(unpacked.data(), unpacked.size()) : plain.str());
-  Stretches counted;
+  Runs counted;
   std::set<std::string> chains;
   std::string before, first;
   for (std::string line; std::getline(in, line) && line.rfind("END", 0) != 0;) {
@@ -70,7 +70,7 @@ TEST_CASE("atoms, residues and chains are those that gemmi counts") {
   formats::PdbOptions all;
   all.waters = true;
   all.altloc = "all";
-  int files = 0, by_stretch = 0;
+  int files = 0, by_run = 0;
   for (const char* folder : {"typical", "paper", "large", "odd"})
     for (const auto& entry : fs::directory_iterator(data / folder)) {
       const std::string path = entry.path().string();
@@ -107,11 +107,11 @@ TEST_CASE("atoms, residues and chains are those that gemmi counts") {
       if (const auto known = gemmi_reads_otherwise.find(entry.path().filename().string());
           known != gemmi_reads_otherwise.end()) {
         INFO(known->second);
-        const Stretches by_hand = count_stretches(path);
+        const Runs by_hand = count_runs(path);
         CHECK(residues == by_hand.residues);
         CHECK(chains == by_hand.chains);
         CHECK((residues != their_residues || chains != static_cast<int64_t>(model.chains.size())));
-        ++by_stretch;
+        ++by_run;
         continue;
       }
       CHECK(residues == their_residues);
@@ -119,5 +119,5 @@ TEST_CASE("atoms, residues and chains are those that gemmi counts") {
       ++files;
     }
   CHECK(files > 150);
-  CHECK(by_stretch == static_cast<int>(gemmi_reads_otherwise.size()));
+  CHECK(by_run == static_cast<int>(gemmi_reads_otherwise.size()));
 }

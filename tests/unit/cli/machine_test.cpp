@@ -100,7 +100,7 @@ TEST_CASE("more memory than there is is refused before it is used") {
     CHECK(o.status == refused);
 }
 
-TEST_CASE("threads that the system does not start are counted, not tried in vain") {
+TEST_CASE("threads that the system does not start are counted and not tried again") {
   constexpr int no_limit = 77;
   const Outcome o = in_child([] {
     std::ifstream in("/proc/self/statm");
