@@ -1,4 +1,4 @@
-// pdb2hier.cpp — atomic structure (PDB, mmCIF, mmJSON, PQR) to molecular hierarchy (.hier).
+// pdb2hier.cpp — atomic structure (PDB, mmCIF, PQR and others) to molecular hierarchy (.hier).
 #include "tools/options/pdb2hier.hpp"
 #include "molecule/limits.hpp"
 #include "molecule/words.hpp"
@@ -97,7 +97,7 @@ Status run(Options& o, cli::Run& run) {
 } // namespace
 
 int main(int argc, char** argv) {
-  return cli::run_main<Options>("pdb2hier",
-                                "Atomic structure (PDB, mmCIF, mmJSON, PQR; plain or gzip) to molecular hierarchy.",
-                                argc, argv, describe, run);
+  return cli::run_main<Options>(
+      "pdb2hier", "Atomic structure (PDB, mmCIF, PQR and others; plain or gzip) to molecular hierarchy.", argc,
+      argv, describe, run);
 }

@@ -204,7 +204,7 @@ class Page:
             rows.append((*row, f"{paper[5]:g}"))
         self.write("### The paper's table 2", "Seconds, **ours on one thread / the paper's with 8 threads** (Xeon E5-1620). T0: "
                    "every atom at every point; NS: every atom, points near the surface alone; KD, BVH: atoms by tree at "
-                   "every point; NS+KD: both. 0.25 Å, margin 4 Å, P_R = 0.5, P_C = 1. –: not run, minutes or hours.",
+                   "every point; NS+KD: both. 0.25 Å, margin 4 Å, P_R = 0.5, P_C = 1. –: not run, since it takes more than ten minutes.",
                    table(("", "atoms here", *VARIANTS, "the paper's GPU"), rows))
 
     def table_1(self):
@@ -475,7 +475,7 @@ class Page:
                    + "`: do not edit. Target beside result, the paper's figures and other programs beside both. What the "
                    "contracts I1 to I12 are, units and measures: [conventions.md](conventions.md).",
                    f"**Machine.** {self.machine()}", "Times are " + ("of one run" if self.quick else "medians of three runs")
-                   + (", on a machine that other work shares: one thread, and seconds of the clock times the share of a processor "
+                   + (", on a shared machine: one thread, and seconds of the clock times the share of a processor "
                       "that the program had. A quiet machine is faster" if self.arguments.shared else "")
                    + "; ratios of times say more than times. Any number of threads gives the same bytes.",
                    "## Targets and results", table(("", "target", "result", "met"), self.promises))

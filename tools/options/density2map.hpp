@@ -17,7 +17,8 @@ inline void describe(cli::Table& t, Options& o) {
   t.page.about =
       "Writes the density that hier2density computed as a dense map, for viewers that do not read OpenVDB files: "
       "ChimeraX, PyMOL, VMD, Coot. The map covers the whole grid. Grid points beyond the band around the surface "
-      "have one value inside and one outside, so that the isosurface is the surface that density2tet meshes.";
+      "have one value inside and one outside, and the isosurface is within 0.06 spacings of the surface that "
+      "density2tet meshes, which is that of log G.";
   t.page.examples = {{"density2map 1tii.vdb -o 1tii.mrc", "a CCP4/MRC map"},
                      {"density2map 1tii.vdb -o 1tii.dx", "an OpenDX map"},
                      {"hier2density 1tii.hier | density2map >1tii.map", "a CCP4/MRC map from a pipe"}};

@@ -25,13 +25,13 @@ inline void describe(cli::Table& t, Options& o) {
   t.add("--parts", o.parts, "parts (METIS) that the elements are numbered by in the output, one an element at most")
       .within(1, 1000000);
   t.group("quality");
-  cli::add_dihedral_limits(t, o.min_dihedral, o.max_dihedral, ", and aimed at up to 34 and 125");
+  cli::add_dihedral_limits(t, o.min_dihedral, o.max_dihedral, ", and an aim up to 34 and 125");
   t.page.about =
       "Improves a tetrahedral mesh by swaps, contractions, moves and splits. It never inverts an element and never "
       "makes the worst one worse. With a density, surface points are put on the isosurface and kept there; "
-      "without, they move on the surface that came in. Regions, boundaries and labels stay. It aims at "
-      "dihedral angles from 26° to 138.5°; asked for more, it aims at that and takes longer. When the mesh, "
-      "valid and written, is below what was asked for, the exit status is 5.";
+      "without, they move on the surface of the input. Regions, boundaries and labels stay. It aims at "
+      "dihedral angles from 26° to 138.5° and Q 0.31; narrower limits are aims too, and take longer. A mesh "
+      "outside the limits is valid and written all the same, and the exit status is 5.";
   t.page.examples = {
       {"tetsmooth --density 1tii.vdb 1tii.tet.vtu -o 1tii.vtu", "better elements, the surface on the isosurface"},
       {"tetsmooth --min-dihedral 20 --hier 1tii.hier 1tii.tet.vtu -o 1tii.vtu",
