@@ -6,15 +6,18 @@
 
 namespace molmesh::test {
 
-/// The one line with which `action` is refused; the empty text when it is not.
+/// The one line with which `action` is refused, and the quantities it names, as in "…[margin][box]"; the empty text
+/// when it is not.
 template <class Action>
 std::string refusal(Status status, Action action) {
   try {
     action();
   } catch (const Error& e) {
-    const std::string line = e.what();
+    std::string line = e.what();
     CHECK(e.status == status);
     CHECK(line.find('\n') == std::string::npos);
+    for (const std::string& quantity : e.quantities)
+      line += '[' + quantity + ']';
     return line;
   }
   return "";

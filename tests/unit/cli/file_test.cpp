@@ -188,7 +188,7 @@ TEST_CASE("a file is made under no name or a random one, and gets its own at the
   }
 }
 
-TEST_CASE("the permissions of a file that is replaced are kept; a new one's are the caller's") {
+TEST_CASE("a file that is replaced keeps its permissions and a new one has the caller's") {
   const auto permissions = [](const std::string& file) {
     struct stat status {};
     stat(file.c_str(), &status);

@@ -160,7 +160,7 @@ TEST_CASE("a surface that meets the wall is refused unless the box was asked to 
                   half = test::sample_grid({-12, -12, 0}, {25, 25, 13}, 0.5, 2, atom);
   for (const BlockGrid* grid : {&corners_outside, &half}) {
     CHECK_THROWS_WITH(mesh_of(*grid, options), Catch::Contains("the surface meets the wall of the box"));
-    CHECK(refusal(Status::failed, [&] { mesh_of(*grid, options); }).find("--margin") != std::string::npos);
+    CHECK(refusal(Status::failed, [&] { mesh_of(*grid, options); }).find("[margin]") != std::string::npos);
   }
 }
 

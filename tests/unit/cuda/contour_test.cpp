@@ -147,8 +147,8 @@ TEST_CASE("device stages: the host's, one by one, on random densities with ambig
   CHECK(filled > 0);
 }
 
-TEST_CASE(
-    "device stages: the host's on a molecule, in a cut box, at any number of threads and with little memory") {
+TEST_CASE("device stages: the host's on a molecule, in a cut box, at any number of threads and with little memory",
+          "[slow]") {
   const BlockGrid grid = cube_grid(8, 0.8, [](Vec3d x) { return atom(x) + atom(x - Vec3d{2, 2.5, 1}); });
   Options options;
   options.meshed = Options::both;

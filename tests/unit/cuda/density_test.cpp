@@ -76,7 +76,7 @@ void check_same(const BlockGrid& a, const BlockGrid& b) {
 
 } // namespace
 
-TEST_CASE("device density: values are within the tolerance for exponents from 0.02 to 4 and any depth") {
+TEST_CASE("device density: values are within the tolerance for exponents from 0.02 to 4 and any depth", "[slow]") {
   const std::vector<std::vector<double>> settings = {
       {},        {1},       {0.3, 1}, {0.5, 1},      {0.05, 0.5}, {0.02, 1},     {0.02, 0.02}, {2, 1},
       {1, 0.02}, {4, 0.25}, {0.3, 4}, {0.8, 0.5, 1}, {2, 1, 1},   {0.5, 2, 0.5}, {1, 1, 0.3},  {0.3, 0.8, 2.5}};

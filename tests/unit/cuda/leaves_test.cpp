@@ -129,7 +129,7 @@ TEST_CASE("leaf selection: device and host the same on random densities, uniform
   CHECK(seen.clipped > 10);
 }
 
-TEST_CASE("leaf selection: surface cells merge, the same at any number of threads") {
+TEST_CASE("leaf selection: surface cells merge, the same at any number of threads", "[slow]") {
   const BlockGrid grid = test::cube_grid(9, 0.32, [](Vec3d x) {
     return test::atom(x) + test::atom(x - Vec3d{2, 2.5, 1}) + test::atom(x - Vec3d{6, 6, 6});
   });

@@ -13,7 +13,7 @@ constexpr double h = 0.5;
 
 } // namespace
 
-TEST_CASE("points come back where repair alone leaves elements below the goal") {
+TEST_CASE("points come back where repair alone leaves elements below the goal", "[slow]") {
   // Each needs what is bad after a trial to be made worse before it is better.
   enum Kind { gap, spike };
   struct Narrow {

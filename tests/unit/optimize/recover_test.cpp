@@ -138,7 +138,7 @@ TEST_CASE("boxes of cells are parts that do not overlap") {
   CHECK(parts.at({100, 100, 100}) == 2);
 }
 
-TEST_CASE("what is restored is as it was saved") {
+TEST_CASE("what is restored is as it was saved", "[slow]") {
   Case c(GENERATE(0, 1)); // in the inside alone, edges of the surface have no full ring
   const optimize::DynamicMesh before = c.m;
   const auto size = static_cast<int32_t>(c.m.element.size()), points = static_cast<int32_t>(c.m.point.size());

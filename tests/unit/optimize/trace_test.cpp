@@ -51,7 +51,8 @@ TEST_CASE("vertices of the surface and one wall are its trace") {
   }
 }
 
-TEST_CASE("the trace of a surface on a wall lies on the isosurface and in the wall, between good elements") {
+TEST_CASE("the trace of a surface on a wall lies on the isosurface and in the wall, between good elements",
+          "[slow]") {
   const auto meshed = GENERATE(contour::Options::interior, contour::Options::exterior, contour::Options::both);
   int traces = 0, off = 0;
   for (uint32_t seed = 1; seed <= 4; ++seed) {

@@ -35,7 +35,7 @@ BlockGrid tip(double beyond) {
   });
 }
 
-TEST_CASE("a tip of the isosurface beyond a wall takes no point of the surface with it") {
+TEST_CASE("a tip of the isosurface beyond a wall takes no point of the surface with it", "[slow]") {
   const auto meshed = GENERATE(contour::Options::interior, contour::Options::exterior);
   for (int k = -2; k <= 10; ++k) {
     const BlockGrid grid = tip(0.03 * k);
