@@ -31,7 +31,7 @@ Acceptance LocalSearch::first_step() const {
   Acceptance a = accept_;
   a.aim = Aim::fit;
   a.goal = leeway.floor * accept_.goal;
-  a.worst_first = worst_first;
+  a.worst_first = !accept_.worst_first;
   a.may_bend = true;
   return a;
 }
@@ -56,7 +56,7 @@ void LocalSearch::fit_changed() {
 void LocalSearch::fit_bent() {
   Acceptance a = accept_;
   a.aim = Aim::fit;
-  a.worst_first = worst_first;
+  a.worst_first = !accept_.worst_first;
   a.off_target = leeway.off_target;
   r_.changed.clear();
   for (const int32_t t : slots_)
@@ -76,7 +76,7 @@ void LocalSearch::repair(int rounds, double hopeless) {
     if (k > 0 && k * cost() > hopeless)
       return;
     const int64_t done = r_.counts.total();
-    a.worst_first = worst_first = (k % 2 == 0) == accept_.worst_first;
+    a.worst_first = (k % 2 == 0) == accept_.worst_first;
     std::vector<int32_t> list = below_goal_();
     if (list.empty())
       return;

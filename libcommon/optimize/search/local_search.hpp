@@ -27,7 +27,8 @@ public:
   FaultCount faults;
   Leeway leeway;
 
-  /// Of the operation that a trial begins with: it may flatten elements down to the floor and bend the surface.
+  /// Of the operation that a trial begins with: it may flatten elements down to the floor and bend the surface. The
+  /// deficit is that of the second round of repair, with which most repairs end.
   Acceptance first_step() const;
   /// What has changed since Region::changed was cleared is made to fit the target, elements down to the floor.
   void fit_changed();
@@ -48,9 +49,6 @@ public:
   /// 0 where no element is far enough below the goal to count as a fault; more for every one, and for worse ones.
   double cost();
   bool is_better(const Faults& before) { return faults.better_than(before, leeway.bent_for_point); }
-  /// The measure of the deficit that the last round of repair used: first_step() is judged by it. Most repairs end
-  /// with that of their second round.
-  bool worst_first = true;
 
 private:
   std::vector<int32_t> below(float goal, const std::vector<int32_t>& of) const; ///< of elements, in their order

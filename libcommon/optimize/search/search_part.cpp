@@ -40,7 +40,6 @@ public:
 
   void run(bool searched) {
     if (searched) {
-      search_.worst_first = !strategy_.worst_first; // as repair leaves it
       if (search_.faults.points_off().size() <= most_points)
         try_necks(in_necks);
       return;
