@@ -171,9 +171,9 @@ bool merge(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
         p[n] = r.mesh.point[c.v[n]];
       const int k = el.find(from);
       c.v[k] = b;
-      elements.add(p, k);
+      r.work.elements.add(p, k);
       if (from == a)
-        now.push_back(c);
+        r.work.now.push_back(c);
     }
   };
   add(star, a, b);
