@@ -99,8 +99,8 @@ bool remove_edge(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
   if (!surface && (m < 3 || m > longest))
     return false;
   const float above = accept.demand(r.worst(ring.element));
-  const auto vertex = [&](int k) { return ring.vertex[k % m]; };
-  const auto element = [&](int k) -> const Element& { return r.mesh.element[ring.element[k % m]]; };
+  const auto vertex = [&](int k) { return r.work.ring.vertex[k % m]; };
+  const auto element = [&](int k) -> const Element& { return r.mesh.element[r.work.ring.element[k % m]]; };
   const auto pair_of = [&](int first, int x, int y, int z) {
     return std::array<std::array<int32_t, 4>, 2>{{{vertex(first + x), vertex(first + y), vertex(first + z), b},
                                                   {vertex(first + x), vertex(first + z), vertex(first + y), a}}};
@@ -125,7 +125,7 @@ bool remove_edge(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
     const int32_t region = element(f).region;
     polygon[side].triangles([&](int x, int y, int z) {
       for (const auto& v : pair_of(f, x, y, z))
-        now.push_back({v, region, r.mesh.quality(v), {}});
+        r.work.now.push_back({v, region, r.mesh.quality(v), {}});
     });
   }
   if (surface) {

@@ -36,7 +36,7 @@ bool at_wall(std::vector<int32_t> points, const DynamicMesh& m, double spacing) 
 class Recovery {
 public:
   Recovery(Region& r, const std::vector<int32_t>& slots, const Strategy& strategy)
-      : r_(r), slots_(slots), strategy_(strategy), search_(r, slots, acceptance_of(strategy), careful) {}
+      : r_(r), strategy_(strategy), search_(r, slots, acceptance_of(strategy), careful) {}
 
   void run(bool searched) {
     if (searched) {
@@ -230,7 +230,6 @@ private:
   }
 
   Region& r_;
-  const std::vector<int32_t>& slots_; ///< all that elements of this part may be in
   const Strategy& strategy_;
   LocalSearch search_;
   std::optional<Snapshot> here_;                    ///< of bring_back(): nothing has changed since
