@@ -1,13 +1,14 @@
 // star_quality_test.cpp — a star's elements at once give the same bits as one at a time, on every instruction set.
 #include "geom/star_quality.hpp"
+#include "unit/instruction_sets.hpp"
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <hwy/targets.h>
 #include <random>
 
 using namespace molmesh;
+using molmesh::test::with_every_instruction_set;
 
 namespace {
 
@@ -15,16 +16,6 @@ std::mt19937 generator(11);
 Vec3d random_point(double size) {
   std::uniform_real_distribution<double> u(-size, size);
   return {u(generator), u(generator), u(generator)};
-}
-
-template <class Test>
-void with_every_instruction_set(Test&& test) {
-  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    INFO(hwy::TargetName(target));
-    test();
-  }
-  hwy::SetSupportedTargetsForTest(0);
 }
 
 } // namespace

@@ -4,15 +4,16 @@
 #include "isosurface/isosurface.hpp"
 #include "isosurface/logs_simd.hpp"
 #include "isosurface/probe_simd.hpp"
+#include "unit/instruction_sets.hpp"
 #include "unit/optimize/lattice_mesh.hpp"
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <hwy/targets.h>
 #include <random>
 
 using namespace molmesh;
+using molmesh::test::with_every_instruction_set;
 
 namespace {
 
@@ -20,16 +21,6 @@ std::mt19937 generator(11);
 Vec3d random_point(double size) {
   std::uniform_real_distribution<double> u(-size, size);
   return {u(generator), u(generator), u(generator)};
-}
-
-template <class Test>
-void with_every_instruction_set(Test&& test) {
-  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    INFO(hwy::TargetName(target));
-    test();
-  }
-  hwy::SetSupportedTargetsForTest(0);
 }
 
 const Vec3d centre{4.03, 4.11, 3.97};
