@@ -1,10 +1,12 @@
-// cpus.cpp — the cpu controllers of control groups, versions 1 and 2.
+// cpus.cpp — the cpu controllers of control groups, versions 1 and 2, and what Slurm says.
 #include "cli/cpus.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <atomic>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <new>
 #include <sys/mman.h>
@@ -36,9 +38,22 @@ int cpus_granted(const SystemFiles& system) {
   return least < 1e6 ? static_cast<int>(std::ceil(least)) : -1;
 }
 
+int cpus_of_job(const char* text) {
+  if (!text)
+    return -1;
+  int cpus = 0;
+  const char* const end = text + std::strlen(text);
+  const auto [stopped, error] = std::from_chars(text, end, cpus);
+  return error == std::errc() && stopped == end && cpus > 0 ? cpus : -1;
+}
+
 int default_threads() {
-  const int threads = par::default_threads(), granted = cpus_granted();
-  return granted > 0 && !std::getenv("OMP_NUM_THREADS") ? std::min(threads, granted) : threads;
+  int threads = par::default_threads();
+  if (std::getenv("OMP_NUM_THREADS"))
+    return threads;
+  for (const int limit : {cpus_granted(), cpus_of_job(std::getenv("SLURM_CPUS_PER_TASK"))})
+    threads = limit > 0 ? std::min(threads, limit) : threads;
+  return threads;
 }
 
 int startable_threads(int wanted) {

@@ -8,7 +8,11 @@ namespace molmesh::cli {
 /// fewer. -1: no limit. More threads would wait for each other's time.
 int cpus_granted(const SystemFiles& system = {});
 
-/// As many threads as OpenMP would use, and no more than are granted unless OMP_NUM_THREADS says so.
+/// What a batch system's variable says, as SLURM_CPUS_PER_TASK: a whole number above zero, else -1. Null: not set.
+int cpus_of_job(const char* text);
+
+/// As many threads as OpenMP would use, and no more than control groups grant and SLURM_CPUS_PER_TASK says, unless
+/// OMP_NUM_THREADS is set.
 int default_threads();
 
 /// As many of the threads, this one among them, as the system starts: OpenMP's own answer to one that does not

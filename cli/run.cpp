@@ -93,8 +93,7 @@ int finish(const Table& table, const Common& o, Run& run, OutputFile* report, St
     report->stream() << report_text(table, o, run, peak_rss_bytes);
     run.complete(*report);
   }
-  for (CompleteFile& file : run.outputs)
-    file.publish();
+  std::for_each(run.outputs.rbegin(), run.outputs.rend(), [](CompleteFile& file) { file.publish(); });
   return static_cast<int>(status);
 }
 

@@ -42,7 +42,9 @@ public:
   Value counts;
   /// It gets its name when the run is over and the report, too, could be written.
   void complete(OutputFile& output) { outputs.push_back(output.complete()); }
-  std::vector<CompleteFile> outputs; ///< in the order in which they get their names
+  /// They get their names in the opposite order, the report, which comes last, before all others: where an output
+  /// is, its report is.
+  std::vector<CompleteFile> outputs;
   /// A line on stderr unless -q (prefixed with the program's name): what the user should know, not an error.
   void note(const std::string& line) const;
   void notes(const std::vector<std::string>& lines) const {

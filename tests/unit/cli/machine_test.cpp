@@ -76,6 +76,13 @@ TEST_CASE("the processors that control groups grant") {
   }
 }
 
+TEST_CASE("the processors that a batch system's variable grants are a whole number above zero") {
+  CHECK(cli::cpus_of_job("12") == 12);
+  for (const char* text : {"", "0", "-3", "2x", " 2", "2(x3)", "99999999999999"})
+    CHECK(cli::cpus_of_job(text) == -1);
+  CHECK(cli::cpus_of_job(nullptr) == -1);
+}
+
 TEST_CASE("more memory than there is is refused before it is used") {
   const int64_t bytes = memory_at_hand();
   REQUIRE(bytes > 0);
