@@ -3,6 +3,7 @@
 #include "cli/progress.hpp"
 #include "cuda/density/density.hpp"
 #include "density/density.hpp"
+#include "distance/distance.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/vdb/leaves.hpp"
 #include "formats/vdb/vdb.hpp"
@@ -31,10 +32,10 @@ density::Options density_options(const Options& o) {
     if (!(d.margin >= 0))
       fail(Status::usage, "--margin: found '" + o.margin + "', expected auto or a number >= 0");
   }
-  d.decay = o.decay;
-  d.isovalue = o.isovalue;
-  d.band_lower = band[0] * o.isovalue;
-  d.band_upper = band[1] * o.isovalue;
+  d.decay = o.decay.value_or(1);
+  d.isovalue = o.isovalue.value_or(1);
+  d.band_lower = band[0] * d.isovalue;
+  d.band_upper = band[1] * d.isovalue;
   d.tolerance = o.tolerance;
   d.full_search = o.search == "full";
   d.atoms = o.atoms == "all"      ? density::AtomSearch::all
@@ -44,6 +45,28 @@ density::Options density_options(const Options& o) {
     fail(Status::usage, "--atoms: found kdtree, expected bvh or all with --mode cuda");
   d.threads = o.resolved_threads();
   return d;
+}
+
+/// Of a surface that is none of a density.
+std::optional<distance::Body> body_of(const Options& o) {
+  using distance::Surface;
+  const auto refuse = [&](const char* option, bool given, const char* expected) {
+    if (given)
+      fail(Status::usage, std::string(option) + " is given with --surface " + o.surface + ", expected " + expected);
+  };
+  refuse("--probe", o.probe && o.surface != "ses" && o.surface != "sas", "--surface ses or sas");
+  if (o.surface == "gaussian")
+    return {};
+  const char* const gaussian = "--surface gaussian";
+  refuse("--decay", o.decay.has_value(), gaussian);
+  refuse("--isovalue", o.isovalue.has_value(), gaussian);
+  refuse("--search full", o.search == "full", gaussian);
+  refuse("--atoms", o.atoms != "bvh", gaussian);
+  refuse("--mode cuda", o.on_device(), "--mode omp: distances are computed on the host");
+  return distance::Body{o.surface == "ses"   ? Surface::solvent_excluded
+                        : o.surface == "sas" ? Surface::solvent_accessible
+                                             : Surface::van_der_waals,
+                        o.probe.value_or(1.4)};
 }
 
 void report(cli::Run& r, const Band& band, const formats::Leaves& leaves, const density::Counts& counts) {
@@ -65,6 +88,7 @@ void report(cli::Run& r, const Band& band, const formats::Leaves& leaves, const 
 
 Status run(const Options& o, cli::Run& r) {
   density::Options d = density_options(o);
+  const std::optional<distance::Body> body = body_of(o);
   cli::InputFile in(o.input);
   cli::OutputFile out(o.output, cli::OutputFile::Content::binary);
   r.phase("read");
@@ -82,7 +106,9 @@ Status run(const Options& o, cli::Run& r) {
   {
     cli::Progress progress("density", "nodes", o.quiet);
     d.progress = [&progress](int64_t done, int64_t total) { progress(done, total); };
-    if (o.on_device()) {
+    if (body) {
+      band = distance::compute(h, *body, d, counts);
+    } else if (o.on_device()) {
       cuda::DeviceReport device;
       band = cuda::compute_density(h, d, counts, device);
       r.counts["device"] = device_value(device);
@@ -93,7 +119,7 @@ Status run(const Options& o, cli::Run& r) {
   band.info.creator = cli::creator(r.tool);
   report(r, band, leaves, counts);
   r.phase("write");
-  formats::write_vdb(out.stream(), band.frame, band.info, band.inside, leaves);
+  formats::write_vdb(out.stream(), band.frame, band.info, band.inside, leaves, {o.surface, body ? body->probe : 0});
   r.complete(out);
   return Status::good;
 }

@@ -156,7 +156,7 @@ void write_leaves(std::ostream& out, const std::vector<Entry>& entry, int thread
 } // namespace
 
 void write_vdb(std::ostream& out, const GridFrame& frame, const FieldInfo& info, const std::vector<Vec3i>& inside,
-               const Leaves& leaves) {
+               const Leaves& leaves, const SurfaceKind& kind) {
   std::vector<Entry> entry;
   entry.reserve(leaves.size() + inside.size());
   for (const Leaves::Run& run : leaves.runs())
@@ -167,7 +167,7 @@ void write_vdb(std::ostream& out, const GridFrame& frame, const FieldInfo& info,
   set_keys(entry, frame);
   par::sort(entry, leaves.threads(), depth_first);
   Bytes head;
-  write_preamble(head, frame, info);
+  write_preamble(head, frame, info, kind);
   write_topology(head, static_cast<float>(info.inside_value), entry, out);
   head.flush(out);
   std::erase_if(entry, [](const Entry& e) { return !e.leaf; });

@@ -42,7 +42,7 @@ std::string fresh_uuid() {
 
 } // namespace
 
-void write_preamble(Bytes& out, const GridFrame& f, const FieldInfo& info) {
+void write_preamble(Bytes& out, const GridFrame& f, const FieldInfo& info, const SurfaceKind& kind) {
   out.number(int64_t{0x56444220});
   out.number(uint32_t{224}); // file version
   out.number(uint32_t{10});  // library version
@@ -76,6 +76,11 @@ void write_preamble(Bytes& out, const GridFrame& f, const FieldInfo& info) {
   m.add("levels", info.levels);
   m.add("source", info.source);
   m.add("creator", info.creator);
+  if (kind.surface != "gaussian") {
+    m.add("surface", kind.surface);
+    if (kind.surface != "vdw")
+      m.add("probe", "double", kind.probe);
+  }
   m.write(out);
 
   const double h = f.spacing;

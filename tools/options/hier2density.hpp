@@ -10,7 +10,9 @@ struct Options : cli::Common {
   std::optional<double> spacing;
   int64_t grid = 0;
   std::string margin = "auto";
-  double decay = 1, isovalue = 1, tolerance = 1e-4;
+  std::string surface = "gaussian";
+  std::optional<double> probe, decay, isovalue;
+  double tolerance = 1e-4;
   std::string band = "0.9,1.1", search = "neighbor", atoms = "bvh";
 };
 
@@ -22,9 +24,20 @@ inline void describe(cli::Table& t, Options& o) {
   t.add("--margin", o.margin,
         "grid beyond the outermost atom centres, 0 or more; auto: as far as the surface and its band can reach")
       .unit("Å");
+  t.group("surface");
+  t.add("--surface", o.surface,
+        "gaussian: the isosurface of the density; ses: solvent-excluded, where no probe reaches; sas: "
+        "solvent-accessible, the atoms' spheres larger by the probe; vdw: van der Waals, the atoms' spheres")
+      .one_of({"gaussian", "ses", "sas", "vdw"});
+  t.add("--probe", o.probe, "radius of the probe of ses and sas").unit("Å").within(0, 1e3).shown_default("1.4");
   t.group("density");
-  t.add("--decay", o.decay, "decay rate of an atom's term").unit("Å⁻²").positive();
-  t.add("--isovalue", o.isovalue, "the surface is where the field has this value").positive();
+  t.add("--decay", o.decay, "decay rate of an atom's term; of gaussian alone")
+      .unit("Å⁻²")
+      .positive()
+      .shown_default("1");
+  t.add("--isovalue", o.isovalue, "the surface is where the field has this value; of gaussian alone")
+      .positive()
+      .shown_default("1");
   t.add("--band", o.band, "limits of the band to keep, in multiples of the isovalue, 0 < LO < 1 < HI")
       .unit("LO,HI");
   t.add("--tolerance", o.tolerance, "largest error of a value G, in units of max(1, G)").within(1e-6, 1e-2);
@@ -38,10 +51,14 @@ inline void describe(cli::Table& t, Options& o) {
       "over "
       "the outermost groups of (the sum over the members)^P, where an atom of radius r at distance d is "
       "exp(-κ(d² - r²)), κ being the decay rate; the surface is where the density has the isovalue. Every stored "
-      "value is within the tolerance of that sum, and every grid cell that the surface crosses is in the file.";
-  t.page.examples = {{"hier2density --spacing 1 1tii.hier -o 1tii.vdb", "the density at a spacing of 1 Å"},
-                     {"hier2density --grid 257 1tii.hier -o 1tii.vdb", "257 grid points along the longest axis"},
-                     {"pdb2hier 1tii.pdb | hier2density --decay 0.5 -o 1tii.vdb", "a softer surface, from a pipe"}};
+      "value is within the tolerance of that sum, and every grid cell that the surface crosses is in the file. "
+      "With --surface ses, sas or vdw the field is exp(d / 1 Å), where d is the signed distance to that surface of "
+      "the atoms' balls, positive inside: groups and exponents have no effect.";
+  t.page.examples = {
+      {"hier2density --spacing 1 1tii.hier -o 1tii.vdb", "the density at a spacing of 1 Å"},
+      {"hier2density --grid 257 1tii.hier -o 1tii.vdb", "257 grid points along the longest axis"},
+      {"hier2density --surface ses 1tii.hier -o 1tii.vdb", "the solvent-excluded surface, probe 1.4 Å"},
+      {"pdb2hier 1tii.pdb | hier2density --decay 0.5 -o 1tii.vdb", "a softer surface, from a pipe"}};
   t.page.files = {{".hier", "molecular hierarchy, read: formats/hier/HIERv1.md"},
                   {".vdb", "density grid (OpenVDB), written: formats/vdb/VDBv1.md"}};
   t.page.see_also = {"pdb2hier", "density2tet", "density2map"};
