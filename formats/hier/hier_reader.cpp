@@ -8,7 +8,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <istream>
+#include <map>
 
 namespace molmesh::formats {
 namespace {
@@ -232,9 +234,8 @@ private:
     if (stage_ == Stage::body) {
       if (word == "atom")
         return atom();
-      for (size_t l = 0; l < h_.level.size(); ++l)
-        if (word == h_.level[l].name)
-          return group(l);
+      if (const auto l = level_number_.find(word); l != level_number_.end())
+        return group(l->second);
       if (word == "hier" || word == "source" || word == "levels")
         refuse("R5: found a second or late record " + shown(word) + ", expected a group or an atom");
       std::string known;
@@ -272,9 +273,8 @@ private:
     if (!is_level_name(word))
       refuse("R4: found level " + shown(word) +
              ", expected a word of letters, digits, _ and - that is no record's");
-    for (const Level& other : h_.level)
-      if (other.name == word)
-        refuse("R4: found level " + shown(word) + " twice, expected distinct levels");
+    if (!level_number_.emplace(word, h_.level.size()).second)
+      refuse("R4: found level " + shown(word) + " twice, expected distinct levels");
     h_.level.push_back({std::string(word), {}});
   }
 
@@ -284,9 +284,7 @@ private:
 
   /// Closes the groups of level l and below.
   void close(size_t l) {
-    for (size_t m = h_.level.size(); m-- > l;) {
-      if (m >= open_)
-        continue;
+    for (size_t m = open_; m-- > l;) {
       Group& g = h_.level[m].group.back();
       g.end = children(m);
       if (g.end == g.begin)
@@ -338,6 +336,7 @@ private:
   std::istream& in_;
   const std::string& file_;
   Hierarchy h_;
+  std::map<std::string, size_t, std::less<>> level_number_;
   NameCache cache_;
   std::string decoded_;
   Stage stage_ = Stage::start;

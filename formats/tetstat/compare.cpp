@@ -9,10 +9,10 @@ namespace molmesh::formats {
 namespace {
 
 const RegionSummary* find(const MeshReport& r, int32_t region) {
-  for (const RegionSummary& s : r.validity.region)
-    if (s.region == region)
-      return &s;
-  return nullptr;
+  const auto& all = r.validity.region; // ascending
+  const auto at = std::lower_bound(all.begin(), all.end(), region,
+                                   [](const RegionSummary& s, int32_t number) { return s.region < number; });
+  return at != all.end() && at->region == region ? &*at : nullptr;
 }
 
 /// b / a - 1, or NaN.

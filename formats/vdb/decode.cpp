@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <blosc.h>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <zlib.h>
@@ -19,7 +20,7 @@ constexpr const char* float_tree = "Tree_float_5_4_3";
 /// Reads forward and never past the end.
 class Cursor {
 public:
-  Cursor(std::string_view bytes, const std::string& file) : left_(bytes), file_(file) {}
+  Cursor(std::string_view bytes, const std::string& file) : left_(bytes), size_(bytes.size()), file_(file) {}
   [[noreturn]] void damaged() const {
     fail_input(file_ + ": R3: truncated or damaged, expected a whole OpenVDB file");
   }
@@ -39,9 +40,11 @@ public:
   }
   std::string_view string() { return take(number<uint32_t>()); }
   const std::string_view& left() const { return left_; }
+  size_t size() const { return size_; } ///< of all
 
 private:
   std::string_view left_;
+  size_t size_;
   const std::string& file_;
 };
 
@@ -144,6 +147,16 @@ void node_values(Cursor& in, const FloatGrid& grid, const Mask<Words>& active, f
     out[i] = active.on(i) ? out[--packed] : inactive[select.on(i)];
 }
 
+/// A node of many equal tiles takes few bytes. Files of bodies have far fewer tiles than this: those of 8 points
+/// lie below a surface of leaves, which take over a hundred bytes each.
+void add_tile(Cursor& in, FloatGrid& grid, const Tile& tile) {
+  constexpr size_t some = size_t{1} << 18;
+  if (grid.tile.size() >= some + in.size() / 4)
+    in.refuse("R10: more tiles than a file of " + std::to_string(in.size()) +
+              " bytes can enclose by active voxels");
+  grid.tile.push_back(tile);
+}
+
 /// An internal node of 2^(3 log2) children of `edge` points each: its tiles, then its children's topology.
 template <int Log2, class Child>
 void internal_node(Cursor& in, FloatGrid& grid, Vec3i corner, int32_t edge, Child&& child) {
@@ -158,7 +171,7 @@ void internal_node(Cursor& in, FloatGrid& grid, Vec3i corner, int32_t edge, Chil
   };
   for (size_t i = 0; i < n; ++i)
     if (!has_child.on(i) && (active.on(i) || value[i] != grid.background))
-      grid.tile.push_back({place(i), edge, value[i], active.on(i)});
+      add_tile(in, grid, {place(i), edge, value[i], active.on(i)});
   for (size_t i = 0; i < n; ++i)
     if (has_child.on(i))
       child(place(i));
@@ -185,7 +198,7 @@ void tree(Cursor& in, FloatGrid& grid) {
     const auto value = in.number<float>();
     const bool active = in.number<uint8_t>() != 0;
     if (active || value != grid.background)
-      grid.tile.push_back({c, 4096, value, active});
+      add_tile(in, grid, {c, 4096, value, active});
   }
   for (uint32_t t = 0; t < children; ++t)
     internal_node<5>(in, grid, root_corner(in), 128, [&](Vec3i c5) {
@@ -200,6 +213,14 @@ void tree(Cursor& in, FloatGrid& grid) {
     node_values(in, grid, active, nullptr);
     leaf.data = before.substr(0, before.size() - in.left().size());
   }
+}
+
+/// As short as it is exact: to_string() writes 300 digits.
+std::string number_text(double v) {
+  if (v != v)
+    return "NaN"; // without a sign
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, v).ptr};
 }
 
 void transform(Cursor& in, FloatGrid& grid) {
@@ -226,8 +247,11 @@ void transform(Cursor& in, FloatGrid& grid) {
     for (int c = 0; c < 3; ++c)
       if (!(m[0] > 0) || !std::isfinite(m[0]) || m[4 * r + c] != (r == c ? m[0] : 0))
         in.refuse("R9: voxels are not uniform, expected one positive scale and a translation");
-  if (!std::isfinite(norm2(grid.origin)))
-    in.refuse("R9: the transform's translation is not finite");
+  if (!(grid.spacing >= least_spacing && grid.spacing <= largest_spacing))
+    in.refuse("R9: voxels of " + number_text(grid.spacing) + " Å, expected 1e-6 to 1e6");
+  for (int a = 0; a < 3; ++a)
+    if (!(std::fabs(grid.origin[a]) <= largest_place))
+      in.refuse("R9: a translation of " + number_text(grid.origin[a]) + " Å, expected at most 1e8 in magnitude");
 }
 
 } // namespace
@@ -260,6 +284,7 @@ FloatGrid decode(std::string_view bytes, std::string_view name, const std::strin
       continue;
     }
     FloatGrid grid;
+    grid.bytes = bytes.size();
     grid.compression = in.number<uint32_t>();
     grid.metadata = metadata(in);
     if (type != float_tree || !parent.empty())

@@ -10,6 +10,9 @@
 
 namespace molmesh::formats::vdb {
 
+/// Å, R9: points of a grid are told apart in double precision, and nothing that is computed from places overflows.
+inline constexpr double least_spacing = 1e-6, largest_spacing = 1e6, largest_place = 1e8;
+
 /// A constant cube of `edge` points (8, 128 or 4096); only those that are active or differ from the background.
 struct Tile {
   Vec3i corner;
@@ -37,9 +40,11 @@ struct FloatGrid {
   float background = 0;
   std::vector<Tile> tile;
   std::vector<Leaf> leaf; ///< in OpenVDB's order
+  size_t bytes = 0;       ///< of the file
 };
 
-/// The float grid named `name`, whose parts point into `bytes`. Throws Error(bad_input) with rules R1 to R4 and R9.
+/// The float grid named `name`, whose parts point into `bytes`. Throws Error(bad_input) with rules R1 to R4, R9 and
+/// R10.
 FloatGrid decode(std::string_view bytes, std::string_view name, const std::string& file);
 
 /// value[512] and active[8 words] of a leaf. Throws Error(bad_input), R3.

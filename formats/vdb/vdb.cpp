@@ -124,6 +124,10 @@ void Reader::read_frame() {
              ", expected 2 to 2^29 points and an index within 2^29");
   f.spacing = in_.spacing;
   f.origin = in_.origin;
+  for (int a = 0; a < 3; ++a)
+    for (const double index : {double(f.lower[a]), double(f.lower[a]) + f.points[a]})
+      if (!(std::fabs(f.origin[a] + f.spacing * index) <= vdb::largest_place))
+        refuse("R9: the grid's box reaches beyond 1e8 Å from the origin, expected it within");
 }
 
 /// An inactive value must be 0 or inside_value, an active one finite and within the grid's box.
@@ -173,6 +177,8 @@ void Reader::read_tiles() {
   // Each line of inside points along an axis ends in active ones, and |V|² ≤ |X||Y||Z| of the projections (Loomis
   // and Whitney 1949): no more blocks than this can be enclosed, and a small file cannot ask for much memory.
   const double enclosed = std::pow(0.5 * static_cast<double>(in_.leaf.size()), 1.5);
+  // And not more than the file's size allows: bodies have far fewer blocks inside than bytes in their file.
+  const double most = static_cast<double>(in_.bytes) / 2 + (1 << 20);
   double inside = 0;
   for (const vdb::Tile& t : in_.tile) {
     if (t.active)
@@ -182,7 +188,7 @@ void Reader::read_tiles() {
     if (t.edge > tile_edge)
       refuse("R10: inside tile of " + std::to_string(t.edge) + " points, expected 8 or 128");
     inside += std::pow(t.edge / 8, 3);
-    if (inside > enclosed)
+    if (inside > enclosed || inside > most)
       refuse("R10: more inside blocks than the active ones can enclose");
   }
   grid_.inside.reserve(static_cast<size_t>(inside));

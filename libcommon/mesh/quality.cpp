@@ -2,6 +2,7 @@
 #include "mesh/quality.hpp"
 #include "geom/tet_measures.hpp"
 #include "par/par.hpp"
+#include <algorithm>
 #include <map>
 
 namespace molmesh {
@@ -85,19 +86,26 @@ using ByRegion = std::map<int32_t, Sums>;
 MeshQuality measure_quality(const TetMesh& m, int threads, AngleLimits limits) {
   constexpr int64_t chunk = 1 << 14;
   const auto tets = static_cast<int64_t>(m.tet.size()), chunks = (tets + chunk - 1) / chunk;
-  std::vector<ByRegion> part(static_cast<size_t>(chunks));
-  par::for_n(chunks, threads, 1, [&](int64_t c) {
-    ByRegion& mine = part[c];
-    for (int64_t i = c * chunk; i < std::min(tets, (c + 1) * chunk); ++i) {
-      const Tet& t = m.tet[i];
-      const auto p = [&](size_t k) { return m.point[t[k]]; };
-      mine[m.region[i]].add(p(0), p(1), p(2), p(3), i, limits);
-    }
-  });
+  // Some chunks at a time: each of many regions has its sums in each chunk.
+  const int64_t at_a_time = std::min<int64_t>(chunks, 4 * std::max(threads, 1));
+  std::vector<ByRegion> part(static_cast<size_t>(at_a_time));
   ByRegion regions;
-  for (const ByRegion& later : part)
-    for (const auto& [region, sums] : later)
-      regions[region].add(sums);
+  for (int64_t first = 0; first < chunks; first += at_a_time) {
+    const int64_t n = std::min(at_a_time, chunks - first);
+    par::for_n(n, threads, 1, [&](int64_t slot) {
+      ByRegion& mine = part[slot];
+      const int64_t c = first + slot;
+      mine.clear();
+      for (int64_t i = c * chunk; i < std::min(tets, (c + 1) * chunk); ++i) {
+        const Tet& t = m.tet[i];
+        const auto p = [&](size_t k) { return m.point[t[k]]; };
+        mine[m.region[i]].add(p(0), p(1), p(2), p(3), i, limits);
+      }
+    });
+    for (int64_t slot = 0; slot < n; ++slot)
+      for (const auto& [region, sums] : part[slot])
+        regions[region].add(sums);
+  }
   MeshQuality quality;
   Sums all;
   for (const auto& [region, sums] : regions) {
