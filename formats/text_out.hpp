@@ -33,6 +33,16 @@ public:
   TextOut& operator<<(int64_t v) { return number(v); }
   TextOut& operator<<(size_t v) { return number(v); }
 
+  /// Bytes as they lie in memory.
+  TextOut& bytes(const void* from, size_t n) {
+    buffer_.append(static_cast<const char*>(from), n);
+    if (buffer_.size() >= full) {
+      out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+      buffer_.clear();
+    }
+    return *this;
+  }
+
 private:
   static constexpr size_t full = size_t{1} << 16;
   template <class T>

@@ -1,12 +1,15 @@
-// tetconvert.cpp — a mesh (.vtu) in the formats of other programs.
+// tetconvert.cpp — a mesh in the formats of other programs, and theirs as .vtu.
 #include "tools/options/tetconvert.hpp"
+#include "formats/abaqus/abaqus.hpp"
 #include "formats/gmsh/gmsh.hpp"
 #include "formats/mcsf/mcsf.hpp"
 #include "formats/medit/medit.hpp"
+#include "formats/nastran/nastran.hpp"
 #include "formats/surface/surface.hpp"
 #include "formats/tetgen/tetgen.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "formats/xdmf/xdmf.hpp"
+#include "tools/mesh_endings.hpp"
 #include <algorithm>
 #include <deque>
 #include <filesystem>
@@ -15,23 +18,12 @@ using namespace molmesh;
 
 namespace {
 
-/// By the ending of the output's name. Those of several files are named by any of them.
-const std::vector<std::pair<const char*, const char*>> endings = {
-    {".msh", "gmsh"},   {".msh2", "gmsh22"}, {".mesh", "medit"}, {".node", "tetgen"},
-    {".ele", "tetgen"}, {".face", "tetgen"}, {".xdmf", "xdmf"},  {".h5", "xdmf"},
-    {".m", "mcsf"},     {".stl", "stl"},     {".ply", "ply"},    {".off", "off"}};
-
-std::string ending(const std::string& path) {
-  const size_t name = path.rfind('/') + 1, dot = path.rfind('.');
-  return dot == std::string::npos || dot <= name ? "" : path.substr(dot);
-}
-
 std::string format_of(const Options& o) {
   if (o.format != "auto")
     return o.format;
   const std::string end = ending(o.output);
   std::string known;
-  for (const auto& [e, format] : endings) {
+  for (const auto& [e, format] : mesh_endings) {
     if (end == e)
       return format;
     known += (known.empty() ? "" : ", ") + std::string(e);
@@ -44,7 +36,8 @@ std::string stem(const Options& o, const std::string& format) {
   if (o.output == "-" || std::filesystem::is_other(o.output)) // a pipe, a terminal
     fail(Status::usage, "--format " + format + ": several files, expected -o FILE");
   const std::string end = ending(o.output);
-  const bool known = std::any_of(endings.begin(), endings.end(), [&](const auto& e) { return end == e.first; });
+  const bool known =
+      std::any_of(mesh_endings.begin(), mesh_endings.end(), [&](const auto& e) { return end == e.first; });
   return o.output.substr(0, o.output.size() - (known ? end.size() : 0));
 }
 
@@ -76,8 +69,17 @@ int64_t write_mesh(cli::Run& run, Outputs& outputs, const Options& o, const std:
     formats::write_xdmf(out, outputs[1].stream(), h5.substr(h5.rfind('/') + 1), m);
     run.complete(outputs[1]); // first: an .xdmf without it would be of no use
     outputs.pop_back();
-  } else if (format == "gmsh" || format == "gmsh22")
-    formats::write_gmsh(out, m, format == "gmsh" ? formats::GmshVersion::v4_1 : formats::GmshVersion::v2_2);
+  } else if (format == "vtu")
+    formats::write_vtu(out, m);
+  else if (format.rfind("gmsh", 0) == 0)
+    formats::write_gmsh(out, m,
+                        format == "gmsh"     ? formats::GmshVersion::v4_1
+                        : format == "gmsh22" ? formats::GmshVersion::v2_2
+                                             : formats::GmshVersion::v4_1_binary);
+  else if (format == "abaqus")
+    formats::write_abaqus(out, m);
+  else if (format == "nastran")
+    formats::write_nastran(out, m, input);
   else if (format == "medit")
     formats::write_medit(out, m);
   else if (format == "mcsf")
@@ -93,18 +95,18 @@ int64_t write_mesh(cli::Run& run, Outputs& outputs, const Options& o, const std:
 
 /// What the format has no place for.
 void note_losses(const cli::Run& run, const std::string& format, const TetMesh& m, int64_t unplaced) {
-  if (format == "xdmf")
+  if (format == "xdmf" || format == "vtu")
     return;
   std::string lost;
   const auto lose = [&](const std::string& what) { lost += (lost.empty() ? "" : ", ") + what; };
-  const bool has_arrays = format == "gmsh" || format == "ply";
-  if (!m.part.empty() && format != "gmsh")
+  const bool gmsh = format == "gmsh" || format == "gmsh-binary", has_arrays = gmsh || format == "ply";
+  if (!m.part.empty() && !gmsh)
     lose("part");
   for (const CellArray& a : m.cell_array)
     if (!has_arrays && (a.name != "patch" || format == "stl" || format == "off"))
       lose(a.name);
   for (const NamedText& t : m.named_text)
-    if (has_arrays && t.name != "patch_names")
+    if (has_arrays && t.name != "patch_names" && t.name != "region_names")
       lose(t.name);
   if (unplaced > 0)
     lose("labels of " + std::to_string(unplaced) + " triangles between regions");
@@ -117,11 +119,13 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.phase("read");
   cli::InputFile input(o.input);
   Outputs outputs;
+  const bool binary = format == "stl" || format == "vtu" || format == "gmsh-binary";
   for (const std::string& name : o.outputs())
-    outputs.emplace_back(name, format == "stl" ? cli::OutputFile::Content::binary : cli::OutputFile::Content::text);
-  formats::VtuNotes notes;
-  const TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes, formats::CellArrays::keep);
-  run.notes(described(notes));
+    outputs.emplace_back(name, binary ? cli::OutputFile::Content::binary : cli::OutputFile::Content::text);
+  formats::MeshNotes notes;
+  TetMesh mesh = read_mesh(run, input, o.mesh, formats::CellArrays::keep, notes);
+  if (mesh.creator.empty())
+    mesh.creator = cli::creator("tetconvert");
   run.counts["points"] = mesh.point.size();
   run.counts["tetrahedra"] = mesh.tet.size();
   run.counts["triangles"] = mesh.tri.size();
@@ -134,6 +138,7 @@ Status run_tool(const Options& o, cli::Run& run) {
 } // namespace
 
 int main(int argc, char** argv) {
-  return cli::run_main<Options>("tetconvert", "A mesh (.vtu) in the formats of solvers and viewers, tags intact.",
+  return cli::run_main<Options>("tetconvert",
+                                "Converts a mesh between .vtu and the formats of solvers and viewers, tags intact.",
                                 argc, argv, describe, run_tool);
 }

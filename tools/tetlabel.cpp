@@ -66,9 +66,8 @@ Status run_tool(const Options& o, cli::Run& run) {
   cli::OutputFile output(o.output, cli::OutputFile::Content::binary);
   const Hierarchy h = formats::read_hier(structure.stream(), structure.name());
   const std::vector<label::NamedBoundary> boundary = select(o, h);
-  formats::VtuNotes notes;
-  TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes, formats::CellArrays::keep);
-  run.notes(described(notes));
+  formats::MeshNotes notes;
+  TetMesh mesh = read_mesh(run, input, o.mesh, formats::CellArrays::keep, notes);
   if (other_structure(h.source, mesh.source)) // as of a PQR file's mesh and the PDB file that has its chains
     run.note("the structure is of " + h.source + ", the mesh of " + mesh.source);
 

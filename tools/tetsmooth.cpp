@@ -35,9 +35,8 @@ Status run_tool(const Options& o, cli::Run& run) {
   std::optional<Hierarchy> hierarchy;
   if (structure)
     hierarchy = formats::read_hier(structure->stream(), structure->name());
-  formats::VtuNotes notes;
-  TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes, formats::CellArrays::keep);
-  run.notes(described(notes));
+  formats::MeshNotes notes;
+  TetMesh mesh = read_mesh(run, input, o.mesh, formats::CellArrays::keep, notes);
   if (grid)
     require_same_source(mesh, !notes.isovalue_missing, grid->info, density->name());
   const AttributeTransfer arrays(mesh);

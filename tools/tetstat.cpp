@@ -12,9 +12,8 @@ formats::MeshReport report(const std::string& path, const Options& o, cli::Run& 
   const int threads = o.resolved_threads();
   run.phase("read");
   cli::InputFile input(path);
-  formats::VtuNotes notes;
-  const TetMesh mesh = formats::read_vtu(input.stream(), input.name(), &notes);
-  run.notes(described(notes));
+  formats::MeshNotes notes;
+  const TetMesh mesh = read_mesh(run, input, o.mesh, formats::CellArrays::drop, notes);
   run.phase("validity");
   Validity validity = check_validity(mesh, threads);
   if (o.crossings) {

@@ -6,11 +6,13 @@
 namespace molmesh::formats {
 
 void write_medit(std::ostream& stream, const TetMesh& m) {
-  const std::vector<int32_t> patch = patches(m);
+  const ExportLabels labels = export_labels(m);
   TextOut out(stream);
   out << "MeshVersionFormatted 2\nDimension 3\n";
-  for (const auto& [label, name] : boundary_names(m, patch))
+  for (const auto& [label, name] : labels.patch_name)
     out << "# triangles " << label << ": " << name << '\n';
+  for (const auto& [region, name] : labels.region_name)
+    out << "# tetrahedra " << region << ": " << name << '\n';
   out << "Vertices\n" << m.point.size() << '\n';
   for (const Vec3d& p : m.point)
     out << p.x << ' ' << p.y << ' ' << p.z << " 0" << '\n';
@@ -24,7 +26,7 @@ void write_medit(std::ostream& stream, const TetMesh& m) {
   for (size_t t = 0; t < m.tri.size(); ++t) {
     for (const int32_t p : m.tri[t])
       out << p + 1 << ' ';
-    out << patch[t] << '\n';
+    out << labels.patch[t] << '\n';
   }
   out << "End" << '\n';
 }

@@ -91,10 +91,10 @@ void write_stl(std::ostream& out, const TetMesh& m, const std::string& file) {
 
 void write_ply(std::ostream& stream, const TetMesh& m, const std::string& file) {
   const Surface s = surface_of(m, file);
-  const std::vector<int32_t> patch = patches(m);
+  const ExportLabels labels = export_labels(m);
   TextOut out(stream); // in text: meshio 5.0 misreads binary faces that have more than their corners
   out << "ply\nformat ascii 1.0\n";
-  for (const auto& [label, name] : boundary_names(m, patch))
+  for (const auto& [label, name] : labels.patch_name)
     out << "comment patch " << label << ' ' << name << '\n';
   out << "element vertex " << s.point.size()
       << "\nproperty double x\nproperty double y\nproperty double z\nelement face " << s.tri.size()
@@ -107,7 +107,7 @@ void write_ply(std::ostream& stream, const TetMesh& m, const std::string& file) 
   for (const Vec3d& p : s.point)
     out << p.x << ' ' << p.y << ' ' << p.z << '\n';
   for (size_t t = 0; t < s.tri.size(); ++t) {
-    out << "3 " << s.tri[t][0] << ' ' << s.tri[t][1] << ' ' << s.tri[t][2] << ' ' << patch[s.source[t]];
+    out << "3 " << s.tri[t][0] << ' ' << s.tri[t][1] << ' ' << s.tri[t][2] << ' ' << labels.patch[s.source[t]];
     for (const CellArray& a : m.cell_array) {
       const size_t cell = m.tet.size() + s.source[t];
       if (a.name == "patch")

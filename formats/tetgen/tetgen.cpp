@@ -6,7 +6,7 @@
 namespace molmesh::formats {
 
 void write_tetgen(std::ostream& node, std::ostream& ele, std::ostream& face, const TetMesh& m) {
-  const std::vector<int32_t> patch = patches(m);
+  const ExportLabels labels = export_labels(m);
   TextOut nodes(node), tets(ele), faces(face);
   nodes << m.point.size() << " 3 0 0" << '\n';
   for (size_t p = 0; p < m.point.size(); ++p)
@@ -23,7 +23,7 @@ void write_tetgen(std::ostream& node, std::ostream& ele, std::ostream& face, con
     faces << t + 1;
     for (const int32_t p : m.tri[t])
       faces << ' ' << p + 1;
-    faces << ' ' << patch[t] << '\n';
+    faces << ' ' << labels.patch[t] << '\n';
   }
 }
 

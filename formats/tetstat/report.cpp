@@ -33,7 +33,8 @@ json quality_json(const Quality& q) {
           {"outside", q.outside}};
 }
 
-json mesh_json(const MeshReport& r) {
+/// place: stands for the regions, which with_regions() puts there.
+json mesh_json(const MeshReport& r, const char* place) {
   const Validity& v = r.validity;
   json j;
   j["tetstat"] = 1;
@@ -61,25 +62,40 @@ json mesh_json(const MeshReport& r) {
   j["volume"] = v.volume;
   j["surface"] = surface_json(v.surface);
   j["quality"] = quality_json(r.quality->all);
-  j["regions"] = json::array();
-  for (size_t i = 0; i < v.region.size(); ++i) {
-    const RegionSummary& region = v.region[i];
-    j["regions"].push_back({{"region", region.region},
-                            {"tets", region.tets},
-                            {"volume", region.volume},
-                            {"boundary", surface_json(region.boundary)},
-                            {"quality", quality_json(r.quality->of[i])}});
-  }
+  j["regions"] = place;
   return j;
 }
 
 std::string text_of(const json& j) {
-  return j.dump(2, ' ', false, json::error_handler_t::replace) + '\n';
+  return j.dump(2, ' ', false, json::error_handler_t::replace);
+}
+
+/// One after the other: a tree of 100,000 regions would take gigabytes. indent: of the list's end.
+std::string with_regions(const std::string& text, const MeshReport& r, const char* place, size_t indent) {
+  const std::string key = "\"regions\": ", mark = key + '"' + place + '"';
+  const size_t at = text.find(mark);
+  if (at == std::string::npos)
+    return text;
+  std::string list = text.substr(0, at) + key + '[';
+  const Validity& v = r.validity;
+  const std::string line = '\n' + std::string(indent + 2, ' ');
+  for (size_t i = 0; i < v.region.size(); ++i) {
+    const RegionSummary& region = v.region[i];
+    const std::string one = text_of({{"region", region.region},
+                                     {"tets", region.tets},
+                                     {"volume", region.volume},
+                                     {"boundary", surface_json(region.boundary)},
+                                     {"quality", quality_json(r.quality->of[i])}});
+    list += i > 0 ? "," + line : line;
+    for (const char c : one)
+      c == '\n' ? list += line : list += c;
+  }
+  return list + '\n' + std::string(indent, ' ') + ']' + text.substr(at + mark.size());
 }
 
 } // namespace
 
-MeshReport report_mesh(const TetMesh& m, const std::string& file, const VtuNotes& notes, Validity validity,
+MeshReport report_mesh(const TetMesh& m, const std::string& file, const MeshNotes& notes, Validity validity,
                        AngleLimits asked, int threads) {
   MeshReport r;
   r.file = file;
@@ -104,15 +120,15 @@ MeshReport report_mesh(const TetMesh& m, const std::string& file, const VtuNotes
 }
 
 std::string tetstat_json(const MeshReport& r) {
-  return text_of(mesh_json(r));
+  return with_regions(text_of(mesh_json(r, "@")), r, "@", 2) + '\n';
 }
 
 std::string compare_json(const MeshReport& a, const MeshReport& b) {
   json j;
   j["tetstat_compare"] = 1;
-  j["a"] = mesh_json(a);
-  j["b"] = mesh_json(b);
-  return text_of(j);
+  j["a"] = mesh_json(a, "@a");
+  j["b"] = mesh_json(b, "@b");
+  return with_regions(with_regions(text_of(j), a, "@a", 4), b, "@b", 4) + '\n';
 }
 
 } // namespace molmesh::formats

@@ -13,7 +13,7 @@ struct MeshReport {
   int64_t points = 0, tets = 0, triangles = 0;
   std::vector<std::array<int64_t, 2>> labels; ///< boundary label, its triangles; ascending
   int64_t parts = 0;                          ///< distinct METIS parts, 0: none
-  VtuNotes notes;
+  MeshNotes notes;
   Validity validity;
   std::optional<MeshQuality> quality; ///< none where an index is out of range
   AngleLimits asked;
@@ -22,7 +22,7 @@ struct MeshReport {
   bool good() const { return quality && quality->all.outside == 0; }
 };
 
-MeshReport report_mesh(const TetMesh& m, const std::string& file, const VtuNotes& notes, Validity validity,
+MeshReport report_mesh(const TetMesh& m, const std::string& file, const MeshNotes& notes, Validity validity,
                        AngleLimits asked, int threads);
 
 /// One JSON object and a line end.

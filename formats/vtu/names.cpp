@@ -1,9 +1,11 @@
 // names.cpp — the texts, a name a line.
 #include "formats/vtu/names.hpp"
+#include "base/error.hpp"
 #include "formats/hier/text.hpp"
 #include <algorithm>
 #include <charconv>
 #include <iterator>
+#include <limits>
 #include <string_view>
 
 namespace molmesh::formats {
@@ -41,13 +43,51 @@ void add_level_names(TetMesh& m, const Hierarchy& h) {
   set_text(m, "atom_names", text);
 }
 
-void add_patch_names(TetMesh& m, const std::map<int32_t, std::string>& name) {
+void add_names(TetMesh& m, const std::string& text_name, const std::map<int32_t, std::string>& name) {
+  std::map<int32_t, std::string> all = names_of(m, text_name);
+  for (const auto& [id, n] : name)
+    all[id] = n;
   std::string text;
-  for (const auto& [id, n] : name) {
+  for (const auto& [id, n] : all) {
     text += std::to_string(id) + ' ';
     add_line(text, n);
   }
-  set_text(m, "patch_names", text);
+  set_text(m, text_name, text);
+}
+
+void add_patch_names(TetMesh& m, const std::map<int32_t, std::string>& name) {
+  std::erase_if(m.named_text, [](const NamedText& t) { return t.name == "patch_names"; });
+  add_names(m, "patch_names", name);
+}
+
+std::map<int32_t, std::string> names_of(const TetMesh& m, const std::string& text_name) {
+  std::map<int32_t, std::string> name;
+  for (const NamedText& t : m.named_text) {
+    if (t.name != text_name)
+      continue;
+    for (std::string_view rest = t.text; !rest.empty();) {
+      const std::string_view line = rest.substr(0, rest.find('\n'));
+      rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+      int32_t id = 0;
+      const char* const stop = line.data() + line.size();
+      const auto [end, error] = std::from_chars(line.data(), stop, id);
+      if (error != std::errc() || end == stop || *end != ' ')
+        continue;
+      const std::string_view written(end + 1, static_cast<size_t>(stop - end - 1));
+      std::string decoded;
+      name[id] = percent_decode(written, decoded) ? decoded : std::string(written);
+    }
+  }
+  return name;
+}
+
+std::string own_boundary_name(int32_t label) {
+  return label >= 1 && label <= 7 ? own_boundary[label - 1] : "";
+}
+
+int32_t own_boundary_label(const std::string& name) {
+  const auto at = std::find(std::begin(own_boundary), std::end(own_boundary), name);
+  return at == std::end(own_boundary) ? 0 : static_cast<int32_t>(at - std::begin(own_boundary)) + 1;
 }
 
 bool is_own_name(const std::string& name) {
@@ -67,19 +107,9 @@ std::map<int32_t, std::string> boundary_names(const TetMesh& m, const std::vecto
   for (const int32_t l : label)
     if (auto [at, is_new] = name.try_emplace(l); is_new)
       at->second = l >= 1 && l <= 7 ? own_boundary[l - 1] : "boundary_" + std::to_string(l);
-  for (const NamedText& t : m.named_text) {
-    if (t.name != "patch_names")
-      continue;
-    for (std::string_view rest = t.text; !rest.empty();) {
-      const std::string_view line = rest.substr(0, rest.find('\n'));
-      rest.remove_prefix(std::min(rest.size(), line.size() + 1));
-      int32_t id = 0;
-      const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), id);
-      const auto at = name.find(id);
-      if (error == std::errc() && end != line.data() + line.size() && *end == ' ' && at != name.end())
-        at->second = std::string(end + 1, line.data() + line.size());
-    }
-  }
+  for (const auto& [id, given] : names_of(m, "patch_names"))
+    if (const auto at = name.find(id); at != name.end())
+      at->second = given;
   return name;
 }
 
@@ -91,6 +121,44 @@ std::vector<int32_t> patches(const TetMesh& m) {
         if (const int32_t patch = a.integer[m.tet.size() + t]; patch > 0)
           label[t] = patch;
   return label;
+}
+
+ExportLabels export_labels(const TetMesh& m) {
+  ExportLabels e;
+  e.patch = patches(m);
+  int32_t most_region = 0;
+  for (const int32_t r : m.region) {
+    most_region = std::max(most_region, r);
+    if (e.region_name.empty() || e.region_name.rbegin()->first != r)
+      e.region_name.try_emplace(r);
+  }
+  const std::map<int32_t, std::string> given = names_of(m, "region_names");
+  for (auto& [r, name] : e.region_name) {
+    const auto g = given.find(r);
+    name = g == given.end() ? region_name(r) : g->second;
+  }
+  e.patch_name = boundary_names(m, e.patch);
+  const bool own = std::any_of(e.patch_name.begin(), e.patch_name.end(),
+                               [](const auto& p) { return p.second == own_boundary_name(p.first); });
+  const bool shared = std::any_of(e.patch_name.begin(), e.patch_name.end(),
+                                  [&](const auto& p) { return e.region_name.contains(p.first); });
+  if (!own && !shared)
+    return e;
+  int64_t step = 10;
+  while (step <= most_region)
+    step *= 10;
+  if (!e.patch_name.empty() && e.patch_name.rbegin()->first + step > std::numeric_limits<int32_t>::max())
+    fail_input("label " + std::to_string(e.patch_name.rbegin()->first) +
+               " of a triangle: no number above it that is no region's, expected labels below 2^31 - " +
+               std::to_string(step));
+  e.step = static_cast<int32_t>(step);
+  for (int32_t& p : e.patch)
+    p += e.step;
+  std::map<int32_t, std::string> moved;
+  for (auto& [id, name] : e.patch_name)
+    moved.emplace(id + e.step, std::move(name));
+  e.patch_name = std::move(moved);
+  return e;
 }
 
 } // namespace molmesh::formats

@@ -223,7 +223,8 @@ void Decoder::unpack(const ArrayTag& a, ByteSource& source, uint64_t blocks, Col
   const bool countable =
       full <= unpacked_left_ && last <= full && blocks - 1 <= unpacked_left_ / std::max<uint64_t>(full, 1);
   const uint64_t total = countable ? (blocks - 1) * full + last : unpacked_left_ + value_size(a.type);
-  spend(unpacked_left_, total / value_size(a.type) * sizeof(double), a, "unpacks to over 256 times its size");
+  spend(unpacked_left_, total / value_size(a.type) * sizeof(double), a,
+        "unpacks to over 256 times its size, or 16 times and 32 MiB");
   std::vector<uint64_t> packed(blocks);
   for (uint64_t& n : packed)
     n = number();

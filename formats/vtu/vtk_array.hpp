@@ -1,6 +1,7 @@
 // vtk_array.hpp — decoded values of a DataArray. Rules R4 and R5 of VTUv1.md.
 #pragma once
 #include "formats/vtu/vtk_xml.hpp"
+#include <algorithm>
 #include <cstring>
 
 namespace molmesh::formats::vtk {
@@ -41,7 +42,8 @@ private:
 class Decoder {
 public:
   explicit Decoder(const Document& d)
-      : d_(d), unpacked_left_(256 * d.text.size() + (1u << 20)), stored_left_(d.text.size()) {}
+      : d_(d), unpacked_left_(std::min(256 * d.text.size() + (1u << 20), 16 * d.text.size() + (32u << 20))),
+        stored_left_(d.text.size()) {}
   Column decode(const ArrayTag& a);
 
 private:

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <istream>
 #include <limits>
+#include <map>
 #include <set>
 
 namespace molmesh::formats {
@@ -24,37 +25,32 @@ const ArrayTag* find(const std::vector<ArrayTag>& arrays, const char* name) {
   return a == arrays.end() ? nullptr : &*a;
 }
 
-const char* cell_name(int64_t type) {
-  switch (type) {
-  case 7:
-    return "polygon";
-  case 9:
-    return "quadrilateral";
-  case 11:
-    return "voxel";
-  case 12:
-    return "hexahedron";
-  case 13:
-    return "wedge";
-  case 14:
-    return "pyramid";
-  case 22:
-    return "quadratic triangle";
-  case 24:
-    return "quadratic tetrahedron";
-  case 42:
-    return "polyhedron";
-  default:
-    return "cell";
-  }
+bool is_without_region(const Document& d) {
+  return std::any_of(d.piece.begin(), d.piece.end(),
+                     [](const Piece& p) { return find(p.cell_data, "region") == nullptr; });
+}
+
+/// Arrays by their names, of several the first.
+using Index = std::map<std::string_view, const ArrayTag*>;
+Index index_of(const std::vector<ArrayTag>& arrays) {
+  Index index;
+  for (const ArrayTag& a : arrays)
+    index.emplace(a.name, &a);
+  return index;
+}
+const ArrayTag* find(const Index& index, std::string_view name) {
+  const auto a = index.find(name);
+  return a == index.end() ? nullptr : a->second;
 }
 
 class Reader {
 public:
-  Reader(const Document& d, VtuNotes& notes, CellArrays arrays)
+  Reader(const Document& d, MeshNotes& notes, CellArrays arrays)
       : d_(d), decoder_(d), notes_(notes), arrays_(arrays) {}
 
   TetMesh read() {
+    for (const Piece& p : d_.piece)
+      arrays_of_.push_back(index_of(p.cell_data));
     for (const Piece& p : d_.piece) {
       notes_.region_missing |= !find(p.cell_data, "region");
       notes_.boundary_missing |= !find(p.cell_data, "boundary");
@@ -97,8 +93,9 @@ private:
 
   // And room, untouched, for a mesh that takes this one's place and is somewhat larger.
   template <class Vector>
-  static void reserve(Vector& v, size_t n) {
-    par::reserve_pages(v, n, n / 16, 1);
+  void reserve(Vector& v, size_t n) const {
+    if (n > v.capacity() || d_.piece.size() == 1)
+      par::reserve_pages(v, d_.piece.size() == 1 ? n : std::max(n, 2 * v.capacity()), n / 16, 1);
   }
 
   void read_cells(const Piece& p, int32_t first_point) {
@@ -166,7 +163,7 @@ private:
           corner(0);
       } else {
         d_.refuse(types_tag.line, "R7",
-                  "cell " + std::to_string(c) + " is a " + cell_name(type) + " (type " + std::to_string(type) +
+                  "cell " + std::to_string(c) + " is a " + vtk_cell_name(type) + " (type " + std::to_string(type) +
                       "), expected tetrahedra (10) and triangles (5)");
       }
       begin = end;
@@ -178,14 +175,12 @@ private:
   void declare_arrays() {
     static const std::set<std::string> own{"region", "boundary", "part", ""};
     for (const ArrayTag& first : d_.piece.front().cell_data) {
-      bool everywhere = own.count(first.name) == 0, real = false;
-      for (const Piece& p : d_.piece) {
-        const ArrayTag* a = find(p.cell_data, first.name.c_str());
+      bool everywhere = own.count(first.name) == 0 && find(arrays_of_.front(), first.name) == &first, real = false;
+      for (const Index& of_piece : arrays_of_) {
+        const ArrayTag* a = find(of_piece, first.name);
         everywhere = everywhere && a && a->components == 1;
         real |= a && a->type >= ValueType::float32;
       }
-      for (const CellArray& a : m_.cell_array)
-        everywhere = everywhere && a.name != first.name;
       if (!everywhere)
         continue;
       m_.cell_array.push_back({first.name, {}, {}});
@@ -196,7 +191,7 @@ private:
 
   void read_arrays(const Piece& p, const std::vector<uint8_t>& kept) {
     for (size_t a = 0; a < m_.cell_array.size(); ++a) {
-      const ArrayTag& tag = *find(p.cell_data, m_.cell_array[a].name.c_str());
+      const ArrayTag& tag = *find(arrays_of_[&p - d_.piece.data()], m_.cell_array[a].name);
       const Column values = column(tag, static_cast<uint64_t>(p.cells), false);
       for (size_t c = 0; c < kept.size(); ++c) {
         if (kept[c] == 0)
@@ -239,14 +234,16 @@ private:
   }
 
   void read_field() {
-    const auto text = [&](const char* name) {
+    const auto text_of = [&](const ArrayTag& a) {
       std::string s;
-      if (const ArrayTag* a = find(d_.field, name)) {
-        const Column c = decoder_.decode(*a);
-        for (size_t i = 0; i < c.size(); ++i)
-          s += static_cast<char>(c.integer(i));
-      }
+      const Column c = decoder_.decode(a);
+      for (size_t i = 0; i < c.size(); ++i)
+        s += static_cast<char>(c.integer(i));
       return s;
+    };
+    const auto text = [&](const char* name) {
+      const ArrayTag* const a = find(d_.field, name);
+      return a ? text_of(*a) : "";
     };
     notes_.isovalue_missing = !find(d_.field, "isovalue");
     if (const ArrayTag* a = find(d_.field, "isovalue")) {
@@ -260,11 +257,13 @@ private:
         m_.decay = c.real(0);
     m_.source = text("source");
     m_.creator = text("creator");
-    if (arrays_ == CellArrays::keep)
-      for (const ArrayTag& a : d_.field)
-        if (a.type == ValueType::uint8 && a.components == 1 && !a.name.empty() && a.name != "source" &&
-            a.name != "creator" && a.name != "isovalue" && find(d_.field, a.name.c_str()) == &a)
-          m_.named_text.push_back({a.name, text(a.name.c_str())});
+    if (arrays_ != CellArrays::keep)
+      return;
+    const Index fields = index_of(d_.field);
+    for (const ArrayTag& a : d_.field)
+      if (a.type == ValueType::uint8 && a.components == 1 && !a.name.empty() && a.name != "source" &&
+          a.name != "creator" && a.name != "isovalue" && find(fields, a.name) == &a)
+        m_.named_text.push_back({a.name, text_of(a)});
   }
 
   /// A label of every cell, if the piece has one.
@@ -310,8 +309,9 @@ private:
 
   const Document& d_;
   Decoder decoder_;
-  VtuNotes& notes_;
+  MeshNotes& notes_;
   CellArrays arrays_;
+  std::vector<Index> arrays_of_;     ///< [pieces] cell data
   std::vector<bool> real_;           ///< [cell arrays]
   std::vector<CellArray> triangles_; ///< values of the triangles until all pieces are read
   TetMesh m_;
@@ -319,16 +319,21 @@ private:
 
 } // namespace
 
-TetMesh read_vtu(std::istream& in, const std::string& file, VtuNotes* notes, CellArrays arrays) {
-  const std::string text = read_all(in, file);
+TetMesh read_vtu(const std::string& text, const std::string& file, const MeshReading& as, MeshNotes& notes) {
   const Document document = parse_document(file, text);
-  VtuNotes own;
-  VtuNotes& n = notes ? *notes : own;
-  n = {};
-  TetMesh mesh = Reader(document, n, arrays).read();
-  if (n.boundary_missing)
-    take_rebuilt_triangles(mesh, n);
+  notes = {};
+  // Of a mesh without `region` any array may hold the regions.
+  const bool all = as.arrays == CellArrays::keep || !as.region_array.empty() || is_without_region(document);
+  TetMesh mesh = Reader(document, notes, all ? CellArrays::keep : CellArrays::drop).read();
+  complete_mesh(mesh, file, as, notes);
   return mesh;
+}
+
+TetMesh read_vtu(std::istream& in, const std::string& file, MeshNotes* notes, CellArrays arrays) {
+  MeshNotes own;
+  MeshReading as;
+  as.arrays = arrays;
+  return read_vtu(read_all(in, file), file, as, notes ? *notes : own);
 }
 
 } // namespace molmesh::formats

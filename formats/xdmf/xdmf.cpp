@@ -31,14 +31,14 @@ public:
     arrays("mesh", 0, tets);
     out_ << "</Grid>\n";
     if (tris > 0) {
-      const std::vector<int32_t> patch = patches(m_);
+      const ExportLabels labels = export_labels(m_);
       begin_grid("facets", "Triangle", file_.add("facets", "topology", tris, 3, m_.tri[0].data()), tris, 3,
                  geometry);
-      attribute("patch", file_.add("facets", "patch", tris, 1, patch.data()), tris, false);
+      attribute("patch", file_.add("facets", "patch", tris, 1, labels.patch.data()), tris, false);
       arrays("facets", tets, tris);
       out_ << "</Grid>\n";
       std::string names;
-      for (const auto& [label, name] : boundary_names(m_, patch))
+      for (const auto& [label, name] : labels.patch_name)
         names += std::to_string(label) + ' ' + name + '\n';
       file_.add("names", "patch", names);
     }

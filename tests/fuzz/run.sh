@@ -6,7 +6,7 @@ cd "$(dirname "$0")/../.." || exit 1
 seconds=$1
 shift
 readers=("$@")
-[ ${#readers[@]} -gt 0 ] || readers=(hier vtu vdb pdb mmcif mmjson pqr rules)
+[ ${#readers[@]} -gt 0 ] || readers=(hier vtu mesh vdb pdb mmcif mmjson pqr rules)
 cmake --preset sanitize >/dev/null && cmake --build --preset sanitize --target "${readers[@]/#/fuzz_}" || exit 1
 
 fuzz() { # fuzz READER: its seeds are the samples of its format and what an earlier run kept
@@ -15,6 +15,7 @@ fuzz() { # fuzz READER: its seeds are the samples of its format and what an earl
     [ -d "$folder" ] && seeds+=("$folder")
   done
   [ "$reader" = pdb ] && seeds+=(tests/data/cases) # it chooses the format
+  [ "$reader" = mesh ] && seeds+=(formats/{gmsh,medit,vtk,vtu}/samples/{passed,failed})
   mkdir -p "build-sanitize/corpus/$reader" build-sanitize/found
   if "build-sanitize/bin/fuzz_$reader" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=2048 -print_final_stats=1 \
     -artifact_prefix="build-sanitize/found/$reader-" "build-sanitize/corpus/$reader" "${seeds[@]}" >"build-sanitize/$reader.log" 2>&1; then

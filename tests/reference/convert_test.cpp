@@ -1,7 +1,9 @@
 // convert_test.cpp — meshio, gmsh, h5py, DOLFINx, TetGen and MC read what tetconvert writes.
+#include "formats/abaqus/abaqus.hpp"
 #include "formats/gmsh/gmsh.hpp"
 #include "formats/mcsf/mcsf.hpp"
 #include "formats/medit/medit.hpp"
+#include "formats/nastran/nastran.hpp"
 #include "formats/surface/surface.hpp"
 #include "formats/tetgen/tetgen.hpp"
 #include "formats/vtu/names.hpp"
@@ -62,16 +64,16 @@ nlohmann::json expected(const TetMesh& m) {
       j["tris"].push_back(p);
   j["region"] = m.region;
   j["boundary"] = m.boundary;
-  j["patch"] = formats::patches(m);
+  j["patch"] = formats::export_labels(m).patch;
   std::vector<int32_t> part = m.part;
   part.resize(m.tet.size() + m.tri.size(), 0);
   j["arrays"]["part"] = part;
   j["arrays"]["residue"] = m.cell_array[1].integer;
   j["arrays"]["residue_share"] = m.cell_array[2].real;
   j["texts"]["residue_names"] = m.named_text[1].text;
-  j["groups"] = {{"molecule", 1, 3},    {"outside", 2, 3}, {"cavity", 3, 3}, {"surface", 1, 2},
-                 {"active_site", 8, 2}, {"rest", 9, 2},    {"box_x0", 2, 2}, {"box_x1", 3, 2},
-                 {"box_y0", 4, 2},      {"box_y1", 5, 2},  {"box_z0", 6, 2}, {"box_z1", 7, 2}};
+  j["groups"] = {{"molecule", 1, 3},     {"outside", 2, 3}, {"cavity", 3, 3},  {"surface", 11, 2},
+                 {"active_site", 18, 2}, {"rest", 19, 2},   {"box_x0", 12, 2}, {"box_x1", 13, 2},
+                 {"box_y0", 14, 2},      {"box_y1", 15, 2}, {"box_z0", 16, 2}, {"box_z1", 17, 2}};
   return j;
 }
 
@@ -83,11 +85,13 @@ struct Folder {
 };
 
 void write_all(const TetMesh& m, const Folder& folder) {
-  auto gmsh = folder.file("mesh.msh"), gmsh22 = folder.file("mesh.msh2"), medit = folder.file("mesh.mesh"),
-       node = folder.file("mesh.node"), ele = folder.file("mesh.ele"), face = folder.file("mesh.face"),
-       xdmf = folder.file("mesh.xdmf"), h5 = folder.file("mesh.h5"), mcsf = folder.file("mesh.m"),
-       stl = folder.file("mesh.stl"), ply = folder.file("mesh.ply"), off = folder.file("mesh.off");
+  auto gmsh = folder.file("mesh.msh"), binary = folder.file("binary.msh"), gmsh22 = folder.file("mesh.msh2"),
+       medit = folder.file("mesh.mesh"), node = folder.file("mesh.node"), ele = folder.file("mesh.ele"),
+       face = folder.file("mesh.face"), xdmf = folder.file("mesh.xdmf"), h5 = folder.file("mesh.h5"),
+       mcsf = folder.file("mesh.m"), stl = folder.file("mesh.stl"), ply = folder.file("mesh.ply"),
+       off = folder.file("mesh.off"), inp = folder.file("mesh.inp"), bdf = folder.file("mesh.bdf");
   formats::write_gmsh(gmsh, m, formats::GmshVersion::v4_1);
+  formats::write_gmsh(binary, m, formats::GmshVersion::v4_1_binary);
   formats::write_gmsh(gmsh22, m, formats::GmshVersion::v2_2);
   formats::write_medit(medit, m);
   formats::write_tetgen(node, ele, face, m);
@@ -96,6 +100,8 @@ void write_all(const TetMesh& m, const Folder& folder) {
   formats::write_stl(stl, m, "mesh");
   formats::write_ply(ply, m, "mesh");
   formats::write_off(off, m, "mesh");
+  formats::write_abaqus(inp, m);
+  formats::write_nastran(bdf, m, "mesh");
 }
 
 /// Status of a command; its output in `log`.
@@ -138,7 +144,7 @@ TEST_CASE("TetGen reads .node, .ele and .face, tags intact, and finds the mesh w
   REQUIRE(in.numberoftetrahedra == int(m.tet.size()));
   REQUIRE(in.numberoftetrahedronattributes == 1);
   REQUIRE(in.numberoftrifaces == int(m.tri.size()));
-  const std::vector<int32_t> patch = formats::patches(m);
+  const std::vector<int32_t> patch = formats::export_labels(m).patch;
   for (size_t p = 0; p < m.point.size(); ++p)
     for (int a = 0; a < 3; ++a)
       CHECK(in.pointlist[3 * p + size_t(a)] == m.point[p][a]);
@@ -164,8 +170,9 @@ TEST_CASE("Writers: same mesh, same bytes, and meshes without a surface, patches
   const auto contents = [&] {
     write_all(m, folder);
     std::string all;
-    for (const char* name : {"mesh.msh", "mesh.msh2", "mesh.mesh", "mesh.node", "mesh.ele", "mesh.face",
-                             "mesh.xdmf", "mesh.h5", "mesh.m", "mesh.stl", "mesh.ply", "mesh.off"}) {
+    for (const char* name :
+         {"mesh.msh", "binary.msh", "mesh.msh2", "mesh.mesh", "mesh.node", "mesh.ele", "mesh.face", "mesh.xdmf",
+          "mesh.h5", "mesh.m", "mesh.stl", "mesh.ply", "mesh.off", "mesh.inp", "mesh.bdf"}) {
       std::ifstream in(folder.path / name, std::ios::binary);
       const std::string text(std::istreambuf_iterator<char>(in), {});
       CHECK(!text.empty());
@@ -180,7 +187,7 @@ TEST_CASE("Writers: same mesh, same bytes, and meshes without a surface, patches
   contents();
   std::ifstream in(folder.path / "mesh.mesh");
   const std::string medit(std::istreambuf_iterator<char>(in), {});
-  CHECK(medit.find("# triangles 1: surface\n") != std::string::npos);
+  CHECK(medit.find("# triangles 11: surface\n") != std::string::npos);
   std::fill(m.boundary.begin(), m.boundary.end(), 2);
   std::ostringstream out;
   CHECK_THROWS_WITH(formats::write_stl(out, m, "x.vtu"),

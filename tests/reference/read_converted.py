@@ -1,9 +1,13 @@
 #!/usr/bin/python3
-"""Reads DIR/mesh.* with meshio, gmsh, h5py, DOLFINx and compares with DIR/expected.json, what was written.
+"""Reads DIR/mesh.* with meshio, gmsh, h5py, DOLFINx and FreeFEM, GetFEM, Netgen and compares with DIR/expected.json, what was written.
 
 Prints a line for each reader; "not here: …" for those that are not installed. Status 77 when not even meshio is.
 """
+import glob
 import json
+import os
+import shutil
+import subprocess
 import sys
 import xml.etree.ElementTree as xml
 
@@ -57,7 +61,7 @@ def gmsh_by_meshio(name):
     mesh = meshio.read(f"{folder}/{name}", file_format="gmsh")
     whole(name, mesh, "gmsh:physical")
     same(name + " names", sorted((k, int(v[0]), int(v[1])) for k, v in mesh.field_data.items()), sorted(map(tuple, E["groups"])))
-    for array, values in E["arrays"].items() if name == "mesh.msh" else ():
+    for array, values in E["arrays"].items() if name != "mesh.msh2" else ():
         values = np.array(values)
         same_cells(f"{name} {array}", *block(mesh, "tetra", array), TETS, values[: len(TETS)])
         same_cells(f"{name} {array}", *block(mesh, "triangle", array), TRIS, values[len(TETS) :])
@@ -89,7 +93,7 @@ def gmsh_by_gmsh(name):
     cells = {tuple(row - 1): n for k, element, corners in zip(kinds, numbers, nodes)
              for n, row in zip(element, corners.astype(int).reshape(-1, 3 if k == 2 else 4))}
     views = {gmsh.option.getString(f"View[{gmsh.view.getIndex(v)}].Name"): v for v in gmsh.view.getTags()}
-    same(name + " arrays", sorted(views), sorted(E["arrays"]) if name == "mesh.msh" else [])
+    same(name + " arrays", sorted(views), sorted(E["arrays"]) if name != "mesh.msh2" else [])
     for array, view in views.items():
         _, elements, values, _, _ = gmsh.view.getModelData(view, 0)
         value = dict(zip(elements, (v[0] for v in values)))
@@ -166,6 +170,74 @@ def xdmf_by_dolfinx():
     print("mesh.xdmf DOLFINx")
 
 
+def measures():
+    """Volume of each region, area of each label."""
+    p, q = POINTS[TETS], POINTS[TRIS]
+    volume = np.einsum("ij,ij->i", np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), p[:, 3] - p[:, 0]) / 6
+    area = np.linalg.norm(np.cross(q[:, 1] - q[:, 0], q[:, 2] - q[:, 0]), axis=1) / 2
+    return ({int(r): volume[REGION == r].sum() for r in np.unique(REGION)}, {int(l): area[PATCH == l].sum() for l in np.unique(PATCH)})
+
+
+def freefem():
+    plugins = glob.glob("/usr/lib/**/msh3.so", recursive=True)
+    if not shutil.which("FreeFem++") or not plugins:
+        return print("not here: FreeFem++ with msh3")
+    volumes, areas = measures()
+    with open(folder + "/read.edp", "w", encoding="ascii") as f:
+        print(f'load "msh3"\nmesh3 Th("{folder}/mesh.mesh");\nofstream out("{folder}/read.txt");\nout.precision(17);', file=f)
+        for kind, tags in (("int3d", volumes), ("int2d", areas)):
+            for tag in tags:
+                print(f"out << {kind}(Th, {tag})(1.) << endl;", file=f)
+    subprocess.run(["FreeFem++", "-nw", "-v", "0", folder + "/read.edp"], check=True, stdout=subprocess.DEVNULL,
+                   env={**os.environ, "FF_LOADPATH": os.path.dirname(sorted(p for p in plugins if "mpi" not in p)[0])})
+    found = [float(x) for x in open(folder + "/read.txt", encoding="ascii").read().split()]
+    if not np.allclose(found, [*volumes.values(), *areas.values()], rtol=1e-10):
+        sys.exit(f"FreeFEM: found {found}, expected {volumes} {areas}")
+    print("mesh.mesh FreeFEM")
+
+
+def getfem():
+    """One table of regions for elements and faces."""
+    try:
+        import getfem as gf
+    except ImportError as e:
+        return print("not here:", e)
+    for name in ("mesh.msh2", "mesh.msh"):
+        mesh = gf.Mesh("import", "gmsh", f"{folder}/{name}")
+        same("GetFEM regions", sorted(mesh.regions()), sorted({t for _, t, _ in E["groups"]}))
+        for tag in np.unique(REGION):
+            region = mesh.region(int(tag))
+            same(f"GetFEM {name} region {tag}", (region[1] == -1).sum() if region[1].min() < 0 else -1, (REGION == tag).sum())
+        for tag in np.unique(PATCH):
+            faces = mesh.region(int(tag))
+            assert (faces[1] >= 0).all()
+            found = {tuple(sorted(mesh.pid_in_faces(faces[:, [i]]))) for i in range(faces.shape[1])}
+            same(f"GetFEM {name} label {tag}", len(found), (PATCH == tag).sum())
+    print("mesh.msh2 mesh.msh GetFEM")
+
+
+def netgen():
+    try:
+        from netgen.read_gmsh import ReadGmsh
+    except ImportError as e:
+        return print("not here:", e)
+    shutil.copy(folder + "/mesh.msh2", folder + "/netgen.msh")
+    mesh = ReadGmsh(folder + "/netgen.msh")
+    elements = mesh.Elements3D()
+    same("Netgen elements", len(elements), len(TETS))
+    names = {t: n for n, t, d in E["groups"] if d == 3}
+    found = {}
+    for e in elements:
+        found[mesh.GetMaterial(e.index)] = found.get(mesh.GetMaterial(e.index), 0) + 1
+    same("Netgen materials", sorted(found.items()), sorted((names[t], int((REGION == t).sum())) for t in names))
+    faces = {}
+    for e in mesh.Elements2D():
+        faces[mesh.GetBCName(mesh.FaceDescriptor(e.index).bc - 1)] = faces.get(mesh.GetBCName(mesh.FaceDescriptor(e.index).bc - 1), 0) + 1
+    labels = {t: n for n, t, d in E["groups"] if d == 2}
+    same("Netgen boundaries", sorted(faces.items()), sorted((labels[t], int((PATCH == t).sum())) for t in labels))
+    print("mesh.msh2 Netgen")
+
+
 def mcsf():
     """No reader in Python: the grammar of FEtk's own files, and what MC asks of a mesh."""
     text = open(folder + "/mesh.m", encoding="ascii").read()
@@ -213,13 +285,52 @@ def surface():
     print("mesh.ply mesh.off mesh.stl meshio")
 
 
-for n in ("mesh.msh", "mesh.msh2"):
+def abaqus():
+    """By its grammar: meshio 5.0 reads no surfaces."""
+    keyword, cards = "", {}
+    for line in open(folder + "/mesh.inp", encoding="ascii").read().split("\n"):
+        if line.startswith("*"):
+            keyword = line
+        elif line and not keyword.startswith("*HEADING"):
+            cards.setdefault(keyword, []).append(line.split(", "))
+    same("inp points", np.array(cards["*NODE"], dtype=float)[:, 1:], POINTS)
+    names = {t: n for n, t, d in E["groups"] if d == 3}
+    faces = {"S1": (0, 1, 2), "S2": (0, 3, 1), "S3": (1, 3, 2), "S4": (2, 3, 0)}
+    for tag, name in names.items():
+        rows = np.array(cards[f"*ELEMENT, TYPE=C3D4, ELSET={name}"], dtype=int)
+        same("inp " + name, rows[:, 1:] - 1, TETS[REGION == tag])
+        same("inp numbers", rows[:, 0] - 1, np.flatnonzero(REGION == tag))
+    for name, tag, dimension in E["groups"]:
+        if dimension == 2:
+            rows = cards[f"*SURFACE, TYPE=ELEMENT, NAME={name}"]
+            found = [sorted(TETS[int(e) - 1][list(faces[s])]) for e, s in rows]
+            same("inp " + name, found, np.sort(TRIS[PATCH == tag]))
+    mesh = meshio.read(folder + "/mesh.inp")
+    same("inp points by meshio", mesh.points, POINTS)
+    print("mesh.inp, by its grammar and meshio")
+
+
+def nastran():
+    mesh = meshio.read(folder + "/mesh.bdf")
+    if not np.allclose(mesh.points, POINTS, rtol=1e-9, atol=1e-12):
+        sys.exit("bdf: points differ")
+    same_cells("bdf tetrahedra", *block(mesh, "tetra", "nastran:ref"), TETS, REGION)
+    same_cells("bdf triangles", *block(mesh, "triangle", "nastran:ref"), TRIS, PATCH)
+    print("mesh.bdf meshio")
+
+
+for n in ("mesh.msh", "binary.msh", "mesh.msh2"):
     gmsh_by_meshio(n)
     gmsh_by_gmsh(n)
 whole("medit", meshio.read(folder + "/mesh.mesh"), "medit:ref")
 print("mesh.mesh meshio")
+abaqus()
+nastran()
 tetgen()
 xdmf_by_meshio()
 xdmf_by_dolfinx()
+freefem()
+getfem()
+netgen()
 mcsf()
 surface()

@@ -56,11 +56,11 @@ diffusion) # a rate that converges with the mesh
     mesh ache exterior $spacing "--box 3 --cavities fill"
     tetconvert -q ache.vtu -o ache.mesh
     echo -n "$spacing Å, the whole surface: "
-    solve diffusion ache.mesh 1 | tee -a whole
+    solve diffusion ache.mesh 11 | tee -a whole
     tetlabel -q ache.vtu ache.hier "${site[@]}" -o labels.vtu
     tetconvert -q labels.vtu -o ache.mesh
     echo -n "$spacing Å, the site: "
-    solve diffusion ache.mesh 8 | tee -a site
+    solve diffusion ache.mesh 18 | tee -a site
   done
   # Spacings fall by the square root of 2. To the whole surface, rates that converge differ by less from step to step,
   # here by under 5 % at once. The site is a few dozen triangles by nearest residue: its edge moves by a triangle when a

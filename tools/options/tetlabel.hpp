@@ -1,6 +1,6 @@
 // tetlabel.hpp — options and page of tetlabel.
 #pragma once
-#include "cli/run.hpp"
+#include "tools/options/mesh_input.hpp"
 
 namespace molmesh {
 
@@ -9,6 +9,7 @@ struct Options : cli::Common {
   std::string hierarchy;
   std::string decay = "auto";
   std::vector<std::string> boundary;
+  MeshInput mesh;
 };
 
 inline void describe(cli::Table& t, Options& o) {
@@ -22,6 +23,7 @@ inline void describe(cli::Table& t, Options& o) {
         "syntax, or around SELECTION Å) are a boundary of their own in the array `patch`; later ones win, a name "
         "given again adds to it")
       .unit("BOUNDARY");
+  describe_mesh_input(t, o.mesh);
   t.page.about =
       "Gives every triangle of the molecular surface and every tetrahedron of the molecule its domain, chain, "
       "residue "
@@ -35,6 +37,7 @@ inline void describe(cli::Table& t, Options& o) {
       {"tetlabel 1tii.vtu 1tii.hier --boundary 'near=around //A/45 8.0' -o 1tii.labels.vtu",
        "what lies within 8 Å of residue 45 of chain A is the boundary `near`"}};
   t.page.files = {{".vtu", "mesh (VTK), read and written: formats/vtu/VTUv1.md"},
+                  {".msh, .mesh, .vtk", "meshes of other programs, read: formats/mesh/MESH.md"},
                   {".hier", "molecular hierarchy, read: formats/hier/HIERv1.md"}};
   t.page.see_also = {"tetsmooth", "tetconvert", "pdb2hier"};
 }

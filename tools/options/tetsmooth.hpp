@@ -1,8 +1,8 @@
 // tetsmooth.hpp — options and page of tetsmooth.
 #pragma once
 #include "cli/limits.hpp"
-#include "cli/run.hpp"
 #include "cuda/par/device.hpp"
+#include "tools/options/mesh_input.hpp"
 
 namespace molmesh {
 
@@ -14,6 +14,7 @@ struct Options : cli::Common {
   std::string density, hier;
   int iterations = 15, parts = 8;
   double min_dihedral = 0, max_dihedral = 180; // degrees asked for
+  MeshInput mesh;
 };
 
 inline void describe(cli::Table& t, Options& o) {
@@ -26,6 +27,7 @@ inline void describe(cli::Table& t, Options& o) {
       .within(1, 1000000);
   t.group("quality");
   cli::add_dihedral_limits(t, o.min_dihedral, o.max_dihedral, ", and an aim up to 34 and 125");
+  describe_mesh_input(t, o.mesh);
   t.page.about =
       "Improves a tetrahedral mesh by swaps, contractions, moves and splits. It never inverts an element and never "
       "makes the worst one worse. With a density, surface points are put on the isosurface and kept there; "
@@ -39,6 +41,7 @@ inline void describe(cli::Table& t, Options& o) {
       {"tetsmooth --parts 64 --density 1tii.vdb 1tii.tet.vtu -o 1tii.vtu",
        "elements in 64 parts for a parallel solver"}};
   t.page.files = {{".vtu", "mesh (VTK), read and written: formats/vtu/VTUv1.md"},
+                  {".msh, .mesh, .vtk", "meshes of other programs, read: formats/mesh/MESH.md"},
                   {".vdb", "density grid (OpenVDB), read: formats/vdb/VDBv1.md"},
                   {".hier", "molecular hierarchy, read: formats/hier/HIERv1.md"}};
   t.page.see_also = {"density2tet", "tetstat", "tetlabel", "tetconvert"};

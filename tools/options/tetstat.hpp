@@ -1,7 +1,7 @@
 // tetstat.hpp — options and page of tetstat.
 #pragma once
 #include "cli/limits.hpp"
-#include "cli/run.hpp"
+#include "tools/options/mesh_input.hpp"
 
 namespace molmesh {
 
@@ -9,6 +9,7 @@ struct Options : cli::Common {
   bool json = false, crossings = false;
   std::string compare;
   double min_dihedral = 0, max_dihedral = 180; // degrees
+  MeshInput mesh;
 };
 
 inline void describe(cli::Table& t, Options& o) {
@@ -19,6 +20,7 @@ inline void describe(cli::Table& t, Options& o) {
       .unit("FILE");
   t.group("quality");
   cli::add_dihedral_limits(t, o.min_dihedral, o.max_dihedral);
+  describe_mesh_input(t, o.mesh);
   t.page.about =
       "Says whether a tetrahedral mesh is valid and how good its elements are: orientation by an exact predicate; "
       "every "
@@ -28,7 +30,7 @@ inline void describe(cli::Table& t, Options& o) {
   t.page.examples = {{"tetstat 1tii.vtu", "the report on one screen"},
                      {"tetstat --min-dihedral 20 --json 1tii.vtu -o 1tii.json", "for programs; status 5 below 20°"},
                      {"tetstat --compare 1tii.tet.vtu 1tii.vtu", "two meshes side by side"}};
-  t.page.files = {{".vtu", "mesh (VTK), read: formats/vtu/VTUv1.md"},
+  t.page.files = {{".vtu, .msh, .mesh, .vtk", "mesh, read: formats/mesh/MESH.md"},
                   {".json", "the report for programs, written: formats/tetstat/TETSTATv1.md"}};
   t.page.see_also = {"tetsmooth", "density2tet"};
 }

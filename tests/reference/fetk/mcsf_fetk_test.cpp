@@ -46,8 +46,8 @@ TEST_CASE("MC reads .m: points, materials, boundary types, and its own check of 
   for (size_t p = 0; p < m.point.size(); ++p)
     for (int a = 0; a < 3; ++a)
       CHECK(VV_coord(Gem_VV(gem, int(p)), a) == m.point[p][a]);
-  const std::vector<int32_t> patch = formats::patches(m);
-  int64_t outer[9] = {}, found[9] = {};
+  const std::vector<int32_t> patch = formats::export_labels(m).patch;
+  int64_t outer[19] = {}, found[19] = {};
   for (size_t t = 0; t < m.tri.size(); ++t)
     if (m.boundary[t] > 1 || outside_only)
       ++outer[patch[t]];
@@ -57,12 +57,12 @@ TEST_CASE("MC reads .m: points, materials, boundary types, and its own check of 
     for (int c = 0; c < 4; ++c) {
       CHECK(VV_id(SS_vertex(simplex, c)) == unsigned(m.tet[t][c]));
       if (const unsigned type = SS_faceType(simplex, c)) {
-        CHECK(VDIRICHLET(type) == (type != 2));
+        CHECK(VDIRICHLET(type) == (type != 22));
         ++found[(type + 1) / 2];
       }
     }
   }
-  for (int label = 0; label < 9; ++label)
+  for (int label = 0; label < 19; ++label)
     CHECK(found[label] == outer[label]);
   Gem_dtor(&gem);
 }

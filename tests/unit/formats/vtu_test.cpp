@@ -33,7 +33,7 @@ std::string content(const fs::path& p) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TetMesh read_text(const std::string& text, formats::VtuNotes* notes = nullptr) {
+TetMesh read_text(const std::string& text, formats::MeshNotes* notes = nullptr) {
   std::istringstream in(text);
   return formats::read_vtu(in, "x.vtu", notes);
 }
@@ -98,7 +98,7 @@ TEST_CASE("what is written is read back exactly, and written again as the same b
   m.source = "caf\xc3\xa9 & <1tii>.pdb </AppendedData> _";
   for (bool parts : {false, true}) {
     m.part = parts ? std::vector<int32_t>{7, 0} : std::vector<int32_t>{};
-    formats::VtuNotes notes;
+    formats::MeshNotes notes;
     const std::string text = written(m);
     const TetMesh back = read_text(text, &notes);
     check_same(back, m);
@@ -123,7 +123,7 @@ TEST_CASE("foreign encodings of the same mesh read the same") {
   const TetMesh expected = two_tets();
   for (const fs::path& file : samples("passed")) {
     INFO(file.filename());
-    formats::VtuNotes notes;
+    formats::MeshNotes notes;
     const TetMesh m = read_text(content(file), &notes);
     const bool extra = file.stem().string().find("extra") != std::string::npos;
     const bool no_labels = file.stem().string().find("no-labels") != std::string::npos;
@@ -305,7 +305,7 @@ TEST_CASE(".vtu: without `boundary` triangles of the file lend the rebuilt ones 
       array("Int32", "patch", "0 0 11 12 13") + array("Float64", "mine", "1 2 3.5 4.5 5.5") +
       "</CellData></Piece></UnstructuredGrid></VTKFile>\n";
   std::istringstream in(text);
-  formats::VtuNotes notes;
+  formats::MeshNotes notes;
   const TetMesh m = formats::read_vtu(in, "x.vtu", &notes, formats::CellArrays::keep);
   CHECK(notes.triangles == 3);
   CHECK(notes.dropped_triangles == 2);

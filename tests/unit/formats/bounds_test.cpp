@@ -1,0 +1,353 @@
+// bounds_test.cpp — memory and time of the readers follow the bytes of the file: a table of contrived inputs.
+#include "base/error.hpp"
+#include "formats/hier/hier.hpp"
+#include "formats/mesh/read_mesh.hpp"
+#include "formats/pdb/pdb.hpp"
+#include "formats/vdb/vdb.hpp"
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <ctime>
+#include <functional>
+#include <limits>
+#include <sstream>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <zlib.h>
+
+using namespace molmesh;
+
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool sanitized = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+constexpr bool sanitized = true;
+#else
+constexpr bool sanitized = false;
+#endif
+#else
+constexpr bool sanitized = false;
+#endif
+
+using Reader = std::function<void(std::istream&)>;
+
+/// Reads, whether it is refused or not. Any end but those is none.
+void read_or_refuse(const Reader& read, const std::string& bytes) {
+  std::istringstream in(bytes);
+  try {
+    read(in);
+  } catch (const Error& e) {
+    CHECK(e.status == Status::bad_input);
+  }
+}
+
+/// Bytes that a process takes at most while it does this, with all that is there before.
+int64_t peak(const std::function<void()>& action) {
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      action();
+    } catch (...) {
+      _exit(1);
+    }
+    _exit(0);
+  }
+  int status = 0;
+  rusage usage{};
+  wait4(child, &status, 0, &usage);
+  CHECK(status == 0);
+  return usage.ru_maxrss * 1024;
+}
+
+double seconds(const Reader& read, const std::string& bytes) {
+  double best = 1e9;
+  for (int i = 0; i < 3; ++i) {
+    const std::clock_t start = std::clock(); // of the processor: others may be at work
+    read_or_refuse(read, bytes);
+    best = std::min(best, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+  }
+  return best;
+}
+
+void read_mesh(std::istream& in) {
+  formats::MeshReading as;
+  as.arrays = formats::CellArrays::keep;
+  formats::MeshNotes notes;
+  formats::read_mesh(in, "x", as, notes);
+}
+void read_hier(std::istream& in) {
+  formats::read_hier(in, "x");
+}
+void read_vdb(std::istream& in) {
+  formats::read_vdb(in, "x", 1);
+}
+void read_structure(std::istream& in) {
+  formats::PdbHierarchy(in, "x", {});
+}
+
+std::string repeated(const std::string& text, size_t n) {
+  std::string s;
+  s.reserve(text.size() * n);
+  for (size_t i = 0; i < n; ++i)
+    s += text;
+  return s;
+}
+/// line(0) + line(1) + …
+std::string lines(size_t n, const std::function<std::string(size_t)>& line) {
+  std::string s;
+  for (size_t i = 0; i < n; ++i)
+    s += line(i);
+  return s;
+}
+std::string number(size_t n) {
+  return std::to_string(n);
+}
+
+std::string zlib(const std::string& text) {
+  uLongf size = compressBound(text.size());
+  std::string packed(size, '\0');
+  compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(text.data()),
+            text.size(), 9);
+  packed.resize(size);
+  return packed;
+}
+std::string gzip(const std::string& text) {
+  z_stream z{};
+  deflateInit2(&z, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
+  std::string packed(deflateBound(&z, text.size()), '\0');
+  z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+  z.avail_in = static_cast<uInt>(text.size());
+  z.next_out = reinterpret_cast<Bytef*>(packed.data());
+  z.avail_out = static_cast<uInt>(packed.size());
+  deflate(&z, Z_FINISH);
+  packed.resize(z.total_out);
+  deflateEnd(&z);
+  return packed;
+}
+
+template <class T>
+void put(std::string& s, T v) {
+  char b[sizeof v];
+  std::memcpy(b, &v, sizeof v);
+  s.append(b, sizeof b);
+}
+void put_string(std::string& s, const std::string& text) {
+  put(s, static_cast<uint32_t>(text.size()));
+  s += text;
+}
+/// n values of a node, all the same, by zip.
+void put_values(std::string& s, size_t n, float v) {
+  std::string raw;
+  for (size_t i = 0; i < n; ++i)
+    put(raw, v);
+  const std::string packed = zlib(raw);
+  s += '\6'; // all of them
+  put(s, static_cast<int64_t>(packed.size()));
+  s += packed;
+}
+
+/// An OpenVDB file of nodes of 4096³ points that hold inside tiles of 128 points alone.
+std::string vdb_of_tiles(size_t nodes) {
+  std::string s;
+  put(s, int64_t{0x56444220});
+  put(s, uint32_t{224});
+  put(s, uint64_t{0});
+  s += '\0';
+  s += std::string(36, '0');
+  put(s, uint32_t{0}); // metadata
+  put(s, int32_t{1});  // grids
+  put_string(s, "density");
+  put_string(s, "Tree_float_5_4_3");
+  put_string(s, "");
+  for (int i = 0; i < 3; ++i)
+    put(s, int64_t{0});
+  put(s, uint32_t{1}); // zip
+  put(s, uint32_t{0}); // metadata
+  put_string(s, "UniformScaleMap");
+  for (int i = 0; i < 15; ++i)
+    put(s, 1.0);
+  put(s, int32_t{1}); // buffers
+  put(s, 0.f);        // background
+  put(s, uint32_t{0});
+  put(s, static_cast<uint32_t>(nodes));
+  std::string node(8192, '\0'); // no child, none active
+  put_values(node, 32768, 2);
+  for (size_t i = 0; i < nodes; ++i) {
+    for (const size_t c : {i % 64, i / 64 % 64, i / 4096})
+      put(s, static_cast<int32_t>(4096 * c));
+    s += node;
+  }
+  return s;
+}
+
+const std::string msh_head = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+const std::string four_points = "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n";
+const std::string vtu_head =
+    "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid>";
+const std::string vtu_cell =
+    "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\">"
+    "0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><Cells><DataArray type=\"Int32\" Name=\"connectivity\">0 1 2 3"
+    "</DataArray><DataArray type=\"Int32\" Name=\"offsets\">4</DataArray><DataArray type=\"UInt8\" "
+    "Name=\"types\">10</DataArray></Cells><CellData>";
+
+struct Contrived {
+  const char* name;
+  Reader read;
+  std::function<std::string(size_t)> bytes; ///< of a size
+  size_t size;                              ///< some megabytes
+};
+
+const std::vector<Contrived> table = {
+    {".msh: tetrahedra on the same points", read_mesh,
+     [](size_t n) {
+       return msh_head + four_points + "$Elements\n" + number(n) + "\n" +
+              lines(n, [](size_t i) { return number(i + 1) + " 4 0 1 2 3 4\n"; }) + "$EndElements\n";
+     },
+     150000},
+    {".msh: tetrahedra apart", read_mesh,
+     [](size_t n) {
+       return msh_head + "$Nodes\n" + number(4 * n) + "\n" +
+              lines(4 * n,
+                    [](size_t i) {
+                      return number(i + 1) + " " + number(i % 2) + " " + number(i / 2 % 2) + " " + number(i / 4) +
+                             "\n";
+                    }) +
+              "$EndNodes\n$Elements\n" + number(n) + "\n" +
+              lines(n,
+                    [](size_t i) {
+                      return number(i + 1) + " 4 0 " + number(4 * i + 1) + " " + number(4 * i + 2) + " " +
+                             number(4 * i + 3) + " " + number(4 * i + 4) + "\n";
+                    }) +
+              "$EndElements\n";
+     },
+     50000},
+    {".msh: arrays without values", read_mesh,
+     [](size_t n) {
+       return msh_head + four_points + "$Elements\n" + number(n) + "\n" +
+              lines(n, [](size_t i) { return number(i + 1) + " 4 0 1 2 3 4\n"; }) + "$EndElements\n" +
+              lines(n / 10, [](size_t i) {
+                return "$ElementData\n1\n\"a" + number(i) + "\"\n0\n3\n0\n1\n0\n$EndElementData\n";
+              });
+     },
+     60000},
+    {".mesh: tetrahedra on the same points", read_mesh,
+     [](size_t n) {
+       return "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\nTetrahedra\n" +
+              number(n) + "\n" + repeated("1 2 3 4 1\n", n) + "End\n";
+     },
+     300000},
+    {".mesh: points that stand in one place", read_mesh,
+     [](size_t n) {
+       return "MeshVersionFormatted 2\nDimension 3\nVertices\n" + number(n) + "\n" + repeated("0 0 0 0\n", n) +
+              "Tetrahedra\n1\n1 2 3 4 1\nEnd\n";
+     },
+     400000},
+    {".vtk: cells on the same points", read_mesh,
+     [](size_t n) {
+       return "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 "
+              "0 0 "
+              "1\nCELLS " +
+              number(n) + " " + number(5 * n) + "\n" + repeated("4 0 1 2 3\n", n) + "CELL_TYPES " + number(n) +
+              "\n" + repeated("10\n", n);
+     },
+     250000},
+    {".vtk: arrays of one cell", read_mesh,
+     [](size_t n) {
+       return "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 "
+              "0 0 "
+              "1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nCELL_DATA 1\nFIELD f " +
+              number(n) + "\n" + lines(n, [](size_t i) { return "a" + number(i) + " 1 1 int\n1\n"; });
+     },
+     100000},
+    {".vtu: arrays of one cell", read_mesh,
+     [](size_t n) {
+       return vtu_head + vtu_cell +
+              lines(
+                  n,
+                  [](size_t i) { return "<DataArray type=\"Int8\" Name=\"a" + number(i) + "\">1</DataArray>\n"; }) +
+              "</CellData></Piece></UnstructuredGrid></VTKFile>\n";
+     },
+     50000},
+    {".vtu: texts", read_mesh,
+     [](size_t n) {
+       return vtu_head + "<FieldData>" +
+              lines(n,
+                    [](size_t i) {
+                      return "<DataArray type=\"UInt8\" Name=\"a" + number(i) + "\">65</DataArray>\n";
+                    }) +
+              "</FieldData>" + vtu_cell + "</CellData></Piece></UnstructuredGrid></VTKFile>\n";
+     },
+     50000},
+    {".vtu: pieces", read_mesh,
+     [](size_t n) {
+       return vtu_head + repeated(vtu_cell + "</CellData></Piece>\n", n) + "</UnstructuredGrid></VTKFile>\n";
+     },
+     8000},
+    {".vdb: tiles", read_vdb, vdb_of_tiles, 500},
+    {".hier: levels", read_hier,
+     [](size_t n) {
+       return "hier 1\nlevels" + lines(n, [](size_t i) { return " l" + number(i); }) + "\n" +
+              lines(n, [](size_t i) { return "l" + number(i) + " X 1\n"; }) + "atom A C 0 0 0 1\n";
+     },
+     100000},
+    {".hier: groups of one atom", read_hier,
+     [](size_t n) { return "hier 1\nlevels a\n" + repeated("a X 1\natom A C 0 0 0 1\n", n); }, 100000},
+    {".hier: one long line", read_hier, [](size_t n) { return "hier 1\nsource " + std::string(n, 'x') + "\n"; },
+     4000000},
+    {"gzip of zeros", read_structure, [](size_t n) { return gzip(std::string(n, '\0')); }, 200000000},
+};
+
+} // namespace
+
+TEST_CASE("readers: memory is at most 20 times the bytes of the file beyond 64 MB, whatever it says", "[slow]") {
+  if (sanitized) {
+    WARN("skipped: a sanitizer's memory is not the reader's");
+    return;
+  }
+  for (const Contrived& c : table) {
+    const std::string bytes = c.bytes(c.size);
+    const int64_t before = peak([] {}), after = peak([&] { read_or_refuse(c.read, bytes); });
+    INFO(c.name << ": " << bytes.size() << " bytes, " << after - before << " of memory");
+    CHECK(after - before <= 20 * static_cast<int64_t>(bytes.size()) + (int64_t{64} << 20));
+  }
+}
+
+TEST_CASE("readers: four times the file is at most eight times the time", "[slow]") {
+  for (const Contrived& c : table) {
+    const std::string small = c.bytes(c.size / 4), large = c.bytes(c.size);
+    const double one = seconds(c.read, small), four = seconds(c.read, large);
+    INFO(c.name << ": " << one << " s, " << four << " s");
+    CHECK(four < 8 * one + 0.02); // quadratic: 16
+  }
+}
+
+TEST_CASE("a .vdb of voxels or places that no structure has is refused with the rule") {
+  // The transform of vdb_of_tiles() is the last doubles before the tree; its scale the first of them.
+  const auto with = [](double scale, double translation) {
+    std::string s = vdb_of_tiles(0);
+    const size_t at = s.find("UniformScaleMap") - 4;
+    std::string tail = s.substr(at + 4 + 15 + 15 * 8), head = s.substr(0, at);
+    put_string(head, "UniformScaleTranslateMap");
+    for (int i = 0; i < 3; ++i)
+      put(head, translation);
+    for (int i = 0; i < 15; ++i)
+      put(head, scale);
+    head += tail;
+    std::istringstream in(head);
+    try {
+      formats::read_vdb(in, "x", 1);
+    } catch (const Error& e) {
+      CHECK(e.status == Status::bad_input);
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  CHECK(with(1e300, 0) == "x: R9: voxels of 1e+300 Å, expected 1e-6 to 1e6");
+  CHECK(with(1e-300, 0) == "x: R9: voxels of 1e-300 Å, expected 1e-6 to 1e6");
+  CHECK(with(1, 1e15) == "x: R9: a translation of 1e+15 Å, expected at most 1e8 in magnitude");
+  CHECK(with(1, std::numeric_limits<double>::quiet_NaN()).find("x: R9: a translation of ") == 0);
+  CHECK(with(1, 100).find("R9") == std::string::npos);
+}

@@ -1,0 +1,21 @@
+// mesh_endings.hpp — formats of meshes by the endings of files' names.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace molmesh {
+
+/// By the ending of the output's name. Those of several files are named by any of them.
+inline const std::vector<std::pair<const char*, const char*>> mesh_endings = {
+    {".msh", "gmsh"},   {".msh2", "gmsh22"}, {".mesh", "medit"},  {".node", "tetgen"},
+    {".ele", "tetgen"}, {".face", "tetgen"}, {".xdmf", "xdmf"},   {".h5", "xdmf"},
+    {".m", "mcsf"},     {".stl", "stl"},     {".ply", "ply"},     {".off", "off"},
+    {".inp", "abaqus"}, {".bdf", "nastran"}, {".nas", "nastran"}, {".vtu", "vtu"}};
+
+inline std::string ending(const std::string& path) {
+  const size_t name = path.rfind('/') + 1, dot = path.rfind('.');
+  return dot == std::string::npos || dot <= name ? "" : path.substr(dot);
+}
+
+} // namespace molmesh
