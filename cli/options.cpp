@@ -5,6 +5,7 @@
 #include "cli/run.hpp"
 #include "cli/text.hpp"
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iostream>
@@ -89,6 +90,53 @@ std::string wrong_value(const Table& table) {
       if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(x))
         return o.shown_name() + ": found '" + text + "', expected a finite decimal number";
     }
+  }
+  return {};
+}
+
+/// Insertions, deletions, replacements and swaps of neighbours that make b of a.
+size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<size_t>> d(a.size() + 1, std::vector<size_t>(b.size() + 1));
+  for (size_t i = 0; i <= a.size(); ++i)
+    for (size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = i + j;
+        continue;
+      }
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+/// Of the first argument that looks like an option and is none: "--spacin: no such option, did you mean
+/// --spacing?"; empty: there is none.
+std::string unknown_option(const Table& table, int argc, char** argv) {
+  for (int i = 1; i < argc && std::string(argv[i]) != "--"; ++i) {
+    const std::string arg = argv[i], name = arg.substr(0, arg.find('='));
+    const auto same = [&](const Option& o) {
+      return !o.argument && (name == "--" + o.name || (!o.letter.empty() && name.rfind("-" + o.letter, 0) == 0));
+    };
+    const bool value =
+        i > 1 && std::any_of(table.options.begin(), table.options.end(), [&](const Option& o) {
+          return !o.argument && !o.flag() &&
+                 (argv[i - 1] == "--" + o.name || (!o.letter.empty() && argv[i - 1] == "-" + o.letter));
+        });
+    if (name.rfind("-", 0) != 0 || name == "-" || value ||
+        std::any_of(table.options.begin(), table.options.end(), same))
+      continue;
+    const Option* near = nullptr;
+    size_t least = name.size() > 6 ? 4 : 3; // "--" counts for nothing
+    for (const Option& o : table.options)
+      if (const size_t d = o.argument ? least : edit_distance(name, "--" + o.name); d < least) {
+        least = d;
+        near = &o;
+      }
+    for (const Option& o : table.options) // a beginning of one
+      if (!near && !o.argument && name.size() > 3 && ("--" + o.name).rfind(name, 0) == 0)
+        near = &o;
+    return name + ": no such option" + (near ? ", did you mean --" + near->name + "?" : "");
   }
   return {};
 }
@@ -221,7 +269,8 @@ int parse(Table& table, int argc, char** argv) {
     return print(app.version() + '\n');
   } catch (const CLI::ParseError& e) {
     note_given();
-    return refuse(plain_error(table, e));
+    const std::string unknown = dynamic_cast<const CLI::ExtrasError*>(&e) ? unknown_option(table, argc, argv) : "";
+    return refuse(unknown.empty() ? plain_error(table, e) : unknown);
   }
 }
 

@@ -4,11 +4,13 @@
 #include "base/memory.hpp"
 #include "cli/cleanup.hpp"
 #include "cli/cpus.hpp"
+#include "cli/file_kind.hpp"
 #include "cli/report.hpp"
 #include "cli/text.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <new>
@@ -41,6 +43,8 @@ void Run::phase(const std::string& name) {
   if (open_ == phases.size())
     phases.push_back({name, 0});
   started_ = std::chrono::steady_clock::now();
+  if (line_)
+    line_->phase(name);
 }
 
 void Run::end_phase() {
@@ -51,6 +55,8 @@ void Run::end_phase() {
 }
 
 void Run::note(const std::string& line) const {
+  if (line_)
+    line_->clear();
   if (!quiet)
     std::cerr << tool << ": " << one_line(line) << '\n';
 }
@@ -94,6 +100,11 @@ int finish(const Table& table, const Common& o, Run& run, OutputFile* report, St
     run.complete(*report);
   }
   std::for_each(run.outputs.rbegin(), run.outputs.rend(), [](CompleteFile& file) { file.publish(); });
+  if (!run.made.empty()) {
+    char seconds[32];
+    std::snprintf(seconds, sizeof seconds, "%.2f s", run.seconds());
+    run.note(run.made + "; " + seconds + "; " + (o.output == "-" ? "<stdout>" : o.outputs().front()));
+  }
   return static_cast<int>(status);
 }
 
@@ -120,6 +131,31 @@ bool blames_input(const Error& e, const Table& table) {
          });
 }
 
+/// " (this is a density grid (.vdb): run density2tet first)", where the message is of a file whose kind the program
+/// does not read; else empty.
+std::string wrong_kind(const Table& table, const std::string& message) {
+  for (const Option& o : table.options)
+    for (const std::string& path : o.argument || o.value_name == "FILE" ? o.given : std::vector<std::string>{}) {
+      if (message.rfind(path + ':', 0) != 0)
+        continue;
+      std::string head(4096, '\0');
+      std::ifstream in(path, std::ios::binary);
+      in.read(head.data(), static_cast<std::streamsize>(head.size()));
+      head.resize(static_cast<size_t>(in.gcount()));
+      const FileKind kind = file_kind(head);
+      const auto is_read = [&](const Page::File& f) {
+        return f.meaning.find("read") != std::string::npos && f.name.find(kind.ending) != std::string::npos;
+      };
+      const auto& files = table.page.files;
+      const auto last = o.name == "input" && !files.empty() ? files.begin() + 1 : files.end();
+      const bool reads = std::any_of(files.begin(), last, is_read); // the first is the input's
+      const bool here = table.program == "pdb2hier" && kind.ending == "structure";
+      if (!kind.ending.empty() && !reads && !here)
+        return " (this is " + kind.what + ": " + kind.advice + ')';
+    }
+  return {};
+}
+
 int failed(const Table& table, const Common& options, const std::exception& e) {
   const auto* error = dynamic_cast<const Error*>(&e);
   const bool memory = dynamic_cast<const std::bad_alloc*>(&e) || dynamic_cast<const std::length_error*>(&e);
@@ -129,6 +165,8 @@ int failed(const Table& table, const Common& options, const std::exception& e) {
     text = (options.input == "-" ? "<stdin>" : options.input) + ": " + text;
     status = Status::bad_input;
   }
+  if (status == Status::bad_input)
+    text += wrong_kind(table, text);
   std::cerr << table.program << ": " << one_line(text) << '\n';
   return static_cast<int>(status);
 }
@@ -171,6 +209,7 @@ int run_program(Table& table, Common& options, int argc, char** argv, const std:
     if (options.threads > threads && options.mode == "seq")
       run.note("-t " + std::to_string(options.threads) + ": --mode seq is one thread");
     const Status result = work(run);
+    run.hide_phases();
     return finish(table, options, run, report.get(), result);
   } catch (const std::exception& e) {
     return failed(table, options, e);

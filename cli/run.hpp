@@ -3,9 +3,11 @@
 #include "base/error.hpp"
 #include "cli/file.hpp"
 #include "cli/options.hpp"
+#include "cli/phase_line.hpp"
 #include "cli/value.hpp"
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -39,9 +41,20 @@ public:
   /// Ends the phase before, starts this one or goes on with it.
   void phase(const std::string& name);
   void end_phase();
+  /// From now on a terminal shows the phase (PhaseLine), until the work is over.
+  void show_phases() { line_ = std::make_unique<PhaseLine>(tool, quiet); }
+  void hide_phases() { line_.reset(); }
+  /// Of the present phase, where it is shown.
+  void share(double done) {
+    if (line_)
+      line_->share(done);
+  }
   Value counts;
   /// It gets its name when the run is over and the report, too, could be written.
   void complete(OutputFile& output) { outputs.push_back(output.complete()); }
+  /// What was made, for one line at the end unless -q: "1,164,552 tetrahedra, 1 body". The seconds and the first
+  /// output's name follow in it. Empty: no line.
+  std::string made;
   /// They get their names in the opposite order, the report, which comes last, before all others: where an output
   /// is, its report is.
   std::vector<CompleteFile> outputs;
@@ -60,10 +73,16 @@ public:
   };
   std::vector<Phase> phases;
 
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+  }
+
 private:
+  const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point started_;
   static constexpr auto none = static_cast<size_t>(-1);
   size_t open_ = none; ///< of phases
+  std::unique_ptr<PhaseLine> line_;
 };
 
 std::string version();

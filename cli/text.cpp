@@ -31,6 +31,17 @@ std::string one_line(const std::string& text) {
   return line;
 }
 
+std::string grouped(int64_t n) {
+  std::string s = std::to_string(n);
+  for (auto at = static_cast<std::ptrdiff_t>(s.size()) - 3; at > (n < 0 ? 1 : 0); at -= 3)
+    s.insert(static_cast<size_t>(at), 1, ',');
+  return s;
+}
+
+std::string counted(int64_t n, const std::string& one, const std::string& several) {
+  return grouped(n) + ' ' + (n == 1 ? one : several);
+}
+
 size_t columns(const std::string& text) {
   return static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }

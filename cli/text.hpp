@@ -1,6 +1,7 @@
 // text.hpp — lines of UTF-8 text for a terminal.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,12 @@ namespace molmesh::cli {
 /// One printable line: control characters and bytes that are no UTF-8 become \xHH, line ends "; "; 2,000 bytes at
 /// most.
 std::string one_line(const std::string& text);
+
+/// 1234567 → 1,234,567
+std::string grouped(int64_t n);
+
+/// "1 body", "40 cavities"
+std::string counted(int64_t n, const std::string& one, const std::string& several);
 
 /// Columns that the text takes; every character is as wide as a Latin letter.
 size_t columns(const std::string& text);

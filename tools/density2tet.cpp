@@ -5,6 +5,7 @@
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "tools/device_report.hpp"
+#include "tools/mesh_line.hpp"
 #include <algorithm>
 #include <optional>
 
@@ -20,11 +21,26 @@ contour::BoxRequest parse_box(const std::string& text) {
     box.kind = contour::BoxRequest::tight;
     return box;
   }
+  const auto refuse = [&](const std::string& expected) {
+    fail(Status::usage, "--box: found '" + text + "', expected " + expected);
+  };
+  constexpr double largest_bare = 10; // a number alone is a factor; what is larger was meant to be Å
+  if (text.rfind('+', 0) == 0) {
+    box.kind = contour::BoxRequest::padding;
+    box.distance = cli::numbers("--box", text.substr(1), 1)[0];
+    if (!(box.distance > 0))
+      refuse("+ and a distance above 0 Å");
+    return box;
+  }
   if (std::count(text.begin(), text.end(), ',') == 0) {
     box.kind = contour::BoxRequest::factor;
-    box.scale = cli::numbers("--box", text, 1)[0];
+    const bool times = !text.empty() && text.back() == 'x';
+    box.scale = cli::numbers("--box", times ? text.substr(0, text.size() - 1) : text, 1)[0];
     if (!(box.scale > 1))
-      fail(Status::usage, "--box: found '" + text + "', expected a factor above 1");
+      refuse("a factor above 1");
+    if (!times && box.scale > largest_bare)
+      refuse(text + "x for that many times the surface's extents, +" + text +
+             " for that many Å round it, or x0,y0,z0,x1,y1,z1");
     return box;
   }
   const std::vector<double> v = cli::numbers("--box", text, 6);
@@ -60,6 +76,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.phase("read");
   cli::InputFile input(o.input);
   cli::OutputFile output(o.output, cli::OutputFile::Content::binary);
+  run.show_phases();
   const BlockGrid grid = formats::read_vdb(input.stream(), input.name(), options.threads);
   contour::Summary summary;
   TetMesh mesh;
@@ -103,9 +120,13 @@ Status run_tool(const Options& o, cli::Run& run) {
   formats::write_vtu(output.stream(), mesh);
   run.complete(output);
   run.end_phase();
-  if (run.verbose)
-    run.note(std::to_string(mesh.tet.size()) + " tetrahedra, " + std::to_string(summary.molecule_volumes.size()) +
-             " parts, " + std::to_string(summary.cavity_volumes.size()) + " closed cavities");
+  if (!run.quiet)
+    run.made = cli::counted(std::ssize(mesh.tet), "tetrahedron", "tetrahedra") + ", " +
+               (summary.molecule_volumes.empty()
+                    ? ""
+                    : cli::counted(std::ssize(summary.molecule_volumes), "body", "bodies") + ", ") +
+               cli::counted(std::ssize(summary.cavity_volumes), "closed cavity", "closed cavities") + ", " +
+               mesh_line(mesh, options.threads);
   return Status::good;
 }
 

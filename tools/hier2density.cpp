@@ -1,6 +1,7 @@
 // hier2density.cpp — molecular hierarchy (.hier) to the sparse density grid near its surface (.vdb).
 #include "tools/options/hier2density.hpp"
 #include "cli/progress.hpp"
+#include "cli/text.hpp"
 #include "cuda/density/density.hpp"
 #include "density/density.hpp"
 #include "distance/distance.hpp"
@@ -11,6 +12,7 @@
 #include "par/par.hpp"
 #include "tools/device_report.hpp"
 #include <optional>
+#include <sstream>
 
 using namespace molmesh;
 
@@ -121,6 +123,12 @@ Status run(const Options& o, cli::Run& r) {
   r.phase("write");
   formats::write_vdb(out.stream(), band.frame, band.info, band.inside, leaves, {o.surface, body ? body->probe : 0});
   r.complete(out);
+  const Vec3i n = band.frame.points;
+  std::ostringstream spacing;
+  spacing << band.frame.spacing;
+  r.made = cli::counted(band.info.atoms, "atom", "atoms") + " on " + cli::grouped(n.x) + " × " + cli::grouped(n.y) +
+           " × " + cli::grouped(n.z) + " points, " + spacing.str() + " Å apart; " +
+           cli::counted(counts.search.active_points, "value", "values") + " kept near the surface";
   return Status::good;
 }
 

@@ -1,5 +1,6 @@
 // tetconvert.cpp — a mesh in the formats of other programs, and theirs as .vtu.
 #include "tools/options/tetconvert.hpp"
+#include "cli/text.hpp"
 #include "formats/abaqus/abaqus.hpp"
 #include "formats/gmsh/gmsh.hpp"
 #include "formats/mcsf/mcsf.hpp"
@@ -67,8 +68,6 @@ int64_t write_mesh(cli::Run& run, Outputs& outputs, const Options& o, const std:
   } else if (format == "xdmf") {
     const std::string h5 = o.outputs()[1];
     formats::write_xdmf(out, outputs[1].stream(), h5.substr(h5.rfind('/') + 1), m);
-    run.complete(outputs[1]); // first: an .xdmf without it would be of no use
-    outputs.pop_back();
   } else if (format == "vtu")
     formats::write_vtu(out, m);
   else if (format.rfind("gmsh", 0) == 0)
@@ -88,7 +87,7 @@ int64_t write_mesh(cli::Run& run, Outputs& outputs, const Options& o, const std:
     (format == "stl"   ? formats::write_stl
      : format == "ply" ? formats::write_ply
                        : formats::write_off)(out, m, input);
-  for (cli::OutputFile& output : outputs)
+  for (cli::OutputFile& output : outputs) // the last gets its name first: no .xdmf is without its .h5
     run.complete(output);
   return unplaced;
 }
@@ -132,6 +131,8 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.phase("write");
   const int64_t unplaced = write_mesh(run, outputs, o, format, mesh, input.name());
   note_losses(run, format, mesh, unplaced);
+  run.made = format + ": " + cli::counted(std::ssize(mesh.tet), "tetrahedron", "tetrahedra") + ", " +
+             cli::counted(std::ssize(mesh.tri), "triangle", "triangles");
   return Status::good;
 }
 

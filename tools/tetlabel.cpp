@@ -1,5 +1,6 @@
 // tetlabel.cpp — a mesh (.vtu) and its structure (.hier) to the mesh with the structure's labels.
 #include "tools/options/tetlabel.hpp"
+#include "cli/text.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/pdb/hier_selection.hpp"
 #include "formats/vtu/names.hpp"
@@ -68,8 +69,9 @@ Status run_tool(const Options& o, cli::Run& run) {
   const std::vector<label::NamedBoundary> boundary = select(o, h);
   formats::MeshNotes notes;
   TetMesh mesh = read_mesh(run, input, o.mesh, formats::CellArrays::keep, notes);
-  if (other_structure(h.source, mesh.source)) // as of a PQR file's mesh and the PDB file that has its chains
-    run.note("the structure is of " + h.source + ", the mesh of " + mesh.source);
+  if (!o.other_structure && other_structure(h.source, mesh.source))
+    fail_input(structure.name() + ": the structure is of " + h.source + ", expected the mesh's " + mesh.source +
+               ", or --other-structure");
 
   run.phase("label");
   const label::Places places = label::places_of(mesh, o.resolved_threads());
@@ -99,6 +101,7 @@ Status run_tool(const Options& o, cli::Run& run) {
                  "'s surface belongs to it, expected at least one");
     run.counts["boundary " + boundary[b].name] = patches.count[b];
     names[patches.first + static_cast<int32_t>(b)] = boundary[b].name;
+    run.made += ", boundary " + boundary[b].name + ": " + cli::grouped(patches.count[b]);
   }
   label::add_labels(mesh, places, std::move(labels));
   formats::add_level_names(mesh, h);
@@ -112,6 +115,9 @@ Status run_tool(const Options& o, cli::Run& run) {
     mesh.creator += own;
   formats::write_vtu(output.stream(), mesh);
   run.complete(output);
+  run.made = "labels of " + cli::counted(places.tets, "tetrahedron", "tetrahedra") + " and " +
+             cli::counted(static_cast<int64_t>(places.cell.size()) - places.tets, "triangle", "triangles") +
+             run.made;
   return Status::good;
 }
 

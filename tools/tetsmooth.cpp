@@ -11,6 +11,7 @@
 #include "molecule/hierarchy.hpp"
 #include "optimize/optimize.hpp"
 #include "tools/device_report.hpp"
+#include "tools/mesh_line.hpp"
 #include "tools/optimization_report.hpp"
 #include <optional>
 #include <utility>
@@ -29,6 +30,7 @@ Status run_tool(const Options& o, cli::Run& run) {
     structure.emplace(o.hier);
   cli::InputFile input(o.input);
   cli::OutputFile output(o.output, cli::OutputFile::Content::binary);
+  run.show_phases();
   std::optional<BlockGrid> grid;
   if (density)
     grid = formats::read_vdb(density->stream(), density->name(), threads);
@@ -41,11 +43,15 @@ Status run_tool(const Options& o, cli::Run& run) {
     require_same_source(mesh, !notes.isovalue_missing, grid->info, density->name());
   const AttributeTransfer arrays(mesh);
   run.counts.add({{"elements_before", mesh.tet.size()}, {"points_before", mesh.point.size()}});
-  optimize::Options options{.iterations = o.iterations, .threads = threads, .measure_later = true};
+  optimize::Options options;
+  options.iterations = o.iterations;
+  options.threads = threads;
+  options.measure_later = true;
   options.min_dihedral = std::max(options.min_dihedral, o.min_dihedral);
   options.max_dihedral = std::min(options.max_dihedral, o.max_dihedral);
   if (mesh.creator.rfind("density2tet", 0) == 0)
     options.sharp = 180; // an isosurface is smooth: folds of its first mesh are no features
+  options.progress = [&](double share) { run.share(share); };
   optimize::Result result;
   try {
     const auto phase = [&](const std::string& p) { run.phase(p); };
@@ -91,6 +97,11 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.complete(output);
   if (run.verbose)
     run.note("dihedral angles " + optimize::text(result.before) + "; now " + optimize::text(result.after));
+  if (!run.quiet)
+    run.made = cli::counted(std::ssize(mesh.tet), "tetrahedron", "tetrahedra") + ", " + mesh_line(mesh, threads) +
+               (grid && o.iterations > 0
+                    ? ", " + cli::counted(result.fidelity.points_off, "point", "points") + " off the isosurface"
+                    : "");
   const AngleLimits limits{o.min_dihedral, o.max_dihedral};
   if (limits.hold(result.after.min) && limits.hold(result.after.max))
     return Status::good;

@@ -3,6 +3,7 @@
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/selection.hpp"
 #include "geom/near_points.hpp"
+#include "molecule/grouping.hpp"
 #include "molecule/words.hpp"
 #include <charconv>
 #include <set>
@@ -91,8 +92,13 @@ std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& text, c
     atom.element = gemmi::Element(h.names[h.atom[a].element]);
     chosen[a] = s.atom(atom);
   }
-  if (std::find(chosen.begin(), chosen.end(), 1) == chosen.end())
-    refuse("one that some atom fits");
+  if (std::find(chosen.begin(), chosen.end(), 1) == chosen.end()) {
+    std::vector<std::string> chains;
+    if (chain < h.level.size())
+      for (const Group& g : h.level[chain].group)
+        chains.push_back(g.name);
+    refuse("one that some atom fits" + chains_there(chains));
+  }
   if (s.around() > 0) {
     NearPoints near(s.around());
     for (size_t a = 0; a < h.atom.size(); ++a)

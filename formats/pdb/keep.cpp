@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "formats/pdb/model_names.hpp"
 #include "formats/pdb/selection.hpp"
+#include "molecule/grouping.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -214,7 +215,11 @@ void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, Pd
   if (!options.hetatm)
     report.hetatms =
         drop_atoms(st, [](Model, Chain, Residue r) { return [het = r.het_flag == 'H'](Atom) { return het; }; });
+  std::vector<std::string> chains;
   if (options.select != "*") {
+    for (const gemmi::Model& model : st.models)
+      for (const gemmi::Chain& chain : model.chains)
+        chains.push_back(chain.name);
     const Selection selection(options.select, "--select", false, Status::usage);
     report.unselected = drop_atoms(st, [&](Model m, Chain c, Residue r) {
       const bool inside = selection.model(m) && selection.chain(c.name, c.name) && selection.residue(r);
@@ -242,7 +247,7 @@ void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, Pd
   add(report.unselected, "outside --select");
   add(report.no_radius, "of radius 0");
   fail_input(file + ": found no atom that is kept" + dropped + (dropped.empty() ? "" : ")") +
-             ", expected at least one");
+             ", expected at least one" + (report.unselected > 0 ? chains_there(chains) : ""));
 }
 
 } // namespace molmesh::formats

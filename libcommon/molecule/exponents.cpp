@@ -71,7 +71,8 @@ void set_exponents(Grouping& g, const Exponents& defaults, const std::vector<Rul
         g.domain_exponent[g.residue[r].domain] = *rule.domain;
     }
     if (!any)
-      fail_input(rule.where + ": found no atom in selection '" + rule.selection + "', expected some");
+      fail_input(rule.where + ": found no atom in selection '" + rule.selection + "', expected some" +
+                 chains_there(g.chain));
     const bool has_effect = (rule.residue && has_level(levels, "residue")) ||
                             (rule.chain && has_level(levels, "chain")) ||
                             (rule.domain && has_level(levels, "domain"));

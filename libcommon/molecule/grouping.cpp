@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 
 namespace molmesh {
 namespace {
@@ -92,7 +93,7 @@ void set_domains(Grouping& g, const std::vector<DomainPart>& parts, const Struct
     }
     if (!any)
       fail_input(part.where + ": found no atom in '" + part.selection + "', expected some in domain '" + part.name +
-                 "'");
+                 "'" + chains_there(g.chain));
   }
   const auto left = std::find_if(g.residue.begin(), g.residue.end(),
                                  [](const Grouping::Residue& residue) { return residue.domain == none; });
@@ -140,6 +141,23 @@ std::vector<int32_t> hierarchy_order(const Grouping& g, const Levels& levels) {
     return x.domain < y.domain;
   });
   return order;
+}
+
+std::string chains_there(const std::vector<std::string>& names) {
+  constexpr size_t most = 20;
+  std::vector<std::string> distinct;
+  std::set<std::string> seen;
+  for (const std::string& name : names)
+    if (seen.insert(name).second)
+      distinct.push_back(name);
+  if (distinct.empty())
+    return "";
+  std::string text = "; chains here: ";
+  for (size_t i = 0; i < std::min(most, distinct.size()); ++i)
+    text += (i > 0 ? ", " : "") + distinct[i];
+  if (distinct.size() > most)
+    text += " and " + std::to_string(distinct.size() - most) + " more";
+  return text + " (for example '//" + distinct[0] + "', '//" + distinct[0] + "/45-60')";
 }
 
 } // namespace molmesh

@@ -131,6 +131,7 @@ public:
 
   void run_rounds(const FlowPass& flow) {
     double cell_of_all = 0;
+    tell_progress();
     for (size_t k = 0; k < size_t(options_.iterations) && schedule_.worst() < goal_; ++k) {
       const Round& round = rounds[std::min(k, rounds.size() - 1)];
       Pass pass = pass_of(round);
@@ -153,6 +154,7 @@ public:
         count(schedule_.fit_surface(pass));
       }
       ++result_.rounds;
+      tell_progress();
       if (isosurface_)
         project_after(k, goal);
       if (done == 0 && k + 1 >= rounds.size())
@@ -191,6 +193,15 @@ public:
   bool is_worse() { return schedule_.worst() < at_first_; }
 
 private:
+  // Recovery and the last elements come after the rounds: a tenth is left for them.
+  void tell_progress() {
+    if (!options_.progress)
+      return;
+    const int64_t left = schedule_.below(goal_);
+    at_begin_ = std::max({at_begin_, left, int64_t{1}});
+    options_.progress(0.9 * (1 - double(left) / double(at_begin_)));
+  }
+
   int64_t count(const Counts& c) {
     result_.counts += c;
     return c.total();
@@ -237,6 +248,7 @@ private:
   Schedule schedule_;
   const float goal_, usual_, at_first_, no_worse_;
   const bool repairs_, small_, many_;
+  int64_t at_begin_ = 0; ///< elements below the goal
 };
 
 } // namespace

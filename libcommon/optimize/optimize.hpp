@@ -18,6 +18,8 @@ struct Options {
   int iterations = 15;                            ///< rounds at most; 0 leaves the mesh as it is
   double sharp = 50; ///< degrees; without a density, edges of the surface that bend by more are kept
   int threads = 1;
+  /// Told now and then how much of the improvement is done (0 to 1), by the elements that are still below the goal.
+  std::function<void(double)> progress;
   /// The caller runs Result::measure(), beside what is serial. It still needs the density.
   bool measure_later = false;
 };

@@ -17,7 +17,8 @@ inline void describe(cli::Table& t, Options& o) {
       .one_of({"interior", "exterior", "both"});
   t.add("--box", o.box,
         "outer box: auto (interior: the grid; else at least twice the surface's extents), tight (the grid), a "
-        "factor of the surface's extents (> 1), or x0,y0,z0,x1,y1,z1 in Å, which may cut the molecule")
+        "factor of the surface's extents (2x; up to 10 without the x), a distance round the surface in Å (+30), or "
+        "x0,y0,z0,x1,y1,z1 in Å, which may cut the molecule")
       .unit("BOX");
   t.add("--adapt", o.adapt,
         "auto or 0 to 100: how far the surface may lie from a coarser cell's mean plane, in grid spacings, and "
@@ -39,7 +40,7 @@ inline void describe(cli::Table& t, Options& o) {
       "larger where the surface is flat. Regions of tetrahedra are 1 the molecule, 2 outside and 3 closed "
       "cavities; boundaries of triangles are 1 the molecular surface and 2 to 7 the walls of the box.";
   t.page.examples = {{"density2tet 1tii.vdb -o 1tii.tet.vtu", "the molecule alone"},
-                     {"density2tet --region both --box 3 1tii.vdb -o 1tii.tet.vtu",
+                     {"density2tet --region both --box 3x 1tii.vdb -o 1tii.tet.vtu",
                       "the molecule and its surroundings, in a box three times its extents"},
                      {"density2tet --region exterior --cavities fill --drop-below 50 1tii.vdb -o 1tii.tet.vtu",
                       "the surroundings alone, without closed cavities and bodies of less than 50 Å³"}};

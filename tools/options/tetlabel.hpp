@@ -10,6 +10,7 @@ struct Options : cli::Common {
   std::string decay = "auto";
   std::vector<std::string> boundary;
   MeshInput mesh;
+  bool other_structure = false;
 };
 
 inline void describe(cli::Table& t, Options& o) {
@@ -23,6 +24,9 @@ inline void describe(cli::Table& t, Options& o) {
         "syntax, or around SELECTION Å) are a boundary of their own in the array `patch`; later ones win, a name "
         "given again adds to it")
       .unit("BOUNDARY");
+  t.add("--other-structure", o.other_structure,
+        "take a structure whose checksum is not the one that the mesh was made from, as the PDB file of a PQR "
+        "file's mesh");
   describe_mesh_input(t, o.mesh);
   t.page.about =
       "Gives every triangle of the molecular surface and every tetrahedron of the molecule its domain, chain, "

@@ -94,19 +94,21 @@ Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls, i
   const Vec3i grid_last = frame.lower + frame.points - Vec3i{1, 1, 1};
   const bool to_grid = request.kind == BoxRequest::tight || (request.kind == BoxRequest::automatic && !walls);
   cut_allowed_ = request.kind == BoxRequest::corners;
-  const bool by_factor = request.kind == BoxRequest::factor; // of the surface: may end within the grid
+  // Of the surface: may end within the grid.
+  const bool by_extents = request.kind == BoxRequest::factor || request.kind == BoxRequest::padding;
 
   Vec3d lower = frame.position(frame.lower), upper = frame.position(grid_last);
   if (request.kind == BoxRequest::corners) {
     lower = request.lower;
     upper = request.upper;
   } else if (!to_grid) {
-    const double scale = by_factor ? request.scale : 2;
+    const double scale = request.kind == BoxRequest::factor ? request.scale : by_extents ? 1 : 2;
+    const Vec3d pad = Vec3d{1, 1, 1} * request.distance;
     const Vec3d centre = 0.5 * (frame.position(surface.lower) + frame.position(surface.upper));
-    const Vec3d half = 0.5 * scale * (frame.position(surface.upper) - frame.position(surface.lower));
+    const Vec3d half = 0.5 * scale * (frame.position(surface.upper) - frame.position(surface.lower)) + pad;
     for (int a = 0; a < 3; ++a) {
-      lower[a] = by_factor ? centre[a] - half[a] : std::min(lower[a], centre[a] - half[a]);
-      upper[a] = by_factor ? centre[a] + half[a] : std::max(upper[a], centre[a] + half[a]);
+      lower[a] = by_extents ? centre[a] - half[a] : std::min(lower[a], centre[a] - half[a]);
+      upper[a] = by_extents ? centre[a] + half[a] : std::max(upper[a], centre[a] + half[a]);
     }
   }
   for (int a = 0; a < 3; ++a)

@@ -1,0 +1,77 @@
+// phase_line.cpp — writes the line again and again, as wide as the terminal lets it be.
+#include "cli/phase_line.hpp"
+#include <algorithm>
+#include <cstdio>
+#include <sys/ioctl.h>
+#include <unistd.h>
+#include <utility>
+
+namespace molmesh::cli {
+
+std::string phase_text(const std::string& tool, const std::string& phase, double share, double seconds,
+                       double phase_seconds) {
+  constexpr int wide = 12;
+  char text[160];
+  if (share < 0) {
+    std::snprintf(text, sizeof text, ", %.0f s", seconds);
+    return tool + ": " + phase + text;
+  }
+  std::string bar(wide, '.');
+  std::fill_n(bar.begin(), std::clamp(static_cast<int>(share * wide), 0, wide), '#');
+  std::snprintf(text, sizeof text, " [%s] %3.0f %%, %.0f s", bar.c_str(), 100 * share, seconds);
+  std::string line = tool + ": " + phase + text;
+  if (share > 0.02) {
+    std::snprintf(text, sizeof text, ", about %.0f s left", phase_seconds * (1 - share) / share);
+    line += text;
+  }
+  return line;
+}
+
+PhaseLine::PhaseLine(const std::string& tool, bool quiet) : tool_(tool) {
+  if (quiet || !isatty(STDERR_FILENO))
+    return;
+  writer_ = std::thread([this] {
+    std::unique_lock lock(guard_);
+    while (!ending_.wait_for(lock, std::chrono::milliseconds(200), [this] { return over_; }))
+      write();
+  });
+}
+
+PhaseLine::~PhaseLine() {
+  if (!writer_.joinable())
+    return;
+  {
+    const std::lock_guard lock(guard_);
+    over_ = true;
+  }
+  ending_.notify_one();
+  writer_.join();
+  clear();
+}
+
+void PhaseLine::clear() {
+  const std::lock_guard lock(guard_);
+  if (std::exchange(shown_, false))
+    std::fputs("\r\033[K", stderr);
+}
+
+void PhaseLine::phase(const std::string& name) {
+  const std::lock_guard lock(guard_);
+  phase_ = name;
+  phase_begun_ = Clock::now();
+  share_ = -1;
+}
+
+void PhaseLine::write() {
+  const auto since = [](Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+  };
+  const std::string line = phase_text(tool_, phase_, share_, since(begun_), since(phase_begun_));
+  winsize terminal{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &terminal) == 0 && terminal.ws_col > 1;
+  const int most = known ? terminal.ws_col - 1 : static_cast<int>(line.size());
+  std::fprintf(stderr, "\r%.*s\033[K", most, line.c_str());
+  shown_ = true;
+}
+
+} // namespace molmesh::cli

@@ -1,0 +1,46 @@
+// phase_line.hpp — one line on a terminal that tells what a long run does: phase, share, time.
+#pragma once
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace molmesh::cli {
+
+/// Nothing where standard error is no terminal, or with quiet. Written five times a second by a thread of its own,
+/// so that a phase that takes minutes is seen to run.
+class PhaseLine {
+public:
+  PhaseLine(const std::string& tool, bool quiet);
+  ~PhaseLine(); ///< the line goes
+  PhaseLine(const PhaseLine&) = delete;
+  PhaseLine& operator=(const PhaseLine&) = delete;
+
+  void phase(const std::string& name);
+  /// Of the phase's work, 0 to 1; negative: not known. From any thread.
+  void share(double done) { share_ = done; }
+  /// Takes the line away until it is next written: before other lines on standard error.
+  void clear();
+
+private:
+  void write();
+
+  using Clock = std::chrono::steady_clock;
+  const std::string tool_;
+  const Clock::time_point begun_ = Clock::now();
+  Clock::time_point phase_begun_ = begun_;
+  std::string phase_;
+  std::atomic<double> share_ = -1;
+  bool over_ = false, shown_ = false;
+  std::mutex guard_;
+  std::condition_variable ending_;
+  std::thread writer_;
+};
+
+/// "tetsmooth: improve [######......]  52 %, 12 s, about 11 s left"; share < 0: without share and time left.
+std::string phase_text(const std::string& tool, const std::string& phase, double share, double seconds,
+                       double phase_seconds);
+
+} // namespace molmesh::cli
