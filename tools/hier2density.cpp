@@ -4,6 +4,7 @@
 #include "cli/text.hpp"
 #include "cuda/density/density.hpp"
 #include "density/density.hpp"
+#include "density/tail.hpp"
 #include "distance/distance.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/vdb/leaves.hpp"
@@ -121,7 +122,12 @@ Status run(const Options& o, cli::Run& r) {
   band.info.creator = cli::creator(r.tool);
   report(r, band, leaves, counts);
   r.phase("write");
-  formats::write_vdb(out.stream(), band.frame, band.info, band.inside, leaves, {o.surface, body ? body->probe : 0});
+  formats::VdbExtras extras;
+  if (!body) // of a density alone
+    extras.tail = density::tail(h, d.decay, d.isovalue, band.frame);
+  extras.surface = o.surface;
+  extras.probe = body ? body->probe : 0;
+  formats::write_vdb(out.stream(), band.frame, band.info, band.inside, leaves, extras);
   r.complete(out);
   const Vec3i n = band.frame.points;
   std::ostringstream spacing;

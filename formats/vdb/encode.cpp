@@ -156,7 +156,7 @@ void write_leaves(std::ostream& out, const std::vector<Entry>& entry, int thread
 } // namespace
 
 void write_vdb(std::ostream& out, const GridFrame& frame, const FieldInfo& info, const std::vector<Vec3i>& inside,
-               const Leaves& leaves, const SurfaceKind& kind) {
+               const Leaves& leaves, const VdbExtras& extras) {
   std::vector<Entry> entry;
   entry.reserve(leaves.size() + inside.size());
   for (const Leaves::Run& run : leaves.runs())
@@ -167,17 +167,17 @@ void write_vdb(std::ostream& out, const GridFrame& frame, const FieldInfo& info,
   set_keys(entry, frame);
   par::sort(entry, leaves.threads(), depth_first);
   Bytes head;
-  write_preamble(head, frame, info, kind);
+  write_preamble(head, frame, info, extras);
   write_topology(head, static_cast<float>(info.inside_value), entry, out);
   head.flush(out);
   std::erase_if(entry, [](const Entry& e) { return !e.leaf; });
   write_leaves(out, entry, leaves.threads());
 }
 
-void write_vdb(std::ostream& out, const BlockGrid& grid, int threads) {
+void write_vdb(std::ostream& out, const BlockGrid& grid, int threads, const VdbExtras& extras) {
   Leaves leaves(threads);
   leaves.add(grid);
-  write_vdb(out, grid.frame, grid.info, grid.inside, leaves);
+  write_vdb(out, grid.frame, grid.info, grid.inside, leaves, extras);
 }
 
 } // namespace molmesh::formats

@@ -42,7 +42,7 @@ std::string fresh_uuid() {
 
 } // namespace
 
-void write_preamble(Bytes& out, const GridFrame& f, const FieldInfo& info, const SurfaceKind& kind) {
+void write_preamble(Bytes& out, const GridFrame& f, const FieldInfo& info, const VdbExtras& extras) {
   out.number(int64_t{0x56444220});
   out.number(uint32_t{224}); // file version
   out.number(uint32_t{10});  // library version
@@ -76,10 +76,18 @@ void write_preamble(Bytes& out, const GridFrame& f, const FieldInfo& info, const
   m.add("levels", info.levels);
   m.add("source", info.source);
   m.add("creator", info.creator);
-  if (kind.surface != "gaussian") {
-    m.add("surface", kind.surface);
-    if (kind.surface != "vdw")
-      m.add("probe", "double", kind.probe);
+  if (extras.tail.known()) {
+    m.add("tail_log", "double", extras.tail.log);
+    m.add("tail_decay", "double", extras.tail.decay);
+    m.add("tail_radius", "double", extras.tail.radius);
+    m.add("tail_depth", "double", extras.tail.depth);
+  }
+  if (extras.resampling_error > 0)
+    m.add("resampling_error", "double", extras.resampling_error);
+  if (extras.surface != "gaussian") {
+    m.add("surface", extras.surface);
+    if (extras.surface != "vdw")
+      m.add("probe", "double", extras.probe);
   }
   m.write(out);
 

@@ -31,6 +31,7 @@ public:
   Reader(const vdb::FloatGrid& in, const std::string& file, int threads)
       : in_(in), file_(file), threads_(threads) {}
   BlockGrid read();
+  VdbExtras extras;
 
 private:
   [[noreturn]] void refuse(const std::string& what) const { fail_input(file_ + ": " + what); }
@@ -41,6 +42,8 @@ private:
   double number(const char* name) const;
   int64_t count(const char* name) const;
   void read_info();
+  void read_extras();
+  double optional(const char* name) const { return in_.metadata.contains(name) ? number(name) : 0; }
   void read_frame();
   void read_leaves();
   void read_tiles();
@@ -111,6 +114,17 @@ void Reader::read_info() {
   i.levels = text("levels");
   i.source = text("source");
   i.creator = text("creator");
+}
+
+void Reader::read_extras() {
+  extras.tail = {optional("tail_log"), optional("tail_decay"), optional("tail_radius"), optional("tail_depth")};
+  extras.resampling_error = optional("resampling_error");
+  extras.probe = optional("probe");
+  if (in_.metadata.contains("surface"))
+    extras.surface = text("surface");
+  if (!(extras.tail.decay >= 0 && extras.tail.radius >= 0 && extras.tail.depth >= 0 &&
+        extras.resampling_error >= 0))
+    refuse("R7: tail_decay, tail_radius, tail_depth and resampling_error must not be negative");
 }
 
 void Reader::read_frame() {
@@ -204,6 +218,7 @@ void Reader::read_tiles() {
 
 BlockGrid Reader::read() {
   read_info();
+  read_extras();
   read_frame();
   read_tiles();
   read_leaves();
@@ -215,10 +230,14 @@ BlockGrid Reader::read() {
 
 } // namespace
 
-BlockGrid read_vdb(std::istream& in, const std::string& file, int threads) {
+BlockGrid read_vdb(std::istream& in, const std::string& file, int threads, VdbExtras* extras) {
   const std::string bytes = read_all(in, file);
   const vdb::FloatGrid decoded = vdb::decode(bytes, "density", file);
-  return Reader(decoded, file, threads).read();
+  Reader reader(decoded, file, threads);
+  BlockGrid grid = reader.read();
+  if (extras)
+    *extras = reader.extras;
+  return grid;
 }
 
 } // namespace molmesh::formats

@@ -1,0 +1,15 @@
+// extras.hpp — what a .vdb file may say besides FieldInfo (VDBv1.md, optional metadata).
+#pragma once
+#include "grid/tail.hpp"
+#include <string>
+
+namespace molmesh::formats {
+
+struct VdbExtras {
+  Tail tail;                        ///< of the field beyond the band
+  double resampling_error = 0;      ///< measured, |ΔG| / max(1, G); 0: no piece of it was resampled
+  std::string surface = "gaussian"; ///< that of a sum of Gaussians, else another one's name
+  double probe = 0;                 ///< Å, of surfaces that have a probe
+};
+
+} // namespace molmesh::formats
