@@ -123,9 +123,9 @@ bool Interpolant::fit(Vec3d u, Value& value) const {
     }
   if (!near)
     return false;
-  // Where two layers of points are all there is nothing tells how the field bends across them: it is then taken to
-  // be straight.
-  const double ridge = 1e-5 * q.a[0][0];
+  // Where two layers of points are nearly all there is, little tells how the field bends across them: it is then
+  // taken to be nearly straight.
+  constexpr double ridge = 0.02;
   Equations linear = q;
   for (int i = 4; i < terms; ++i)
     q.a[i][i] += ridge;
@@ -137,6 +137,18 @@ bool Interpolant::fit(Vec3d u, Value& value) const {
   if (!solved)
     return false;
   value = {solved->b[0], {solved->b[1], solved->b[2], solved->b[3]}};
+  double least = 1e300, most = -1e300; // of the cell's corners: no farther than these
+  bool all = true;
+  for (int k = 0; k < 8; ++k) {
+    const Vec3i p = c + Vec3i{k >> 2, k >> 1 & 1, k & 1};
+    const int64_t b = index_.find(p);
+    const double f = b >= 0 ? log_[512 * b + slot(p)] : std::numeric_limits<double>::quiet_NaN();
+    all = all && f == f;
+    least = std::min(least, f);
+    most = std::max(most, f);
+  }
+  if (all)
+    value.f = std::clamp(value.f, least, most);
   return std::isfinite(value.f);
 }
 
