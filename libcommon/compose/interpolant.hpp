@@ -5,8 +5,8 @@
 namespace molmesh::compose {
 
 /// ln(G / isovalue) near the band of a grid: the value of a quadratic polynomial that fits the known values round
-/// the point, near ones and those next to the surface most. It is exact for a single atom, whose logarithm is
-/// quadratic.
+/// the point, near ones and those next to the surface most. It nearly meets a single atom, whose
+/// logarithm is quadratic.
 class Interpolant {
 public:
   Interpolant(const BlockGrid& grid, int threads);
