@@ -50,7 +50,7 @@ inline void describe(cli::Table& t, Options& o) {
       {"densityjoin lattice.join -o lattice.vdb", "by a plan"},
       {"densityjoin --combine max --piece map.vdb --piece model.vdb -o both.vdb", "a map and the model in it"},
       {"densityjoin --piece all.vdb --piece 'pore.vdb combine=subtract' -o open.vdb", "one body without another"}};
-  t.page.files = {{"INPUT", "plan of pieces, read: formats/plan/PLAN.md"},
+  t.page.files = {{".join", "plan of pieces, read: formats/plan/PLAN.md"},
                   {".vdb", "density grids (OpenVDB), read and written: formats/vdb/VDBv1.md"}};
   t.page.see_also = {"hier2density", "density2tet"};
 }

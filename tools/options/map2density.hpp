@@ -45,10 +45,10 @@ inline void describe(cli::Table& t, Options& o) {
       {"map2density --level 0.025 --like model.vdb emd_2660.map -o emd.vdb",
        "on the lattice of the fitted model's density"},
       {"densityjoin --combine max --piece emd.vdb --piece model.vdb -o both.vdb", "with the model in the map"}};
-  t.page.files = {{".map, .mrc, .ccp4, .dx, with or without .gz", "maps, read: formats/map/MAP.md"},
-                  {".vdb",
-                   "OpenVDB grids of other programs, read: formats/openvdb/OPENVDB.md; density grid, written: "
-                   "formats/vdb/VDBv1.md"}};
+  t.page.files = {
+      {".map, .mrc, .ccp4, .dx (with or without .gz), .vdb",
+       "maps and OpenVDB grids of other programs, read: formats/map/MAP.md, formats/openvdb/OPENVDB.md"},
+      {".vdb", "density grid, written: formats/vdb/VDBv1.md"}};
   t.page.see_also = {"densityjoin", "density2tet", "density2map"};
 }
 
