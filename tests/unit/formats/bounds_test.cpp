@@ -3,7 +3,9 @@
 #include "formats/hier/hier.hpp"
 #include "formats/mesh/read_mesh.hpp"
 #include "formats/pdb/pdb.hpp"
+#include "formats/tetstat/tetstat.hpp"
 #include "formats/vdb/vdb.hpp"
+#include "mesh/adjacency.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -322,6 +324,36 @@ TEST_CASE("readers: four times the file is at most eight times the time", "[slow
     INFO(c.name << ": " << one << " s, " << four << " s");
     CHECK(four < 8 * one + 0.02); // quadratic: 16
   }
+}
+
+TEST_CASE("tetstat: four times the regions take at most eight times the time", "[slow]") {
+  const auto report = [](int n) {
+    TetMesh m; // tetrahedra apart, each a region
+    for (int32_t i = 0; i < n; ++i) {
+      const double y = 2 * (i % 100), z = 2 * (i / 100); // no two behind each other along x
+      for (const Vec3d& p : {Vec3d{0, y, z}, Vec3d{1, y, z}, Vec3d{0, y + 1, z}, Vec3d{0, y, z + 1}})
+        m.point.push_back(p);
+      m.tet.push_back({4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3});
+      m.region.push_back(i + 1);
+    }
+    rebuild_triangles(m);
+    return formats::report_mesh(m, "x", {}, check_validity(m, 1), {}, 1);
+  };
+  const auto time = [&](int n) {
+    double best = 1e9;
+    for (int i = 0; i < 3; ++i) {
+      const std::clock_t start = std::clock();
+      const formats::MeshReport r = report(n);
+      CHECK(r.validity.region.size() == static_cast<size_t>(n));
+      CHECK(formats::compare_text(r, r).size() > static_cast<size_t>(100 * n));
+      CHECK(formats::tetstat_json(r).size() > static_cast<size_t>(1000 * n));
+      best = std::min(best, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+    }
+    return best;
+  };
+  const double one = time(2500), four = time(10000);
+  INFO(one << " s, " << four << " s");
+  CHECK(four < 8 * one);
 }
 
 TEST_CASE("a .vdb of voxels or places that no structure has is refused with the rule") {
