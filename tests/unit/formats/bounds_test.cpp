@@ -86,8 +86,14 @@ void read_hier(std::istream& in) {
 void read_vdb(std::istream& in) {
   formats::read_vdb(in, "x", 1);
 }
+/// And places the atoms.
 void read_structure(std::istream& in) {
-  formats::PdbHierarchy(in, "x", {});
+  std::ostringstream out;
+  formats::PdbHierarchy(in, "x.pdb", {}).write(out);
+}
+void read_xyzr(std::istream& in) {
+  std::ostringstream out;
+  formats::PdbHierarchy(in, "x.xyzr", {}).write(out);
 }
 
 std::string repeated(const std::string& text, size_t n) {
@@ -299,6 +305,18 @@ const std::vector<Contrived> table = {
      [](size_t n) { return "hier 1\nlevels a\n" + repeated("a X 1\natom A C 0 0 0 1\n", n); }, 100000},
     {".hier: one long line", read_hier, [](size_t n) { return "hier 1\nsource " + std::string(n, 'x') + "\n"; },
      4000000},
+    {".hier: atoms in one place", read_hier,
+     [](size_t n) { return "hier 1\nlevels\n" + repeated("atom A C 0 0 0 1\n", n); }, 200000},
+    {".xyzr: atoms in one place", read_xyzr, [](size_t n) { return repeated("0 0 0 1\n", n); }, 200000},
+    {".pdb: atoms in one place", read_structure,
+     [](size_t n) {
+       return lines(n, [](size_t i) {
+         const std::string residue = number(i / 10 % 9999 + 1);
+         return "ATOM      1  C   ALA A" + std::string(4 - residue.size(), ' ') + residue +
+                "       0.000   0.000   0.000\n";
+       });
+     },
+     40000},
     {"gzip of zeros", read_structure, [](size_t n) { return gzip(std::string(n, '\0')); }, 200000000},
 };
 
