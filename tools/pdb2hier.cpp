@@ -85,7 +85,9 @@ Status run(Options& o, cli::Run& run) {
                            {"hydrogens", r.hydrogens},       {"hetatm", r.hetatms},  {"unselected", r.unselected},
                            {"radius_0", r.no_radius}};
   run.counts["dropped"]["outside_assembly"] = r.unassembled;
-  run.counts["dropped_charge"] = r.no_radius_charge;
+  run.counts["charge"] = r.charge;
+  run.counts["charges_alone"] = r.charges_alone;
+  run.counts["dropped_charge"] = r.dropped_charge.all();
   run.counts["passed_over"] = r.passed_over;
   run.counts["guessed_elements"] = r.guessed_elements;
   run.counts["unknown_elements"] = cli::Value();

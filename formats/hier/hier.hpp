@@ -1,4 +1,4 @@
-// hier.hpp — reader and writer of .hier, version 1 (HIERv1.md).
+// hier.hpp — reader and writer of .hier, versions 1 and 2 (HIERv1.md, HIERv2.md).
 #pragma once
 #include "molecule/hierarchy.hpp"
 #include <iosfwd>
@@ -8,17 +8,21 @@
 
 namespace molmesh::formats {
 
-/// Throws Error(bad_input) "FILE:LINE: Rn: found, expected", Rn a rule of HIERv1.md; `file` names the stream.
+/// Throws Error(bad_input) "FILE:LINE: Rn: found, expected", Rn a rule of the version's page; `file` names
+/// the stream.
 Hierarchy read_hier(std::istream& in, const std::string& file);
-/// Numbers and names read back exactly. Same hierarchy, same bytes. Throws what check() throws.
+/// In the lowest version that holds the hierarchy. Numbers and names read back exactly. Same hierarchy, same bytes.
+/// Throws what check() throws.
 void write_hier(std::ostream& out, const Hierarchy& h);
 
 /// Writes record by record, for hierarchies too large to hold. The caller opens groups outermost first, puts an
 /// atom in each, and looks at the stream's state after finish().
 class HierWriter {
 public:
-  /// levels: words of letters, digits, '_' and '-', outermost first.
-  HierWriter(std::ostream& out, std::string_view source, const std::vector<std::string>& levels);
+  enum class Version { v1, v2 };
+  /// levels: words of letters, digits, '_' and '-', outermost first. Atoms of radius 0 need version 2.
+  HierWriter(std::ostream& out, std::string_view source, const std::vector<std::string>& levels,
+             Version version = Version::v1);
   /// level: index into `levels`. Closes every open group of this level and below.
   void group(size_t level, std::string_view name, double exponent);
   /// center, radius in Å; charge in elementary charges, NaN: none.

@@ -1,4 +1,4 @@
-// hier_reader.cpp — .hier in blocks of whole lines; every rule of HIERv1.md that a reader must check.
+// hier_reader.cpp — .hier in blocks of whole lines; every rule of HIERv1.md and HIERv2.md that a reader must check.
 #include "base/error.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/hier/text.hpp"
@@ -178,9 +178,9 @@ private:
     return f;
   }
 
-  void expect_end(const char* record_shape) {
+  void expect_end(std::string_view record_shape) {
     if (at_ != stop_)
-      refuse("R6: found " + shown(field()) + " more, expected " + record_shape);
+      refuse("R6: found " + shown(field()) + " more, expected " + std::string(record_shape));
   }
 
   std::string_view name(const char* what) {
@@ -209,6 +209,16 @@ private:
     if (!(std::abs(v) <= largest_coordinate))
       refuse("R8: found " + text_from(begin) + ", expected " + what + " of at most 1e7 Å in magnitude");
     return v;
+  }
+
+  /// Version 2 has charges without a body.
+  double radius() {
+    const char* begin = at_;
+    const double v = number("the radius");
+    if (v == 0)
+      return 0;
+    at_ = begin;
+    return positive("the radius", largest_radius, "10000 Å");
   }
 
   /// most: the largest that is allowed, in words too.
@@ -249,11 +259,12 @@ private:
   void head(std::string_view word) {
     if (stage_ == Stage::start) {
       if (word != "hier")
-        refuse("R2: found " + shown(word) + ", expected 'hier 1'");
-      const std::string_view version = needed("the version, 1");
-      if (version != "1")
-        refuse("R2: found version " + shown(version) + ", expected 1: this reader knows no other");
-      expect_end("'hier 1' alone");
+        refuse("R2: found " + shown(word) + ", expected 'hier 1' or 'hier 2'");
+      const std::string_view version = needed("the version, 1 or 2");
+      if (version != "1" && version != "2")
+        refuse("R2: found version " + shown(version) + ", expected 1 or 2: this reader knows no other");
+      version_ = version[0] - '0';
+      expect_end(version_ == 1 ? "'hier 1' alone" : "'hier 2' alone");
       stage_ = Stage::head;
     } else if (word == "source") {
       if (has_source_)
@@ -315,7 +326,8 @@ private:
     a.center.x = coordinate("x");
     a.center.y = coordinate("y");
     a.center.z = coordinate("z");
-    a.radius = positive("the radius", largest_radius, "10000 Å");
+    a.radius = version_ == 1 ? positive("the radius", largest_radius, "10000 Å") : radius();
+    any_body_ |= a.radius > 0;
     if (at_ != stop_)
       a.charge = number("the charge");
     expect_end("'atom NAME ELEMENT X Y Z RADIUS [CHARGE]'");
@@ -324,12 +336,14 @@ private:
 
   void end() {
     if (stage_ == Stage::start)
-      refuse("R2: the file is empty, expected 'hier 1'");
+      refuse("R2: the file is empty, expected 'hier 1' or 'hier 2'");
     if (stage_ == Stage::head)
       refuse("R4: the file ends, expected 'levels'");
     close(0);
     if (h_.atom.empty())
       refuse("R12: the file ends, expected at least one atom");
+    if (!any_body_)
+      refuse("R12: the file ends, expected at least one atom of a radius > 0");
   }
 
   enum class Stage { start, head, body };
@@ -340,6 +354,8 @@ private:
   NameCache cache_;
   std::string decoded_;
   Stage stage_ = Stage::start;
+  int version_ = 1;
+  bool any_body_ = false;
   bool has_source_ = false;
   size_t open_ = 0; ///< levels [0, open_) have an open group
   int64_t line_ = 0;

@@ -18,13 +18,14 @@ bool is_plain(char c) {
 
 } // namespace
 
-HierWriter::HierWriter(std::ostream& out, std::string_view source, const std::vector<std::string>& levels)
+HierWriter::HierWriter(std::ostream& out, std::string_view source, const std::vector<std::string>& levels,
+                       Version version)
     : out_(out), levels_(levels) {
   for (const std::string& level : levels)
     if (!is_level_name(level))
       fail_input("level '" + level + "', expected a word that .hier does not reserve");
   buffer_.reserve(buffer_size + 4096);
-  buffer_ = "hier 1\n";
+  buffer_ = version == Version::v1 ? "hier 1\n" : "hier 2\n";
   if (!source.empty()) {
     buffer_ += "source ";
     buffer_ += source;
@@ -116,7 +117,9 @@ void write_hier(std::ostream& out, const Hierarchy& h) {
   std::vector<std::string> levels;
   for (const Level& level : h.level)
     levels.push_back(level.name);
-  HierWriter writer(out, h.source, levels);
+  const bool charges_alone =
+      std::any_of(h.atom.begin(), h.atom.end(), [](const Atom& atom) { return atom.radius == 0; });
+  HierWriter writer(out, h.source, levels, charges_alone ? HierWriter::Version::v2 : HierWriter::Version::v1);
   // next[l]: the group of level l that opens at its first child.
   std::vector<size_t> next(h.level.size(), 0);
   const auto open = [&](auto&& self, size_t l, int64_t child) -> void {

@@ -31,18 +31,22 @@ void prune(gemmi::Structure& st) {
   gemmi::vector_remove_if(st.models, [](const gemmi::Model& m) { return m.chains.empty(); });
 }
 
-/// Removes the atoms for which drop(model, chain, residue)(atom) holds; returns how many.
+/// Removes the atoms for which drop(model, chain, residue)(atom) holds; returns how many, adds their charges.
 template <class Drop>
-int64_t drop_atoms(gemmi::Structure& st, Drop drop) {
+int64_t drop_atoms(Parsed& parsed, double& charge, Drop drop) {
   int64_t dropped = 0;
-  for (gemmi::Model& model : st.models)
+  for (gemmi::Model& model : parsed.structure.models)
     for (gemmi::Chain& chain : model.chains)
-      for (gemmi::Residue& residue : chain.residues) {
-        const auto before = static_cast<int64_t>(residue.atoms.size());
-        gemmi::vector_remove_if(residue.atoms, drop(model, chain, residue));
-        dropped += before - static_cast<int64_t>(residue.atoms.size());
-      }
-  prune(st);
+      for (gemmi::Residue& residue : chain.residues)
+        gemmi::vector_remove_if(residue.atoms, [&, drops = drop(model, chain, residue)](const gemmi::Atom& a) {
+          if (!drops(a))
+            return false;
+          ++dropped;
+          if (!parsed.pqr.empty() && !std::isnan(parsed.pqr[a.serial].charge))
+            charge += parsed.pqr[a.serial].charge;
+          return true;
+        });
+  prune(parsed.structure);
   return dropped;
 }
 
@@ -203,37 +207,42 @@ void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, Pd
     report.notes.push_back("--altloc " + options.altloc + ": no atom has this letter, as occupancy");
   if (options.altloc != "all")
     report.altlocs = keep_conformers(st, options.altloc);
+  PdbReport::Charges& charge = report.dropped_charge;
   using Model = const gemmi::Model&;
   using Chain = const gemmi::Chain&;
   using Residue = const gemmi::Residue&;
   using Atom = const gemmi::Atom&;
   if (!options.waters)
-    report.waters =
-        drop_atoms(st, [](Model, Chain, Residue r) { return [water = is_water(r)](Atom) { return water; }; });
+    report.waters = drop_atoms(parsed, charge.waters, [](Model, Chain, Residue r) {
+      return [water = is_water(r)](Atom) { return water; };
+    });
   if (!options.hydrogens)
-    report.hydrogens = drop_atoms(st, [](Model, Chain, Residue) { return [](Atom a) { return a.is_hydrogen(); }; });
+    report.hydrogens = drop_atoms(parsed, charge.hydrogens,
+                                  [](Model, Chain, Residue) { return [](Atom a) { return a.is_hydrogen(); }; });
   if (!options.hetatm)
-    report.hetatms =
-        drop_atoms(st, [](Model, Chain, Residue r) { return [het = r.het_flag == 'H'](Atom) { return het; }; });
+    report.hetatms = drop_atoms(parsed, charge.hetatms, [](Model, Chain, Residue r) {
+      return [het = r.het_flag == 'H'](Atom) { return het; };
+    });
   std::vector<std::string> chains;
   if (options.select != "*") {
     for (const gemmi::Model& model : st.models)
       for (const gemmi::Chain& chain : model.chains)
         chains.push_back(chain.name);
     const Selection selection(options.select, "--select", false, Status::usage);
-    report.unselected = drop_atoms(st, [&](Model m, Chain c, Residue r) {
+    report.unselected = drop_atoms(parsed, charge.unselected, [&](Model m, Chain c, Residue r) {
       const bool inside = selection.model(m) && selection.chain(c.name, c.name) && selection.residue(r);
       return [&selection, inside](Atom a) { return !(inside && selection.atom(a)); };
     });
   }
-  if (!parsed.pqr.empty() && options.own_radii)
-    report.no_radius = drop_atoms(st, [&](Model, Chain, Residue) {
+  if (!parsed.pqr.empty() && options.own_radii) {
+    double none = 0;
+    report.no_radius = drop_atoms(parsed, none, [&](Model, Chain, Residue) {
       return [&](Atom a) {
         const Parsed::Values& own = parsed.pqr[a.serial];
-        report.no_radius_charge += own.radius == 0 && !std::isnan(own.charge) ? own.charge : 0;
-        return own.radius == 0;
+        return own.radius == 0 && !(own.charge != 0 && std::isfinite(own.charge));
       };
     });
+  }
   if (!st.models.empty())
     return;
   std::string dropped;
@@ -245,7 +254,7 @@ void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, Pd
   add(report.hydrogens, "hydrogens");
   add(report.hetatms, "hetero atoms");
   add(report.unselected, "outside --select");
-  add(report.no_radius, "of radius 0");
+  add(report.no_radius, "of radius 0 without a charge");
   fail_input(file + ": found no atom that is kept" + dropped + (dropped.empty() ? "" : ")") +
              ", expected at least one" + (report.unselected > 0 ? chains_there(chains) : ""));
 }

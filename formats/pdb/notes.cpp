@@ -18,6 +18,23 @@ std::string shortest(double v) {
   return s;
 }
 
+/// Å, e: to 1e-6, and no sign of zero.
+std::string rounded(double v) {
+  const std::string s = shortest(v);
+  return s == "-0" ? "0" : s;
+}
+
+/// The sum that a solver will see. Molecules have whole charges: anything else says that atoms are missing, or that
+/// the file has few decimals.
+std::string charge_note(const PdbReport& report) {
+  std::string note = ", total charge " + rounded(report.charge) + " e";
+  if (std::abs(report.charge - std::round(report.charge)) > 0.01)
+    note += ", no whole number";
+  if (report.charges_alone > 0)
+    note += "; " + std::to_string(report.charges_alone) + " of radius 0 are charges without a body";
+  return note;
+}
+
 } // namespace
 
 void add_notes(PdbReport& report, const Parsed& parsed, const PdbOptions& options) {
@@ -34,21 +51,27 @@ void add_notes(PdbReport& report, const Parsed& parsed, const PdbOptions& option
   if (radii || (charges && options.own_radii))
     kept += std::string(", ") + (radii ? "radii" : "") + (radii && charges ? " and " : "") +
             (charges ? "charges" : "") + " of the file";
+  if (charges)
+    kept += charge_note(report);
   notes.push_back(kept);
 
   std::string dropped;
-  const auto add = [&](int64_t n, const std::string& what) {
-    if (n > 0)
-      dropped += (dropped.empty() ? "" : ", ") + std::to_string(n) + " " + what;
+  const auto add = [&](int64_t n, const std::string& what, double charge = 0) {
+    if (n <= 0)
+      return;
+    dropped += (dropped.empty() ? "" : ", ") + std::to_string(n) + " " + what;
+    if (const std::string e = rounded(charge); e != "0")
+      dropped += " with a charge of " + e + " e in all";
   };
+  const PdbReport::Charges& charge = report.dropped_charge;
   add(report.other_models, "in other models (" + counted(report.models_read, "model") + " read, --model)");
   add(report.altlocs, "in other alternative locations (--altloc)");
-  add(report.waters, "of waters (--waters)");
-  add(report.hydrogens, "hydrogens (--hydrogens)");
-  add(report.hetatms, "of hetero groups (--hetatm)");
-  add(report.unselected, "outside --select");
-  add(report.no_radius, "of radius 0, with a charge of " + shortest(report.no_radius_charge) + " e in all");
-  add(report.unassembled, "in chains outside assembly " + options.assembly);
+  add(report.waters, "of waters (--waters)", charge.waters);
+  add(report.hydrogens, "hydrogens (--hydrogens)", charge.hydrogens);
+  add(report.hetatms, "of hetero groups (--hetatm)", charge.hetatms);
+  add(report.unselected, "outside --select", charge.unselected);
+  add(report.no_radius, "of radius 0 without a charge");
+  add(report.unassembled, "in chains outside assembly " + options.assembly, charge.unassembled);
   if (!dropped.empty())
     notes.push_back("dropped atoms: " + dropped);
 

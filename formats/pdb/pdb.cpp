@@ -11,6 +11,7 @@
 #include "formats/pdb/sha256.hpp"
 #include "formats/read_all.hpp"
 #include <algorithm>
+#include <cmath>
 #include <gemmi/polyheur.hpp>
 #include <istream>
 
@@ -88,8 +89,15 @@ PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbO
   p.report.chains = static_cast<int64_t>(a.grouping.chain.size());
   p.report.residues = static_cast<int64_t>(a.grouping.residue.size());
   p.report.domains = static_cast<int64_t>(a.grouping.domain.size());
-  for (int64_t r = 0; r < p.report.residues; ++r)
+  for (int64_t r = 0; r < p.report.residues; ++r) {
     p.report.atoms += a.residue(r).end - a.residue(r).begin;
+    for (int64_t n = a.residue(r).begin; n < a.residue(r).end; ++n) {
+      p.report.charge += std::isnan(a.flat.atom[n].charge) ? 0 : a.flat.atom[n].charge;
+      p.report.charges_alone += a.flat.atom[n].radius == 0;
+    }
+  }
+  if (p.report.charges_alone == p.report.atoms)
+    fail_input(name + ": found no atom of a radius > 0 that is kept, expected at least one");
   add_notes(p.report, p.parsed, options);
 }
 
@@ -103,7 +111,8 @@ void PdbHierarchy::write(std::ostream& out) const {
   const Arrangement& a = parts_->arrangement;
   const Grouping& g = a.grouping;
   const std::vector<std::string>& levels = parts_->levels;
-  HierWriter writer(out, parts_->source, levels);
+  HierWriter writer(out, parts_->source, levels,
+                    report().charges_alone > 0 ? HierWriter::Version::v2 : HierWriter::Version::v1);
   std::vector<int32_t> open(levels.size(), -1);
   std::string residue_name;
   for (const int32_t r : parts_->order) {

@@ -35,8 +35,14 @@ struct PdbReport {
   std::string format;
   int64_t read = 0, models_read = 0; ///< in all models; number of models
   int64_t other_models = 0, altlocs = 0, waters = 0, hydrogens = 0, hetatms = 0, unselected = 0, no_radius = 0,
-          unassembled = 0;     ///< dropped; unassembled: in no copy of the assembly
-  double no_radius_charge = 0; ///< e, of the atoms dropped because their radius is 0
+          unassembled =
+              0; ///< dropped; no_radius: of radius 0 without a charge; unassembled: in no copy of the assembly
+  struct Charges {
+    double waters = 0, hydrogens = 0, hetatms = 0, unselected = 0, unassembled = 0;
+    double all() const { return waters + hydrogens + hetatms + unselected + unassembled; }
+  } dropped_charge;          ///< e, of what is dropped
+  double charge = 0;         ///< e, of the atoms written
+  int64_t charges_alone = 0; ///< atoms written that have a charge and the radius 0
   int64_t atoms = 0, residues = 0, chains = 0, domains = 0, copies = 1; ///< written; copies of the assembly
   struct Unknown {
     int64_t atoms = 0;

@@ -156,8 +156,11 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
     for (const int64_t r : *p.residues)
       used[r] = 1;
   for (size_t r = 0; r < used.size(); ++r)
-    if (!used[r])
+    if (!used[r]) {
       report.unassembled += flat.residue[r].end - flat.residue[r].begin;
+      for (int64_t n = flat.residue[r].begin; n < flat.residue[r].end; ++n)
+        report.dropped_charge.unassembled += std::isnan(flat.atom[n].charge) ? 0 : flat.atom[n].charge;
+    }
   if (placed.empty())
     fail_input(file + ": found no atom in assembly " + assembly + ", expected at least one");
   std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.copy < b.copy; });

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "density/culling/block_atoms.hpp"
 #include "density/field/margin.hpp"
+#include "molecule/bodies.hpp"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -73,6 +74,8 @@ void check_values(BandBlocks blocks) {
 } // namespace
 
 Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const BandFinder& find) {
+  if (!all_have_bodies(hierarchy))
+    return compute(bodies_of(hierarchy).hierarchy, o, counts, find);
   check_band(o);
   SearchOptions s;
   s.isovalue = o.isovalue;

@@ -28,9 +28,10 @@ struct Counts {
 /// Finds the band of a field: find_band, or what does the same on a device.
 using BandFinder = std::function<Band(const Field&, const GridFrame&, const SearchOptions&, SearchCounts&)>;
 
-/// Computes the band, all but info.creator. Throws Error(failed) if the wall of a grid with the caller's margin
-/// cuts the surface or no cell reaches the band, Error(usage) if the grid is too large to index, the band too
-/// narrow for the tolerance (docs/theory/field.md §5) or a value too large for a float.
+/// Computes the band, all but info.creator. Atoms of radius 0 make no density. Throws Error(failed) if the wall of
+/// a grid with the caller's margin cuts the surface or no cell reaches the band, Error(usage) if the grid is too
+/// large to index, the band too narrow for the tolerance (docs/theory/field.md §5) or a value too large for a
+/// float.
 Band compute(const Hierarchy& h, const Options& options, Counts& counts, const BandFinder& find = find_band);
 
 } // namespace molmesh::density

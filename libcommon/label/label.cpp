@@ -4,6 +4,7 @@
 #include "density/culling/kd_tree.hpp"
 #include "geom/morton.hpp"
 #include "label/reach.hpp"
+#include "molecule/bodies.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
@@ -195,6 +196,14 @@ Tiles make_tiles(const std::vector<Vec3d>& place, int threads) {
 Labels find_labels(const Hierarchy& h, const std::vector<Vec3d>& place, const Options& options) {
   if (h.atom.size() > static_cast<size_t>(std::numeric_limits<int32_t>::max()))
     fail_input("over 2^31 - 1 atoms, expected fewer");
+  if (!all_have_bodies(h)) {
+    const Bodies bodies = bodies_of(h);
+    Labels labels = find_labels(bodies.hierarchy, place, options);
+    for (size_t l = 0; l < labels.index.size(); ++l)
+      for (int32_t& index : labels.index[l])
+        index = index < 0 ? index : static_cast<int32_t>(bodies.index[l][index]);
+    return labels;
+  }
   Labels labels;
   for (const Level& l : h.level)
     labels.level.push_back(l.name);

@@ -14,7 +14,8 @@ namespace molmesh::label {
 ///
 /// So the shares of all groups of one level add up to 1, those of a group's children to its own. The label of a
 /// place is the outermost group with the largest share, in it the child with the largest share, and so on down to
-/// an atom: the residue lies in the chain, the atom in the residue. Of equal ones the first of the file.
+/// an atom: the residue lies in the chain, the atom in the residue. Of equal ones the first of the file. An atom of
+/// radius 0 has no body and owns no place.
 struct Labels {
   std::vector<std::string> level;          ///< outermost first, the last is "atom"
   std::vector<std::vector<int32_t>> index; ///< [level][place] index into Hierarchy::level[l].group, or ::atom; -1

@@ -46,13 +46,15 @@ void check(const Hierarchy& h, const std::string& file) {
              " children, expected all");
   }
 
+  bool any_body = false;
   for (size_t a = 0; a < h.atom.size(); ++a) {
     const Atom& atom = h.atom[a];
+    any_body |= atom.radius > 0;
     const auto bad = [&](const char* what) { refuse("atom " + std::to_string(a) + ": " + what); };
     if (!(std::isfinite(atom.center.x) && std::isfinite(atom.center.y) && std::isfinite(atom.center.z)))
       bad("position not finite");
-    if (!(std::isfinite(atom.radius) && atom.radius > 0))
-      bad("radius not a finite number > 0");
+    if (!(std::isfinite(atom.radius) && atom.radius >= 0))
+      bad("radius not a finite number >= 0");
     if (std::isinf(atom.charge))
       bad("charge not finite");
     if (atom.name < 0 || atom.name >= h.names.size() || h.names[atom.name].empty())
@@ -60,12 +62,16 @@ void check(const Hierarchy& h, const std::string& file) {
     if (atom.element < 0 || atom.element >= h.names.size() || h.names[atom.element].empty())
       bad("no element");
   }
+  if (!any_body)
+    refuse("no atom of a radius > 0, expected at least one");
 }
 
 int64_t nearest_atom(const Hierarchy& h, Vec3d p) {
   int64_t nearest = -1;
   double best = 0;
   for (size_t a = 0; a < h.atom.size(); ++a) {
+    if (!(h.atom[a].radius > 0))
+      continue;
     const double d = norm(p - h.atom[a].center) - h.atom[a].radius;
     if (nearest < 0 || d < best)
       best = d, nearest = static_cast<int64_t>(a);

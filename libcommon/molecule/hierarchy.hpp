@@ -27,7 +27,7 @@ private:
 
 struct Atom {
   Vec3d center;                                             ///< Å, finite
-  double radius = 0;                                        ///< Å, > 0
+  double radius = 0;                                        ///< Å, >= 0; 0: a charge without a body
   double charge = std::numeric_limits<double>::quiet_NaN(); ///< elementary charges; NaN: not given
   int32_t name = 0;                                         ///< entry of Hierarchy::names: "CA"
   int32_t element = 0;                                      ///< entry of Hierarchy::names: "C"
@@ -55,11 +55,12 @@ struct Hierarchy {
   Names names;
 };
 
-/// Throws Error(bad_input) naming the first broken rule: no atom, ranges that do not partition, an empty group or
-/// name, values out of range.
+/// Throws Error(bad_input) naming the first broken rule: no atom with a body, ranges that do not partition, an
+/// empty group or name, values out of range.
 void check(const Hierarchy& h, const std::string& file);
 
-/// Index of the atom whose sphere is nearest to p (inside: negative distance), the first of equals; looks at all.
+/// Index of the atom whose sphere is nearest to p (inside: negative distance), the first of equals; looks at all
+/// that have one.
 int64_t nearest_atom(const Hierarchy& h, Vec3d p);
 /// "chain A residue GLY.12": its groups, outermost first; empty without levels.
 std::string groups_of(const Hierarchy& h, int64_t atom);

@@ -1,4 +1,4 @@
-// hier_test.cpp — the rules of HIERv1.md, the exact round trip.
+// hier_test.cpp — the rules of HIERv1.md and HIERv2.md, the exact round trip.
 #include "base/error.hpp"
 #include "formats/hier/hier.hpp"
 #include "unit/refusal.hpp"
@@ -125,7 +125,7 @@ TEST_CASE("messages name the file, the line and what was expected") {
         "x.hier:4: R8: found 'nan', expected z, a finite decimal number");
   CHECK(message("hier 1\nlevels chain residue\nchain A 1\natom C C 0 0 0 1\n") ==
         "x.hier:4: R10: found an atom outside any residue, expected every level open");
-  CHECK(message("hier 2\n") == "x.hier:1: R2: found version '2', expected 1: this reader knows no other");
+  CHECK(message("hier 3\n") == "x.hier:1: R2: found version '3', expected 1 or 2: this reader knows no other");
 }
 
 TEST_CASE("random hierarchies read back to the last bit, whatever the block boundaries") {
@@ -223,4 +223,14 @@ TEST_CASE("a writer refuses what no reader takes") {
   CHECK_THROWS_AS(formats::write_hier(out, h), Error);
   h.level[0].name = "atom";
   CHECK_THROWS_AS(formats::write_hier(out, h), Error);
+}
+
+TEST_CASE("version 2 is written where an atom of radius 0 needs it, and only there") {
+  const std::string head = " 2\nlevels chain\nchain A 1\natom O O 0 0 0 1.5 -0.4\natom H H 1 0 0 ";
+  const Hierarchy whole = read_text("hier" + head + "1 0.4\n"), charge = read_text("hier" + head + "0 0.4\n");
+  CHECK(written(whole).substr(0, 7) == "hier 1\n");
+  CHECK(written(charge).substr(0, 7) == "hier 2\n");
+  CHECK(charge.atom[1].radius == 0);
+  CHECK(charge.atom[1].charge == 0.4);
+  CHECK(message("hier 1\nlevels\natom H H 1 0 0 0 0.4\n").find("x.hier:3: R9: ") == 0);
 }

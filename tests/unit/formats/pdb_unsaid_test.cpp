@@ -133,10 +133,10 @@ TEST_CASE("residue numbers that are none are counted") {
     CHECK(notes(convert(line.replace(22, 4, number)), "residue numbers that are none"));
 }
 
-TEST_CASE("atoms of radius 0 go with their charge on record, an assembly's missing chains are counted") {
+TEST_CASE("atoms of radius 0 stay for their charge, an assembly's missing chains are counted") {
   const std::string ion = "ATOM 1 NA NA 1 0 0 0 1.0 2.0\n";
   CHECK(notes(convert(ion + "ATOM 2 H1 SER 2 5 0 0 0.25 0.0\nATOM 3 H2 SER 2 6 0 0 0.25 0.0\n", {}, "x.pqr"),
-              "2 of radius 0, with a charge of 0.5 e in all"));
+              "total charge 1.5 e, no whole number; 2 of radius 0 are charges without a body"));
 
   formats::PdbOptions o;
   o.assembly = "1";

@@ -101,10 +101,36 @@ TEST_CASE("PQR: elements from names") {
   CHECK(one("ATOM 1 123 UNK A 7 0 0 0 0 1").element == "X");
 }
 
-TEST_CASE("PQR: radius 0 is dropped and counted, below 0 and what is no number refused") {
-  const Converted c = convert("ATOM 1 O HO A 7 0 0 0 0.4 1.5\nATOM 2 H HO A 7 1 0 0 0.4 0\n", {}, "x.pqr");
-  CHECK(c.report.atoms == 1);
+TEST_CASE("PQR: an atom of radius 0 keeps its charge, goes without one") {
+  const Converted c = convert(
+      "ATOM 1 O HO A 7 0 0 0 -0.4 1.5\nATOM 2 H HO A 7 1 0 0 0.4 0\nATOM 3 M HO A 7 1 0 1 0 0\n", {}, "x.pqr");
+  CHECK(c.report.atoms == 2);
   CHECK(c.report.no_radius == 1);
+  CHECK(c.report.charges_alone == 1);
+  CHECK(c.report.charge == 0);
+  CHECK(c.text.substr(0, 7) == "hier 2\n");
+  CHECK(c.hierarchy.atom[1].radius == 0);
+  CHECK(c.hierarchy.atom[1].charge == 0.4);
+  CHECK(refusal("ATOM 2 H HO A 7 1 0 0 0.4 0\n", {}, "x.pqr") ==
+        "x.pqr: found no atom of a radius > 0 that is kept, expected at least one");
+}
+
+TEST_CASE("PQR: charges that are dropped are said") {
+  const std::string text = "ATOM 1 OG SER A 7 0 0 0 -0.4 1.5\nATOM 2 HG SER A 7 1 0 0 0.25 0\n"
+                           "ATOM 3 O HOH A 8 5 0 0 -0.8 1.5\nATOM 4 NA NA A 9 9 0 0 1 1.8\n";
+  formats::PdbOptions o;
+  o.hydrogens = false;
+  o.select = "(SER,HOH)";
+  const Converted c = convert(text, o, "x.pqr");
+  REQUIRE(c.report.notes.size() >= 2);
+  CHECK(c.report.notes[0].find(", total charge -0.4 e, no whole number") != std::string::npos);
+  CHECK(c.report.notes[1] == "dropped atoms: 1 of waters (--waters) with a charge of -0.8 e in all, 1 hydrogens "
+                             "(--hydrogens) with a charge "
+                             "of 0.25 e in all, 1 outside --select with a charge of 1 e in all");
+  CHECK(std::abs(c.report.dropped_charge.all() - 0.45) < 1e-12);
+}
+
+TEST_CASE("PQR: a radius below 0 and what is no number are refused") {
   for (const char* line :
        {"ATOM 1 N ALA A 7 0 0 0 0 -1", "ATOM 1 N ALA A 7 0 0 nan 0 1", "ATOM 1 N ALA A 7 0 0 0 inf 1",
         "ATOM 1 N ALA A 7 0 0 0", "ATOM", "ATOM 1 N ALA A x 0 0 0 0 1", "ATOM 1 N ALA A 99999999999 0 0 0 0 1"}) {

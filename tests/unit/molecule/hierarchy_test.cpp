@@ -1,5 +1,6 @@
 // hierarchy_test.cpp — check() finds each broken rule.
 #include "base/error.hpp"
+#include "molecule/bodies.hpp"
 #include "molecule/hierarchy.hpp"
 #include "unit/refusal.hpp"
 #include <catch2/catch.hpp>
@@ -42,7 +43,7 @@ TEST_CASE("check accepts a partition and finds what breaks it") {
   CHECK_FALSE(broken([](Hierarchy& h) { h.level[0].group[0].name.clear(); }).empty());
   CHECK_FALSE(broken([](Hierarchy& h) { h.level[1].name = "chain"; }).empty());
   CHECK(broken([](Hierarchy& h) { h.atom[2].center.y = nan; }) == "F: atom 2: position not finite");
-  CHECK(broken([](Hierarchy& h) { h.atom[2].radius = -1; }) == "F: atom 2: radius not a finite number > 0");
+  CHECK(broken([](Hierarchy& h) { h.atom[2].radius = -1; }) == "F: atom 2: radius not a finite number >= 0");
   CHECK(broken([](Hierarchy& h) { h.atom[2].charge = inf; }) == "F: atom 2: charge not finite");
   CHECK(broken([](Hierarchy& h) { h.atom[2].element = 1; }) == "F: atom 2: no element");
   CHECK(broken([](Hierarchy& h) { h.atom[0].center = {1e308, 1e308, 1e308}; }).empty());
