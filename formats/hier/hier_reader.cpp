@@ -244,6 +244,8 @@ private:
     if (stage_ == Stage::body) {
       if (word == "atom")
         return atom();
+      if (version_ == 2 && word == "body")
+        return body();
       if (const auto l = level_number_.find(word); l != level_number_.end())
         return group(l->second);
       if (word == "hier" || word == "source" || word == "levels")
@@ -281,7 +283,7 @@ private:
   }
 
   void level(std::string_view word) {
-    if (!is_level_name(word))
+    if (!is_level_name(word, version_))
       refuse("R4: found level " + shown(word) +
              ", expected a word of letters, digits, _ and - that is no record's");
     if (!level_number_.emplace(word, h_.level.size()).second)
@@ -317,9 +319,55 @@ private:
     open_ = l + 1;
   }
 
-  void atom() {
+  /// Where an atom or a body may stand. A body has its innermost group for itself.
+  void entry(const char* what, bool is_body) {
     if (open_ != h_.level.size())
-      refuse("R10: found an atom outside any " + h_.level[open_].name + ", expected every level open");
+      refuse(std::string("R10: found ") + what + " outside any " + h_.level[open_].name +
+             ", expected every level open");
+    if (h_.level.empty() || (h_.body.empty() && !is_body))
+      return;
+    const Group& g = h_.level.back().group.back();
+    const auto before = static_cast<int64_t>(h_.atom.size());
+    if (g.begin < before && (is_body || h_.body.back().atom == before - 1))
+      refuse(std::string("R13: found ") + what + " in a " + h_.level.back().name + " with " +
+             (is_body ? "something before it" : "a body") + ", expected bodies alone in theirs");
+  }
+
+  Vec3d vector(const char* what) {
+    const double x = coordinate(what), y = coordinate(what);
+    return {x, y, coordinate(what)};
+  }
+
+  void body() {
+    using Shape = Body::Shape;
+    entry("a body", true);
+    Body b;
+    Atom a;
+    a.name = cache_.entry(name("the body's name"), h_.names);
+    const std::string_view shape = needed("the shape");
+    if (!shape_of(shape))
+      refuse("R13: found shape " + shown(shape) + ", expected sphere, capsule, cylinder, box or slab");
+    b.shape = *shape_of(shape);
+    b.center = vector("a coordinate of the center");
+    if (b.shape != Shape::sphere)
+      b.u = vector("a coordinate of the vector U");
+    if (b.shape == Shape::box)
+      b.v = vector("a coordinate of the vector V");
+    b.size = number(b.shape == Shape::box || b.shape == Shape::slab ? "half an edge" : "the radius");
+    b.skin = number("the skin");
+    expect_end("'body NAME SHAPE X Y Z [UX UY UZ [VX VY VZ]] SIZE SKIN'");
+    if (const std::string fault = fault_of(b); !fault.empty())
+      refuse("R13: found such a " + std::string(shape) + ", expected " + fault);
+    a.center = b.center;
+    a.radius = b.skin;
+    b.atom = static_cast<int64_t>(h_.atom.size());
+    any_body_ = true;
+    h_.atom.push_back(a);
+    h_.body.push_back(b);
+  }
+
+  void atom() {
+    entry("an atom", false);
     Atom a;
     a.name = cache_.entry(name("the atom's name"), h_.names);
     a.element = cache_.entry(name("the element"), h_.names);
@@ -343,7 +391,7 @@ private:
     if (h_.atom.empty())
       refuse("R12: the file ends, expected at least one atom");
     if (!any_body_)
-      refuse("R12: the file ends, expected at least one atom of a radius > 0");
+      refuse("R12: the file ends, expected at least one atom of a radius > 0, or a body");
   }
 
   enum class Stage { start, head, body };

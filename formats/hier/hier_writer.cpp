@@ -22,7 +22,7 @@ HierWriter::HierWriter(std::ostream& out, std::string_view source, const std::ve
                        Version version)
     : out_(out), levels_(levels) {
   for (const std::string& level : levels)
-    if (!is_level_name(level))
+    if (!is_level_name(level, version == Version::v1 ? 1 : 2))
       fail_input("level '" + level + "', expected a word that .hier does not reserve");
   buffer_.reserve(buffer_size + 4096);
   buffer_ = version == Version::v1 ? "hier 1\n" : "hier 2\n";
@@ -54,6 +54,25 @@ void HierWriter::atom(std::string_view name, std::string_view element, Vec3d cen
     put_number(v);
   if (!std::isnan(charge))
     put_number(charge);
+  end_record();
+}
+
+void HierWriter::body(std::string_view name, const Body& b) {
+  using Shape = Body::Shape;
+  put("body");
+  put_name(name);
+  put_name(shape_name(b.shape));
+  const auto put_vector = [&](Vec3d v) {
+    for (const double x : {v.x, v.y, v.z})
+      put_number(x);
+  };
+  put_vector(b.center);
+  if (b.shape != Shape::sphere)
+    put_vector(b.u);
+  if (b.shape == Shape::box)
+    put_vector(b.v);
+  put_number(b.size);
+  put_number(b.skin);
   end_record();
 }
 
@@ -117,9 +136,10 @@ void write_hier(std::ostream& out, const Hierarchy& h) {
   std::vector<std::string> levels;
   for (const Level& level : h.level)
     levels.push_back(level.name);
-  const bool charges_alone =
-      std::any_of(h.atom.begin(), h.atom.end(), [](const Atom& atom) { return atom.radius == 0; });
-  HierWriter writer(out, h.source, levels, charges_alone ? HierWriter::Version::v2 : HierWriter::Version::v1);
+  const bool needs_version_2 = !h.body.empty() || std::any_of(h.atom.begin(), h.atom.end(),
+                                                              [](const Atom& atom) { return atom.radius == 0; });
+  HierWriter writer(out, h.source, levels, needs_version_2 ? HierWriter::Version::v2 : HierWriter::Version::v1);
+  auto body = h.body.begin();
   // next[l]: the group of level l that opens at its first child.
   std::vector<size_t> next(h.level.size(), 0);
   const auto open = [&](auto&& self, size_t l, int64_t child) -> void {
@@ -136,6 +156,10 @@ void write_hier(std::ostream& out, const Hierarchy& h) {
   for (size_t a = 0; a < h.atom.size(); ++a) {
     open(open, h.level.size(), static_cast<int64_t>(a));
     const Atom& atom = h.atom[a];
+    if (body != h.body.end() && body->atom == static_cast<int64_t>(a)) {
+      writer.body(h.names[atom.name], *body++);
+      continue;
+    }
     writer.atom(h.names[atom.name], h.names[atom.element], atom.center, atom.radius, atom.charge);
   }
   writer.finish();

@@ -69,11 +69,12 @@ bool percent_decode(std::string_view text, std::string& name) {
   return true;
 }
 
-bool is_level_name(std::string_view word) {
+bool is_level_name(std::string_view word, int version) {
   static constexpr std::string_view reserved[] = {"hier", "source", "levels", "atom"};
   const bool plain = std::all_of(word.begin(), word.end(),
                                  [](char c) { return is_letter(c) || is_digit(c) || c == '_' || c == '-'; });
-  return plain && !word.empty() && std::find(std::begin(reserved), std::end(reserved), word) == std::end(reserved);
+  return plain && !word.empty() && (version == 1 || word != "body") &&
+         std::find(std::begin(reserved), std::end(reserved), word) == std::end(reserved);
 }
 
 } // namespace molmesh::formats

@@ -123,6 +123,8 @@ Tail Climber::run() {
 } // namespace
 
 Tail tail(const Hierarchy& h, double decay, double isovalue, const GridFrame& frame) {
+  if (!h.body.empty()) // bodies without atoms: nothing is claimed
+    return {};
   return Climber(h, decay, isovalue, frame).run();
 }
 

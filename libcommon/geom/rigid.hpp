@@ -16,9 +16,10 @@ struct Rigid {
   }
   /// R·v.
   Vec3d turned(Vec3d v) const { return is_identity() ? v : Vec3d{dot(row[0], v), dot(row[1], v), dot(row[2], v)}; }
-  bool is_identity() const {
-    return row[0] == Vec3d{1, 0, 0} && row[1] == Vec3d{0, 1, 0} && row[2] == Vec3d{0, 0, 1} && t == Vec3d{};
+  bool turns_nothing() const {
+    return row[0] == Vec3d{1, 0, 0} && row[1] == Vec3d{0, 1, 0} && row[2] == Vec3d{0, 0, 1};
   }
+  bool is_identity() const { return turns_nothing() && t == Vec3d{}; }
 };
 
 /// First b, then a.

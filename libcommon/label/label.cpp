@@ -105,13 +105,16 @@ private:
       size_t best = 0;
       for (const int32_t c : cluster) {
         const auto s = static_cast<size_t>(c);
-        bound_.push_back(reach_.power(f_.group[s]) * (f_.ln_peak[s] - f_.decay * distance2({p, p}, f_.box[s])));
+        const Core* const core = core_of(s);
+        const double d2 = core == nullptr ? distance2({p, p}, f_.box[s]) : core->distance2(p);
+        bound_.push_back(reach_.power(f_.group[s]) * (f_.ln_peak[s] - f_.decay * d2));
         if (bound_.back() > bound_[best])
           best = bound_.size() - 1;
       }
       const auto s = static_cast<size_t>(cluster[best]);
+      const Core* const core = core_of(s);
       for (auto a = static_cast<size_t>(f_.begin[s]); a < static_cast<size_t>(f_.begin[s + 1]); ++a)
-        least_ = std::max(least_, reach_.power(f_.group[s]) * term(a, p));
+        least_ = std::max(least_, reach_.power(f_.group[s]) * term(core, a, p));
     }
     const double floor = least_ - small_clusters - std::log(static_cast<double>(cluster.size()));
     for (size_t i = 0; i < cluster.size(); ++i) {
@@ -126,14 +129,23 @@ private:
       term_.resize(sum.last + n);
       double* const ln = term_.data() + sum.last;
       sum.last += n;
+      const Core* const core = core_of(s);
       for (size_t k = 0; k < n; ++k)
-        ln[k] = term(begin + k, p);
+        ln[k] = term(core, begin + k, p);
       for (size_t k = 0; k < n; ++k) // atoms do not stand in the order of the file
         if (ln[k] > sum.top || (ln[k] == sum.top && f_.source[begin + k] < f_.source[sum.best]))
           sum.top = ln[k], sum.best = begin + k;
     }
   }
-  double term(size_t a, Vec3d p) const {
+  /// Of the body that a cluster is; null: it is of atoms.
+  const Core* core_of(size_t cluster) const {
+    const int32_t body = f_.body.empty() ? -1 : f_.body_of(static_cast<int64_t>(cluster));
+    return body < 0 ? nullptr : &f_.body[body].core;
+  }
+  /// ln of the term of atom a, or of the body that it stands for.
+  double term(const Core* core, size_t a, Vec3d p) const {
+    if (core != nullptr)
+      return f_.peak[a] - f_.decay * core->distance2(p);
     const double x = f_.x[a] - p.x, y = f_.y[a] - p.y, z = f_.z[a] - p.z;
     return f_.peak[a] - f_.decay * (x * x + y * y + z * z);
   }

@@ -14,10 +14,15 @@ Bodies bodies_of(const Hierarchy& h) {
   b.hierarchy.source = h.source;
   b.hierarchy.names = h.names;
   b.hierarchy.level.resize(levels);
+  auto body = h.body.begin();
   b.index.resize(levels + 1);
   std::vector<int64_t> before{0}; // [child] how many children before it stay
   for (size_t a = 0; a < h.atom.size(); ++a) {
     if (h.atom[a].radius > 0) {
+      if (body != h.body.end() && body->atom == static_cast<int64_t>(a)) {
+        b.hierarchy.body.push_back(*body++);
+        b.hierarchy.body.back().atom = static_cast<int64_t>(b.hierarchy.atom.size());
+      }
       b.hierarchy.atom.push_back(h.atom[a]);
       b.index[levels].push_back(static_cast<int64_t>(a));
     }

@@ -62,6 +62,25 @@ void check(const Hierarchy& h, const std::string& file) {
     if (atom.element < 0 || atom.element >= h.names.size() || h.names[atom.element].empty())
       bad("no element");
   }
+  int64_t after = 0; // the body before
+  for (const Body& b : h.body) {
+    if (b.atom < after || b.atom >= static_cast<int64_t>(h.atom.size()))
+      refuse("body of atom " + std::to_string(b.atom) + ", expected bodies in the order of atoms");
+    after = b.atom + 1;
+    const Atom& atom = h.atom[b.atom];
+    const auto bad = [&](const std::string& what) { refuse("body '" + h.names[atom.name] + "': " + what); };
+    if (const std::string fault = fault_of(b); !fault.empty())
+      bad("expected " + fault);
+    if (!(atom.center == b.center && atom.radius == b.skin && std::isnan(atom.charge)))
+      bad("expected its atom at its center, with its skin as radius and without a charge");
+    if (!h.level.empty()) {
+      const std::vector<Group>& group = h.level.back().group;
+      const auto g =
+          std::upper_bound(group.begin(), group.end(), b.atom, [](int64_t i, const Group& x) { return i < x.end; });
+      if (g->end - g->begin != 1)
+        bad("expected alone in its " + h.level.back().name);
+    }
+  }
   if (!any_body)
     refuse("no atom of a radius > 0, expected at least one");
 }
@@ -69,10 +88,15 @@ void check(const Hierarchy& h, const std::string& file) {
 int64_t nearest_atom(const Hierarchy& h, Vec3d p) {
   int64_t nearest = -1;
   double best = 0;
+  auto body = h.body.begin();
   for (size_t a = 0; a < h.atom.size(); ++a) {
     if (!(h.atom[a].radius > 0))
       continue;
-    const double d = norm(p - h.atom[a].center) - h.atom[a].radius;
+    while (body != h.body.end() && body->atom < static_cast<int64_t>(a))
+      ++body;
+    const bool is_body = body != h.body.end() && body->atom == static_cast<int64_t>(a);
+    const double d =
+        (is_body ? std::sqrt(Core(*body).distance2(p)) : norm(p - h.atom[a].center)) - h.atom[a].radius;
     if (nearest < 0 || d < best)
       best = d, nearest = static_cast<int64_t>(a);
   }

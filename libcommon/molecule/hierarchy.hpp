@@ -2,6 +2,7 @@
 // Equations 2 to 6 of Liao et al. 2013, for any depth.
 #pragma once
 #include "geom/vec.hpp"
+#include "molecule/body.hpp"
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -52,6 +53,7 @@ struct Hierarchy {
   std::string source; ///< "1tii.pdb sha256:…", one line, empty when unknown
   std::vector<Level> level;
   std::vector<Atom> atom;
+  std::vector<Body> body; ///< by Body::atom; alone in its innermost group, if there are groups
   Names names;
 };
 

@@ -78,6 +78,7 @@ bool BlockAtoms::narrow(Vec3d middle, double h) {
     for (AlignedFloats* v : {&upper_of_part_, &effect_})
       v->resize(2 * room);
   bound_units(local_, near_, part, static_cast<float>(log2e * f_.decay), scaled_, upper_of_part_.data());
+  bound_bodies(part, upper_of_part_.data());
   log2_upper_ = upper_of_part_.data();
   find_effects();
   if (surely_outside())
@@ -95,9 +96,13 @@ void BlockAtoms::bound_octants_of_part(int alone) {
   const auto decay = static_cast<float>(log2e * f_.decay);
   for (int o = 0; o < 8; ++o)
     octant_[o] = local(octant_middle(o), 3.5 * h_ * Vec3d{1, 1, 1});
-  if (alone >= 0)
-    return bound_units(local_, near_, octant_[alone], decay, scaled_, &octant_upper_[alone * stride_]);
+  if (alone >= 0) {
+    bound_units(local_, near_, octant_[alone], decay, scaled_, &octant_upper_[alone * stride_]);
+    return bound_bodies(octant_[alone], &octant_upper_[alone * stride_]);
+  }
   bound_octants(local_, near_, octant_, decay, scaled_, octant_upper_.data(), stride_);
+  for (int o = 0; o < 8; ++o)
+    bound_bodies(octant_[o], &octant_upper_[o * stride_]);
   octants_bounded_ = true;
 }
 
@@ -210,15 +215,22 @@ void BlockAtoms::take_octant(int octant, bool classify) {
     side = Side::outside;
     return;
   }
+  const Vec3d half = 3.5 * h_ * Vec3d{1, 1, 1};
+  const Vec3d middle = block_middle = octant_middle(octant);
+  if (classify && inside_a_body(middle, half)) {
+    side = Side::inside;
+    return;
+  }
   dropped_ = drop(2 * budget_.block);
   added = 0.5 * (dropped_in_part_ + dropped_);
-  const Vec3d middle = octant_middle(octant), half = 3.5 * h_ * Vec3d{1, 1, 1};
+  place_bodies(middle);
   if (!take_atoms() && arithmetic == Arithmetic::in_single)
     arithmetic = Arithmetic::in_double;
   if (classify && surely_inside(middle, half)) {
     side = Side::inside;
     return;
   }
+  list_bodies();
   if (arithmetic == Arithmetic::in_single)
     return;
   bool holds = place_exactly(middle);

@@ -60,6 +60,14 @@ public:
   /// the sum of the one around it, in the order in which OpenGroups closes them.
   std::vector<double> group_shift;
   LocalBox box; ///< of the block
+  /// The bodies among the units, ascending: an atom at the core's place nearest to the block's middle stands for
+  /// each.
+  struct UnitBody {
+    int32_t unit, body; ///< `body` of the field
+    Vec3d stand_in;     ///< Å
+  };
+  std::vector<UnitBody> unit_bodies;
+  Vec3d block_middle; ///< Å
   int64_t group_of(int32_t u) const { return near_.group[kept_[u]]; }
 
 private:
@@ -69,6 +77,12 @@ private:
   std::span<const int32_t> kept() const { return std::span(kept_).first(static_cast<size_t>(units)); }
   LocalBox local(Vec3d middle, Vec3d half) const;
   void gather(const LocalBox& part);
+  void bound_bodies(const LocalBox& part, float* log2_upper) const;
+  void place_bodies(Vec3d middle);
+  void list_bodies();
+  bool inside_a_body(Vec3d middle, Vec3d half) const;
+  /// `body` of the field that a cluster of local_ is, -1: of atoms.
+  int32_t local_body(int32_t cluster) const { return local_body_.empty() ? -1 : local_body_[cluster]; }
   void keep_only();
   void find_effects();
   void find_effects_of_levels();
@@ -107,6 +121,7 @@ private:
   double dropped_in_part_ = 0, dropped_ = 0; ///< bounds on what goes with groups dropped in the part, in the block
   LocalClusters local_;                      ///< of the brick
   NearUnits near_;                           ///< of the part of it at work
+  std::vector<int32_t> local_body_;          ///< [local_] as local_body(); empty: the field has none
   std::vector<int32_t> found_, kept_;        ///< clusters of local_; kept(), with room
   LocalBox octant_[8];
   bool octants_bounded_ = false;

@@ -27,7 +27,9 @@ bool BlockAtoms::place_exactly(Vec3d middle) {
   const auto placed = [&](int32_t slot) {
     const auto cluster = static_cast<size_t>(local_.cluster[slot / 16]);
     const auto a = static_cast<size_t>(f_.begin[cluster] + slot % 16);
-    const Vec3d at{f_.x[a] - middle.x, f_.y[a] - middle.y, f_.z[a] - middle.z};
+    const int32_t body = local_body(slot / 16);
+    const Vec3d at = body >= 0 ? f_.body[body].core.nearest(middle) - middle
+                               : Vec3d{f_.x[a] - middle.x, f_.y[a] - middle.y, f_.z[a] - middle.z};
     return Placed{at, log2e * (f_.peak[a] - f_.decay * norm2(at))};
   };
   const double step = 2 * f_.decay * h_ * log2e, bend = 3 * 3.5 * 3.5 * h_ * h_ * f_.decay * log2e;

@@ -27,6 +27,11 @@ void BlockAtoms::enter(Vec3d middle, std::span<const int32_t> clusters) {
     l.cutoff2[i] = static_cast<float>((1 + single) * f_.cutoff2[c]);
   }
   const double origin[3] = {middle.x, middle.y, middle.z};
+  if (!f_.body.empty()) {
+    local_body_.resize(n);
+    for (size_t i = 0; i < n; ++i)
+      local_body_[i] = f_.body_of(clusters[i]);
+  }
   place_atoms({f_.x.data(), f_.y.data(), f_.z.data(), f_.peak.data(), f_.begin.data(), f_.x.size()},
               clusters.data(), n, origin, l);
 }

@@ -31,7 +31,8 @@ struct KdTree::Tree {
 
 KdTree::KdTree(const Field& f) : f_(f), tree_(std::make_unique<Tree>(f)) {
   for (size_t c = 0; c < f.box.size(); ++c)
-    reach_ = std::max(reach_, std::sqrt(f.cutoff2[c]) + 0.5 * norm(f.box[c].hi - f.box[c].lo));
+    if (f.body_of(static_cast<int64_t>(c)) < 0)
+      reach_ = std::max(reach_, std::sqrt(f.cutoff2[c]) + 0.5 * norm(f.box[c].hi - f.box[c].lo));
 }
 
 KdTree::~KdTree() = default;
@@ -46,8 +47,11 @@ std::vector<int32_t> KdTree::near(const Box& box) const {
   tree_->index.radiusSearch(point, 1.000001 * radius * radius, found, unsorted);
   std::vector<int32_t> cluster;
   for (const auto& [c, d2] : found)
-    if (distance2(box, f_.box[c]) < f_.cutoff2[c])
+    if (distance2(box, f_.box[c]) < f_.cutoff2[c] && f_.body_of(c) < 0)
       cluster.push_back(static_cast<int32_t>(c));
+  for (const FieldBody& b : f_.body) // large, so that no middle tells
+    if (distance2(box, f_.box[b.cluster]) < f_.cutoff2[b.cluster])
+      cluster.push_back(static_cast<int32_t>(b.cluster));
   std::sort(cluster.begin(), cluster.end());
   return cluster;
 }

@@ -17,7 +17,7 @@ public:
 private:
   struct Tree;
   const Field& f_;
-  double reach_ = 0; ///< Å, the farthest a cluster's middle can be from a point that it matters to
+  double reach_ = 0; ///< Å, the farthest the middle of a cluster of atoms can be from a point that it matters to
   std::unique_ptr<Tree> tree_;
 };
 

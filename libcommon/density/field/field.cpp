@@ -96,8 +96,26 @@ void measure_cluster(Field& f, size_t c, FewExponentials& exp) {
   }
   for (size_t a = begin; a < end; ++a)
     sum += exp(f.peak[a] - largest);
+  if (const int32_t body = f.body_of(static_cast<int64_t>(c)); body >= 0)
+    b = {f.body[static_cast<size_t>(body)].core.low(), f.body[static_cast<size_t>(body)].core.high()};
   f.box[c] = b;
   f.ln_peak[c] = largest < infinity ? largest + std::log(sum) : largest;
+}
+
+/// The body that this atom stands for, or the end.
+std::vector<Body>::const_iterator body_at(const Hierarchy& h, int64_t atom) {
+  const auto found =
+      std::lower_bound(h.body.begin(), h.body.end(), atom, [](const Body& b, int64_t a) { return b.atom < a; });
+  return found != h.body.end() && found->atom == atom ? found : h.body.end();
+}
+
+/// Puts the bodies among atoms [begin, end) of `order` behind the others. Returns how many there are.
+int64_t bodies_last(const Hierarchy& h, LargeArray<int64_t>& order, int64_t begin, int64_t end) {
+  if (h.body.empty())
+    return 0;
+  const auto first = std::stable_partition(order.begin() + begin, order.begin() + end,
+                                           [&](int64_t a) { return body_at(h, a) == h.body.end(); });
+  return order.begin() + end - first;
 }
 
 void add_clusters(Field& f, const Hierarchy& h, int threads) {
@@ -109,15 +127,22 @@ void add_clusters(Field& f, const Hierarchy& h, int threads) {
   const auto groups = static_cast<int64_t>(innermost.size());
   struct Piece {
     std::vector<int64_t> cuts, group;
+    std::vector<size_t> bodies; ///< positions in `cuts`
   };
   constexpr int64_t grain = 256; // groups
   std::vector<Piece> piece(static_cast<size_t>((groups + grain - 1) / grain));
   par::for_n(static_cast<int64_t>(piece.size()), threads, 1, [&](int64_t p) {
-    auto& [cuts, group] = piece[p];
+    auto& [cuts, group, bodies] = piece[p];
     for (int64_t g = p * grain; g < std::min(groups, (p + 1) * grain); ++g) {
       const auto begin = innermost[g].begin, end = innermost[g].end;
       std::iota(order.begin() + begin, order.begin() + end, begin);
-      split(h, order, begin, end, cuts);
+      const int64_t last_atom = end - bodies_last(h, order, begin, end);
+      if (last_atom > begin)
+        split(h, order, begin, last_atom, cuts);
+      for (int64_t b = last_atom; b < end; ++b) {
+        bodies.push_back(cuts.size());
+        cuts.push_back(b);
+      }
       group.resize(cuts.size(), g);
       for (auto a = static_cast<size_t>(begin); a < static_cast<size_t>(end); ++a) {
         const Atom& atom = h.atom[order[a]];
@@ -129,6 +154,8 @@ void add_clusters(Field& f, const Hierarchy& h, int threads) {
     }
   });
   for (const Piece& p : piece) {
+    for (const size_t b : p.bodies)
+      f.body.push_back({static_cast<int64_t>(f.begin.size() + b), Core(*body_at(h, order[p.cuts[b]]))});
     f.begin.insert(f.begin.end(), p.cuts.begin(), p.cuts.end());
     f.group.insert(f.group.end(), p.group.begin(), p.group.end());
   }
@@ -180,6 +207,12 @@ double steepest_path(const Field& f) {
 double log_add(double a, double b) {
   const double m = std::max(a, b);
   return m == -infinity ? m : m + std::log1p(std::exp(std::min(a, b) - m));
+}
+
+int32_t Field::body_of(int64_t cluster) const {
+  const auto found = std::lower_bound(body.begin(), body.end(), cluster,
+                                      [](const FieldBody& b, int64_t c) { return b.cluster < c; });
+  return found != body.end() && found->cluster == cluster ? static_cast<int32_t>(found - body.begin()) : -1;
 }
 
 Box Field::bounds() const {

@@ -31,6 +31,12 @@ struct FieldLevel {
   std::vector<int64_t> parent; ///< empty at the outermost level
 };
 
+/// A body without atoms: a cluster of its own, its core in place of centers (field.md §7).
+struct FieldBody {
+  int64_t cluster;
+  Core core;
+};
+
 struct Field {
   double decay = 1;     ///< κ, Å⁻²
   double far_error = 0; ///< what all clusters beyond their cutoff2 together add to G anywhere, at most
@@ -44,6 +50,8 @@ struct Field {
   std::vector<Box> box;        ///< of the atoms' centres
   std::vector<double> ln_peak; ///< ln Σ exp(peak): ln of the cluster's sum at distance d is at most this - κ·d²
   std::vector<double> cutoff2; ///< Å²: a cluster at this squared distance or farther may be dropped (field.md §3)
+  std::vector<FieldBody>
+      body; ///< by cluster; that cluster's one atom is at the body's center, its box is the core's
   std::vector<FieldLevel> level; ///< innermost first, at least one: no level is one group with P = 1
   double steepest = 1;           ///< Q: the largest product of exponents from an innermost group to the root
   bool plain_above = true;       ///< every exponent above the innermost level is 1
@@ -54,7 +62,9 @@ struct Field {
   /// Something on the way to the root may be larger than single precision holds (ln: 88).
   bool beyond_single() const { return ln_highest > single_ln; }
   static constexpr double single_ln = 80;
-  Box bounds() const; ///< of all centres
+  Box bounds() const; ///< of all centres and cores
+  /// Index in `body` of what a cluster is, -1: of atoms.
+  int32_t body_of(int64_t cluster) const;
 };
 
 /// far_error: bound on what all clusters beyond their cutoff2 together add to G anywhere (no unit). Throws

@@ -35,9 +35,29 @@ constexpr int points = 512;
 
 } // namespace
 
+/// Adds what the power of a body is above that of the atom that stands for it, in whose place it comes (field.md
+/// §7).
+template <class T>
+void Evaluator::add_body(const Field& f, const BlockAtoms& s, const BlockAtoms::UnitBody& body, double h,
+                         T* out) const {
+  const FieldBody& b = f.body[body.body];
+  const double p = f.level[0].exponent[f.group[b.cluster]], peak = f.ln_peak[b.cluster];
+  double scale = 0; // ln of what the unit's power is multiplied with
+  if (s.arithmetic == Arithmetic::in_scaled)
+    scale = p * (std::numbers::ln2 * s.exact_units.log2_term[body.unit] - peak +
+                 f.decay * norm2(s.block_middle - body.stand_in));
+  for (int point = 0; point < points; ++point) {
+    const Vec3d at = s.block_middle + h * Vec3d{(point >> 6) - 3.5, (point >> 3 & 7) - 3.5, (point & 7) - 3.5};
+    const double power = p * (peak - f.decay * b.core.distance2(at)) + scale,
+                 stand_in = p * (peak - f.decay * norm2(at - body.stand_in)) + scale;
+    if (power > -700)
+      out[point] += static_cast<T>(std::exp(power) - std::exp(stand_in));
+  }
+}
+
 /// out: G from the units and their factors.
 template <class T, class Units>
-void Evaluator::sum(const Field& f, const BlockAtoms& s, const Units& u, const BlockShape<T>& shape,
+void Evaluator::sum(const Field& f, const BlockAtoms& s, const Units& u, const BlockShape<T>& shape, double h,
                     Scratch<T>& scratch, T* out) {
   [[maybe_unused]] const FlushSubnormals flush;
   BlockRows<T>& rows = scratch.rows;
@@ -46,8 +66,12 @@ void Evaluator::sum(const Field& f, const BlockAtoms& s, const Units& u, const B
   rows.yz.resize(std::max(rows.yz.size(), 64 * n));
   rows.scale.resize(std::max(rows.scale.size(), static_cast<size_t>(s.units) + 16));
   make_rows(u, shape, rows);
-  if (f.plain_above)
-    return sum_units(u, rows, static_cast<T>(s.added), out);
+  if (f.plain_above) {
+    sum_units(u, rows, static_cast<T>(s.added), out);
+    for (const BlockAtoms::UnitBody& body : s.unit_bodies)
+      add_body(f, s, body, h, out);
+    return;
+  }
   std::fill_n(out, points, static_cast<T>(s.added));
   OpenGroups groups(f);
   scratch.level.assign(groups.levels() * points, 0);
@@ -57,9 +81,12 @@ void Evaluator::sum(const Field& f, const BlockAtoms& s, const Units& u, const B
     const double shift = s.arithmetic == Arithmetic::in_scaled ? s.group_shift[closed++] : 0;
     raise_group(static_cast<T>(f.level[l].exponent[g]), static_cast<T>(shift), sum_of(l), sum_of(l + 1));
   };
+  auto body = s.unit_bodies.begin();
   for (int32_t i = 0; i < u.n; ++i) {
     groups.enter(s.group_of(i), close);
     add_units(u, rows, i, i + 1, sum_of(1));
+    if (body != s.unit_bodies.end() && body->unit == i)
+      add_body(f, s, *body++, h, sum_of(1));
   }
   groups.finish(close);
 }
@@ -68,13 +95,13 @@ void Evaluator::in_single(const Field& f, const BlockAtoms& s, double h, float* 
   const double step = 2 * f.decay * h * std::numbers::log2e;
   BlockShape<float> shape{{}, static_cast<float>(step), static_cast<float>(-0.5 * step * h)};
   std::copy_n(s.box.middle, 3, shape.middle);
-  sum(f, s, s.block_units, shape, single_, out);
+  sum(f, s, s.block_units, shape, h, single_, out);
 }
 
 void Evaluator::in_double(const Field& f, const BlockAtoms& s, double h, float* out) {
   const double step = 2 * f.decay * h * std::numbers::log2e;
   exact_.resize(points);
-  sum(f, s, s.exact_units, BlockShape<double>{{}, step, -0.5 * step * h}, double_, exact_.data());
+  sum(f, s, s.exact_units, BlockShape<double>{{}, step, -0.5 * step * h}, h, double_, exact_.data());
   std::copy_n(exact_.begin(), points, out);
 }
 
@@ -91,9 +118,17 @@ void Evaluator::by_logarithms(const Field& f, const BlockAtoms& s, double h, flo
       to = log_add(to, f.level[l].exponent[g] * open[l]);
       open[l] = -infinity;
     };
+    auto body = s.unit_bodies.begin();
     for (int32_t n = 0; n < units.n; ++n) {
       const auto u = static_cast<size_t>(n);
       groups.enter(s.group_of(n), close);
+      double& to = open.size() > 1 ? open[1] : open[0];
+      if (body != s.unit_bodies.end() && body->unit == n) {
+        const FieldBody& b = f.body[body++->body];
+        to = log_add(to,
+                     units.exponent[u] * (f.ln_peak[b.cluster] - f.decay * b.core.distance2(s.block_middle + d)));
+        continue;
+      }
       double top = -infinity, sum = 0;
       const auto term = [&](size_t a) {
         return ln2 * (units.atom_constant[a] + dot(at, Vec3d{units.atom_x[a], units.atom_y[a], units.atom_z[a]}));
@@ -106,7 +141,6 @@ void Evaluator::by_logarithms(const Field& f, const BlockAtoms& s, double h, flo
       const Vec3d center{units.x[u], units.y[u], units.z[u]};
       const double ln_sum =
           top + std::log(sum) + ln2 * units.log2_term[u] + f.decay * (2 * dot(d, center) - norm2(d));
-      double& to = open.size() > 1 ? open[1] : open[0];
       to = log_add(to, units.exponent[u] * ln_sum);
     }
     groups.finish(close);

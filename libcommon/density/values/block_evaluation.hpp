@@ -18,8 +18,10 @@ private:
     AlignedVector<T> level; ///< [512 l]: the open group of level l
   };
   template <class T, class Units>
-  void sum(const Field& f, const BlockAtoms& s, const Units& u, const BlockShape<T>& shape, Scratch<T>& scratch,
-           T* out);
+  void sum(const Field& f, const BlockAtoms& s, const Units& u, const BlockShape<T>& shape, double h,
+           Scratch<T>& scratch, T* out);
+  template <class T>
+  void add_body(const Field& f, const BlockAtoms& s, const BlockAtoms::UnitBody& body, double h, T* out) const;
   void in_single(const Field& f, const BlockAtoms& s, double h, float* out);
   void in_double(const Field& f, const BlockAtoms& s, double h, float* out);
   void by_logarithms(const Field& f, const BlockAtoms& s, double h, float* out);

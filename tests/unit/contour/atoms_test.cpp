@@ -54,6 +54,32 @@ TEST_CASE("one atom: volume, area and every surface point converge to the sphere
   }
 }
 
+TEST_CASE("a cylinder without atoms: volume and area converge to those of a cylinder with rounded edges") {
+  const Vec3d axis = Vec3d{2, -1, 1.5} / norm(Vec3d{2, -1, 1.5});
+  const double radius = 5, half = 6, skin = 1.7;
+  Hierarchy h;
+  h.atom.push_back({{0.31, -0.17, 0.23}, skin});
+  h.body = {{Body::Shape::cylinder, h.atom[0].center, half * axis, {}, radius, skin, 0}};
+  // Steiner's formula: of the core the volume, the area, and the integral of the mean curvature.
+  const double r = radius - skin, l = 2 * (half - skin), s = skin;
+  const double core = pi * r * r * l, face = 2 * pi * r * (l + r), bend = pi * l + pi * pi * r;
+  const double volume = core + face * s + bend * s * s + 4. / 3 * pi * s * s * s,
+               area = face + 2 * bend * s + 4 * pi * s * s;
+  double before[2] = {1, 1};
+  for (const double spacing : {1.2, 0.6, 0.3}) {
+    CAPTURE(spacing);
+    const Validity v = check_validity(mesh_of(h, spacing), 1);
+    CHECK(v.valid());
+    CHECK(v.surface.euler == 2);
+    const double error[2] = {std::fabs(v.volume / volume - 1), std::fabs(v.surface.area / area - 1)};
+    for (int i = 0; i < 2; ++i) {
+      CHECK(error[i] < before[i] / 2.5);
+      CHECK(error[i] < 0.04 * spacing * spacing);
+      before[i] = error[i];
+    }
+  }
+}
+
 TEST_CASE("two atoms: the volume is that of the known body of revolution, apart, touching and merged") {
   // On the axis through both, G = exp(-ρ²) A(z): the surface is ρ² = log A(z).
   for (double half : {0.7, 1.4, 3.0}) {

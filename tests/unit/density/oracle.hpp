@@ -18,13 +18,52 @@ inline double log_sum(const std::vector<double>& ln) {
   return top + std::log(sum);
 }
 
+/// Squared distance from the core of a body, by its definition.
+inline double core_distance2(const Body& b, Vec3d p) {
+  const auto beyond = [](double x, double half) { return std::max(std::abs(x) - half, 0.0); };
+  const Vec3d q = p - b.center;
+  const double u = norm(b.u), along = u > 0 ? dot(q, b.u) / u : 0, round = b.size - b.skin;
+  switch (b.shape) {
+  case Body::Shape::sphere:
+    return std::pow(std::max(norm(q) - round, 0.0), 2);
+  case Body::Shape::capsule:
+    return std::pow(std::max(std::hypot(beyond(along, u), norm(cross(q, b.u)) / u) - round, 0.0), 2);
+  case Body::Shape::cylinder:
+    return std::pow(beyond(along, u - b.skin), 2) + std::pow(std::max(norm(cross(q, b.u)) / u - round, 0.0), 2);
+  case Body::Shape::box: {
+    const Vec3d w = cross(b.u, b.v);
+    return std::pow(beyond(along, u - b.skin), 2) +
+           std::pow(beyond(dot(q, b.v) / norm(b.v), norm(b.v) - b.skin), 2) +
+           std::pow(beyond(dot(q, w) / norm(w), round), 2);
+  }
+  case Body::Shape::slab:
+    break;
+  }
+  Vec3d side; // the axis that is least along u, the first of equals, without its part along u
+  int least = std::abs(b.u.y) < std::abs(b.u.x) ? 1 : 0;
+  least = std::abs(b.u.z) < std::abs(b.u[least]) ? 2 : least;
+  side[least] = 1;
+  side = side - dot(side, b.u) / (u * u) * b.u;
+  const Vec3d other = cross(b.u, side);
+  return std::pow(beyond(along, u - b.skin), 2) + std::pow(beyond(dot(q, side) / norm(side), round), 2) +
+         std::pow(beyond(dot(q, other) / norm(other), round), 2);
+}
+
+/// Squared distance of p from what makes the term of atom i: its center, or a body's core.
+inline double term_distance2(const Hierarchy& h, int64_t i, Vec3d p) {
+  for (const Body& b : h.body)
+    if (b.atom == i)
+      return core_distance2(b, p);
+  return norm2(p - h.atom[static_cast<size_t>(i)].center);
+}
+
 /// ln of the sum over children [begin, end) of level l, or over atoms past the innermost level.
 inline double log_children(const Hierarchy& h, size_t l, int64_t begin, int64_t end, double decay, Vec3d p) {
   std::vector<double> ln;
   for (int64_t i = begin; i < end; ++i) {
     const auto s = static_cast<size_t>(i);
     if (l == h.level.size()) {
-      ln.push_back(-decay * (norm2(p - h.atom[s].center) - h.atom[s].radius * h.atom[s].radius));
+      ln.push_back(-decay * (term_distance2(h, i, p) - h.atom[s].radius * h.atom[s].radius));
     } else {
       const Group& g = h.level[l].group[s];
       ln.push_back(g.exponent * log_children(h, l + 1, g.begin, g.end, decay, p));
@@ -63,6 +102,32 @@ inline Hierarchy random_chains(int chains, int residues, int atoms, std::vector<
       h.level[l].group.push_back({"c", exponents[levels - 1 - l], l + 2 == levels ? int64_t{c} * residues : c,
                                   l + 2 == levels ? int64_t{c + 1} * residues : c + 1});
   }
+  return h;
+}
+
+/// One of each shape behind the atoms, each in an innermost group of its own, all in a chain of their own.
+inline Hierarchy with_bodies(Hierarchy h) {
+  using Shape = Body::Shape;
+  const Vec3d u = {4, 3, 1.5}, v = {-1.5, 0, 4};
+  std::vector<Body> bodies = {{Shape::sphere, {9, 0, 0}, {}, {}, 5, 1.7},
+                              {Shape::capsule, {-12, 3, 2}, {3, 8, -2}, {}, 3.5, 1.4},
+                              {Shape::cylinder, {2, -14, 5}, u, {}, 4, 1.7},
+                              {Shape::box, {3, 12, -8}, u, v, 3, 1.2},
+                              {Shape::slab, {0, 2, -16}, {0.5, 1, 2.5}, {}, 11, 2}};
+  const size_t levels = h.level.size();
+  std::vector<int64_t> first; // child of the new group of each level above the innermost
+  for (size_t l = 0; l + 1 < levels; ++l)
+    first.push_back(static_cast<int64_t>(h.level[l + 1].group.size()));
+  for (Body& b : bodies) {
+    b.atom = static_cast<int64_t>(h.atom.size());
+    h.atom.push_back({b.center, b.skin});
+    h.body.push_back(b);
+    if (levels > 0)
+      h.level.back().group.push_back({"body", h.level.back().group[0].exponent, b.atom, b.atom + 1});
+  }
+  for (size_t l = levels - 1; levels > 1 && l-- > 0;)
+    h.level[l].group.push_back(
+        {"bodies", h.level[l].group[0].exponent, first[l], static_cast<int64_t>(h.level[l + 1].group.size())});
   return h;
 }
 

@@ -11,7 +11,7 @@ namespace {
 /// A charge without a body after every third atom, a residue of such charges in every chain and a chain of them.
 Hierarchy with_charges(const Hierarchy& h) {
   Hierarchy c;
-  c.level.resize(2);
+  c.level = {{"chain", {}}, {"residue", {}}};
   const auto add_charge = [&](Vec3d p) { c.atom.push_back({p, 0, 0.4}); };
   const auto close = [](Level& level, const char* name, double exponent, int64_t begin, size_t end) {
     level.group.push_back({name, exponent, begin, static_cast<int64_t>(end)});

@@ -11,7 +11,7 @@ namespace {
 double ln_term(const Hierarchy& h, size_t l, int64_t i, double decay, Vec3d p) {
   const auto s = static_cast<size_t>(i);
   if (l == h.level.size())
-    return -decay * (norm2(p - h.atom[s].center) - h.atom[s].radius * h.atom[s].radius);
+    return -decay * (test::term_distance2(h, i, p) - h.atom[s].radius * h.atom[s].radius);
   const Group& g = h.level[l].group[s];
   return g.exponent * test::log_children(h, l + 1, g.begin, g.end, decay, p);
 }
@@ -88,6 +88,23 @@ TEST_CASE("Labels do not depend on the number of threads, nor on the isovalue be
     CHECK(one.share[l] == five.share[l]);
     for (size_t i = 0; i < place.size(); ++i)
       CHECK(other.share[l][i] == Approx(one.share[l][i]).margin(4e-6));
+  }
+}
+
+TEST_CASE("Bodies without atoms have labels like atoms") {
+  for (const std::vector<double>& e : {std::vector<double>{0.3, 1}, {0.5, 0.2}, {}}) {
+    const Hierarchy h = test::with_bodies(test::random_chains(3, 10, 6, e, 3));
+    const std::vector<Vec3d> place = places_near(h, 400, 6, 4);
+    const label::Labels found = label::find_labels(h, place, {1, 1, 2});
+    double within = 1e-6;
+    for (const double p : e)
+      within /= std::min(p, 1.0);
+    int of_bodies = 0;
+    for (size_t i = 0; i < place.size(); ++i) {
+      check_place(h, found, i, 1, place[i], within);
+      of_bodies += found.index.back()[i] >= h.body.front().atom;
+    }
+    CHECK(of_bodies > 20);
   }
 }
 
