@@ -99,6 +99,8 @@ Status run(const Options& o, cli::Run& r) {
   par::start_threads_during(o.resolved_threads(), [&] { h = formats::read_hier(in.stream(), in.name()); });
   if (o.on_device() && !h.body.empty())
     fail(Status::mode_unavailable, in.name() + ": found bodies without atoms, expected --mode omp or seq for them");
+  if (body && !h.body.empty())
+    fail_input(in.name() + ": found bodies without atoms, expected --surface gaussian for them");
   formats::Leaves leaves(o.resolved_threads());
   d.take = [&](const FieldInfo& info, std::span<const BandBlocks> runs) {
     r.phase("write");

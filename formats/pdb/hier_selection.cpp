@@ -110,4 +110,33 @@ std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& text, c
   return chosen;
 }
 
+void apply_rules(Hierarchy& h, const std::vector<Rule>& rules) {
+  for (const Rule& rule : rules) {
+    // [entry of the level] selected; from atoms outwards
+    std::vector<uint8_t> chosen = select_atoms(h, rule.selection, rule.where);
+    for (size_t l = h.level.size(); l-- > 0;) {
+      std::vector<uint8_t> groups;
+      const std::string& level = h.level[l].name;
+      const std::optional<double> none, &exponent = level == "residue"  ? rule.residue
+                                                    : level == "chain"  ? rule.chain
+                                                    : level == "domain" ? rule.domain
+                                                                        : none;
+      for (Group& g : h.level[l].group) {
+        groups.push_back(std::find(chosen.begin() + g.begin, chosen.begin() + g.end, 1) != chosen.begin() + g.end);
+        if (groups.back() && exponent)
+          g.exponent = *exponent;
+      }
+      chosen = std::move(groups);
+    }
+    const auto needs = [&](const std::optional<double>& exponent, const char* name, const char* level) {
+      if (exponent && find_level(h, level) == h.level.size())
+        fail_input(rule.where + ": found " + name +
+                   ", expected exponents of levels that there are: there is no level " + level);
+    };
+    needs(rule.residue, "P_R", "residue");
+    needs(rule.chain, "P_C", "chain");
+    needs(rule.domain, "P_D", "domain");
+  }
+}
+
 } // namespace molmesh::formats

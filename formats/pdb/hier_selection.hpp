@@ -1,5 +1,6 @@
 // hier_selection.hpp — gemmi's selections (MMDB syntax) on the groups and atoms of a .hier.
 #pragma once
+#include "molecule/exponents.hpp"
 #include "molecule/hierarchy.hpp"
 
 namespace molmesh::formats {
@@ -9,5 +10,10 @@ namespace molmesh::formats {
 /// there is no chain A. Throws Error "WHERE: …": usage for a selection whose syntax is wrong, bad_input for
 /// one that asks for a level that the hierarchy does not have, or that touches nothing.
 std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& selection, const std::string& where);
+
+/// Applies rules to a hierarchy as it is: on every group of the levels `residue`, `chain` and `domain` of which a
+/// rule selects an atom, its exponent is set; later rules win. Throws what select_atoms() throws, and
+/// Error(bad_input) for an exponent of a level that the hierarchy does not have.
+void apply_rules(Hierarchy& h, const std::vector<Rule>& rules);
 
 } // namespace molmesh::formats

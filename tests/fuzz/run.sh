@@ -6,7 +6,7 @@ cd "$(dirname "$0")/../.." || exit 1
 seconds=$1
 shift
 readers=("$@")
-[ ${#readers[@]} -gt 0 ] || readers=(hier vtu mesh vdb pdb mmcif mmjson pqr rules map plan)
+[ ${#readers[@]} -gt 0 ] || readers=(hier join vtu mesh vdb pdb mmcif mmjson pqr rules map plan)
 cmake --preset sanitize >/dev/null && cmake --build --preset sanitize --target "${readers[@]/#/fuzz_}" || exit 1
 
 fuzz() { # fuzz READER: its seeds are the samples of its format and what an earlier run kept

@@ -54,8 +54,8 @@ inline void describe(cli::Table& t, Options& o) {
        "chains A and B of a biological assembly, with waters"}};
   t.page.files = {
       {".pdb, .cif, .bcif, .json, .pqr, .gro, .xyzr", "atomic structure, also as .gz, read: formats/pdb/PDB.md"},
-      {".hier", "molecular hierarchy, written: formats/hier/HIERv1.md"}};
-  t.page.see_also = {"hier2density", "tetlabel"};
+      {".hier", "molecular hierarchy, written: formats/hier/HIERv1.md, formats/hier/HIERv2.md"}};
+  t.page.see_also = {"hier2density", "hierjoin", "tetlabel"};
 }
 
 } // namespace molmesh

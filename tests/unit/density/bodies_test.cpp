@@ -57,7 +57,7 @@ TEST_CASE("a moved body is the body seen from where it was") {
   }
 }
 
-TEST_CASE("with bodies, values are within the tolerance, for any exponents and depth") {
+TEST_CASE("with bodies, values are within the tolerance, for any exponents and depth", "[slow]") {
   const std::vector<std::vector<double>> settings = {{},          {1},           {0.3, 1},      {0.5, 1},
                                                      {0.05, 0.5}, {0.02, 0.02},  {2, 1},        {4, 4},
                                                      {0.3, 4},    {0.8, 0.5, 1}, {0.5, 2, 0.5}, {0.3, 0.8, 2.5}};
