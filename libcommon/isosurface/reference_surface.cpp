@@ -1,7 +1,6 @@
-// reference_surface.cpp — hashes triangles into grids and finds the closest point of one.
+// reference_surface.cpp — a tree of the triangles' boxes, and the closest point of one.
 #include "isosurface/reference_surface.hpp"
-#include "geom/cell_levels.hpp"
-#include "par/par.hpp"
+#include "geom/morton.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -52,73 +51,69 @@ ReferenceSurface::ReferenceSurface(const TetMesh& mesh, const std::vector<uint8_
       continue;
     const auto p = [&](size_t i) { return mesh.point[mesh.tri[t][i]]; };
     const Vec3d n = cross(p(1) - p(0), p(2) - p(0));
-    triangle_.push_back({p(0), p(1), p(2), n / std::max(norm(n), 1e-300)});
+    triangle_.push_back({p(0), p(1), p(2), n / std::max(norm(n), 1e-300), static_cast<int32_t>(triangle_.size())});
     edges.insert(edges.end(), {norm(p(1) - p(0)), norm(p(2) - p(1)), norm(p(0) - p(2))});
   }
   if (triangle_.empty())
     return;
-  const double edge = typical(edges);
-  spacing_ = 0.8 * edge; // a dual-contouring surface has edges of 1.2 h
-  cell_ = std::max(edge, 1e-300);
-  uint64_t buckets = 16;
-  while (buckets < 2 * triangle_.size())
-    buckets *= 2;
-  mask_ = buckets - 1;
-  begin_.assign(buckets + 1, 0);
-  const auto each = [&](auto&& f) {
-    for (size_t t = 0; t < triangle_.size(); ++t) {
-      const Triangle& x = triangle_[t];
-      Vec3d low = x.a, high = x.a;
-      for (int a = 0; a < 3; ++a) {
-        low[a] = std::min({x.a[a], x.b[a], x.c[a]});
-        high[a] = std::max({x.a[a], x.b[a], x.c[a]});
-      }
-      const int level = cell_level(low, high, cell_);
-      levels_ |= uint64_t{1} << level;
-      cell_range(low, high, cell_size(cell_, level)).for_each([&](int64_t i, int64_t j, int64_t k) {
-        f(bucket(cell_key(i, j, k, level)), static_cast<int32_t>(t));
-      });
-    }
-  };
-  each([&](uint64_t b, int32_t) { ++begin_[b]; });
-  entry_.resize(static_cast<size_t>(par::exclusive_scan(begin_)));
-  std::vector<int64_t> next = begin_;
-  each([&](uint64_t b, int32_t t) { entry_[next[b]++] = t; });
+  edge_ = std::max(typical(edges), 1e-300);
+  spacing_ = 0.8 * edge_; // a dual-contouring surface has edges of 1.2 h
+  sort_along_curve();
+  tree_ = std::make_unique<BoxTree>(
+      triangle_.size(), [&](size_t t) { return box_around(triangle_[t].a, triangle_[t].b, triangle_[t].c); });
 }
 
-bool ReferenceSurface::closest(Vec3d p, double reach, Vec3d& point, int32_t& triangle) const {
+void ReferenceSurface::sort_along_curve() {
+  const auto middle = [](const Triangle& t) { return (t.a + t.b + t.c) / 3.; };
+  Vec3d low = middle(triangle_[0]), high = low;
+  for (const Triangle& t : triangle_)
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], middle(t)[a]);
+      high[a] = std::max(high[a], middle(t)[a]);
+    }
+  const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z, 1e-300});
+  constexpr double places = (1 << 21) - 1; // of the curve, along each axis
+  std::vector<std::pair<uint64_t, Triangle>> sorted;
+  for (const Triangle& t : triangle_) {
+    const Vec3d place = places / extent * (middle(t) - low);
+    const auto at = [](double x) { return static_cast<int32_t>(x); };
+    sorted.emplace_back(morton({at(place.x), at(place.y), at(place.z)}), t);
+  }
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (size_t t = 0; t < sorted.size(); ++t)
+    triangle_[t] = sorted[t].second;
+}
+
+const ReferenceSurface::Triangle* ReferenceSurface::closest(Vec3d p, double reach, Vec3d& point) const {
   double best = reach * reach;
-  triangle = -1;
-  if (triangle_.empty())
-    return false;
-  const Vec3d wide{reach, reach, reach};
-  for_levels(levels_, [&](int level) {
-    cell_range(p - wide, p + wide, cell_size(cell_, level)).for_each([&](int64_t i, int64_t j, int64_t k) {
-      const uint64_t b = bucket(cell_key(i, j, k, level));
-      for (int64_t x = begin_[b]; x < begin_[b + 1]; ++x) {
-        const int32_t t = entry_[x];
-        const Vec3d q = closest_on(triangle_[t].a, triangle_[t].b, triangle_[t].c, p);
-        const double d = norm2(q - p);
-        if (d < best || (d == best && triangle >= 0 && t < triangle))
-          best = d, point = q, triangle = t;
-      }
+  const double rounding = 1e-9 * best + 1e-20 * edge_ * edge_;
+  const Triangle* nearest = nullptr;
+  if (tree_)
+    tree_->near(p, best, [&](size_t i) {
+      const Triangle& t = triangle_[i];
+      const double off = dot(p - t.a, t.normal); // from its plane, of which no place is nearer
+      if (off * off > best + rounding)
+        return best;
+      const Vec3d q = closest_on(t.a, t.b, t.c, p);
+      const double d = norm2(q - p);
+      if (d < best || (d == best && nearest && t.index < nearest->index))
+        best = d, point = q, nearest = &t;
+      return best;
     });
-  });
-  return triangle >= 0;
+  return nearest;
 }
 
 bool ReferenceSurface::project(Vec3d& p, double reach) const {
-  int32_t t;
   const Vec3d from = p;
-  return closest(from, std::min(reach, cell_), p, t);
+  return closest(from, std::min(reach, edge_), p) != nullptr;
 }
 
 bool ReferenceSurface::probe(Vec3d p, double& distance, Vec3d& normal) const {
-  int32_t t;
   Vec3d q;
-  if (!closest(p, 0.5 * cell_, q, t))
+  const Triangle* t = closest(p, 0.5 * edge_, q);
+  if (!t)
     return false;
-  normal = triangle_[t].normal;
+  normal = t->normal;
   const double length = norm(p - q);
   distance = dot(p - q, normal) < 0 ? -length : length;
   return true;

@@ -1,12 +1,14 @@
 // reference_surface.hpp — the input mesh's own surface, the target if there is no density.
 #pragma once
 #include "isosurface/target.hpp"
+#include "mesh/box_tree.hpp"
 #include "mesh/tet_mesh.hpp"
+#include <memory>
 #include <vector>
 
 namespace molmesh {
 
-/// Closest points on a set of triangles, found through hash grids. Memory O(triangles), whatever their sizes.
+/// Closest points on a set of triangles, found through a tree of their boxes: also where thousands meet in a point.
 class ReferenceSurface final : public Target {
 public:
   /// take [tris]: which triangles count. spacing() is a share of their mean edge, far longer ones left out.
@@ -14,19 +16,17 @@ public:
   bool project(Vec3d& p, double reach) const override;
   bool probe(Vec3d p, double& distance, Vec3d& normal) const override;
   double spacing() const override { return spacing_; }
-  size_t entries() const { return entry_.size(); } ///< of the grids: 27 a triangle at most
 
 private:
   struct Triangle {
     Vec3d a, b, c, normal;
+    int32_t index; ///< in the mesh: of equally near ones the first counts
   };
-  bool closest(Vec3d p, double reach, Vec3d& point, int32_t& triangle) const;
-  std::vector<Triangle> triangle_;
-  double cell_ = 1, spacing_ = 1;
-  uint64_t mask_ = 0, levels_ = 0; ///< levels: a bit each where there are triangles
-  std::vector<int64_t> begin_;     ///< [buckets + 1]
-  std::vector<int32_t> entry_;
-  uint64_t bucket(uint64_t key) const { return (key ^ key >> 29) & mask_; }
+  void sort_along_curve();
+  const Triangle* closest(Vec3d p, double reach, Vec3d& point) const;
+  std::vector<Triangle> triangle_; ///< along a curve that keeps near ones together
+  std::unique_ptr<BoxTree> tree_;
+  double edge_ = 1, spacing_ = 1; ///< typical length of an edge, Å
 };
 
 } // namespace molmesh

@@ -2,6 +2,7 @@
 #pragma once
 #include "geom/boxes.hpp"
 #include "par/par.hpp"
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -35,7 +36,43 @@ public:
     return !level_.back().empty() && descend(level_.size() - 1, 0, box, first, f);
   }
 
+  /// Visits the boxes that come within the distance of p whose square is `best`, the nearest of eight first; f(i)
+  /// returns what `best` is from then on.
+  template <class F>
+  void near(Vec3d p, double best, F&& f) const {
+    if (!level_.back().empty())
+      approach(level_.size() - 1, 0, p, best, f);
+  }
+
 private:
+  template <class F>
+  void approach(size_t level, size_t e, Vec3d p, double& best, F& f) const {
+    const EightBoxes& eight = level_[level][e];
+    struct Child {
+      double distance2;
+      int32_t id;
+    } child[8];
+    int n = 0;
+    for (size_t i = 0; i < 8 && eight.id[i] >= 0; ++i) {
+      double distance2 = 0;
+      for (size_t k = 0; k < 3; ++k) {
+        const double x = p[int(k)], off = std::max({eight.low[k][i] - x, x - eight.high[k][i], 0.});
+        distance2 += off * off;
+      }
+      if (distance2 > best)
+        continue;
+      int at = n++;
+      for (; at > 0 && child[at - 1].distance2 > distance2; --at)
+        child[at] = child[at - 1];
+      child[at] = {distance2, eight.id[i]};
+    }
+    for (int i = 0; i < n && child[i].distance2 <= best; ++i) {
+      if (level == 0)
+        best = f(size_t(child[i].id));
+      else
+        approach(level - 1, size_t(child[i].id), p, best, f);
+    }
+  }
   template <class F>
   bool descend(size_t level, size_t e, const Boxf& box, size_t first, F& f) const {
     const EightBoxes& eight = level_[level][e];
