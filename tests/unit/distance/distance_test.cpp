@@ -2,6 +2,7 @@
 // whose spheres meet in many places at once.
 #include "distance/distance.hpp"
 #include "unit/distance/oracle.hpp"
+#include "unit/distance/sampled.hpp"
 #include "unit/refusal.hpp"
 #include <catch2/catch.hpp>
 
@@ -133,4 +134,28 @@ TEST_CASE("spheres that meet in one place, coincide, touch or lie within each ot
         o.tolerance = 1e-6;
         check(atoms(list), body, o);
       }
+}
+
+TEST_CASE("the solvent-excluded body is what no probe reaches, by probes all over the atoms") {
+  const double step = 0.06;
+  for (const double probe : {1.4, 0.7}) {
+    const Hierarchy h = cloud(30, 8, 11);
+    const test::SampledSurface sampled(h, probe, step);
+    density::Options o;
+    o.spacing = 0.55;
+    const BlockGrid g = compute(h, {Surface::solvent_excluded, probe}, o);
+    double lowest = 1e300, highest = -1e300;
+    for (size_t b = 0; b < g.corner.size(); ++b)
+      for (size_t s = 0; s < 512; s += 5)
+        if (g.active[8 * b + (s >> 6)] >> (s & 63) & 1) {
+          const double there = std::log(double(g.value[512 * b + s])), most = 1.5;
+          const double off =
+              sampled.distance(g.frame.position(g.corner[b] + within_block(static_cast<int>(s))), most) -
+              std::min(there, most);
+          lowest = std::min(lowest, off);
+          highest = std::max(highest, off);
+        }
+    CHECK(lowest > -1e-4); // the tolerance of the values
+    CHECK(highest < step); // the nearest place may be one that is not taken
+  }
 }
