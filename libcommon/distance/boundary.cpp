@@ -49,15 +49,14 @@ private:
     // (R² + d² - S²) / 2dR without the difference of large squares
     const double height = (d + (b.radius - other.radius) * ((b.radius + other.radius) / d)) / (2 * b.radius);
     if (height > -1 && height < 1)
-      all_.push_back({between / d, height, tolerance_ * other.radius / (d * b.radius), number});
+      all_.push_back({between / d, height, std::sqrt((1 - height) * (1 + height)),
+                      tolerance_ * other.radius / (d * b.radius), number});
   }
   /// By angles: larger ≥ between + smaller. Not of equal caps: either may bound the free part of the other's
   /// sphere.
   static bool within(const Cap& c, const Cap& larger) {
     constexpr double rounding = 1e-12;
-    const auto sine = [](double cosine) { return std::sqrt((1 - cosine) * (1 + cosine)); };
-    return dot(c.normal, larger.normal) >=
-           larger.height * c.height + sine(larger.height) * sine(c.height) + rounding;
+    return dot(c.normal, larger.normal) >= larger.height * c.height + larger.rim * c.rim + rounding;
   }
 
   const UnionOfBalls& balls_;
@@ -90,11 +89,10 @@ private:
   bool uncovered(const Cap& rim, const std::vector<Cap>& caps) {
     cover_.clear();
     span_plane(rim.normal, first_, second_);
-    const double sine = std::sqrt((1 - rim.height) * (1 + rim.height));
     for (const Cap& o : caps) {
       if (&o == &rim)
         continue;
-      const Cover v{sine * dot(first_, o.normal), sine * dot(second_, o.normal),
+      const Cover v{rim.rim * dot(first_, o.normal), rim.rim * dot(second_, o.normal),
                     o.buries() - rim.height * dot(rim.normal, o.normal)};
       if (v.c * v.c < v.a * v.a + v.b * v.b)
         cover_.push_back(v);
@@ -110,7 +108,7 @@ private:
                      rim.normal,
                      first_,
                      second_,
-                     b.radius * std::sqrt((1 - rim.height) * (1 + rim.height)),
+                     b.radius * rim.rim,
                      1,
                      0,
                      Arc::Length::circle,

@@ -12,6 +12,7 @@ namespace molmesh::distance {
 struct Cap {
   Vec3d normal;  ///< of length 1
   double height; ///< between -1 and 1
+  double rim;    ///< radius of the rim, in radii of the ball
   double slack;  ///< places up to this much higher count as free: they are hardly within the other ball
   int32_t other; ///< the other ball
   double buries() const { return height + slack; }
