@@ -7,12 +7,11 @@
 #include <catch2/catch.hpp>
 
 using namespace molmesh;
-using distance::Body;
 using distance::Surface;
 
 namespace {
 
-BlockGrid compute(const Hierarchy& h, const Body& body, const density::Options& o) {
+BlockGrid compute(const Hierarchy& h, const distance::Body& body, const density::Options& o) {
   density::Counts counts;
   return to_block_grid(distance::compute(h, body, o, counts), 1);
 }
@@ -36,12 +35,12 @@ Hierarchy cloud(int n, double width, unsigned seed) {
   return atoms(list);
 }
 
-const std::vector<Body> bodies = {{Surface::van_der_waals, 0},      {Surface::solvent_accessible, 1.4},
-                                  {Surface::solvent_excluded, 1.4}, {Surface::solvent_excluded, 0.5},
-                                  {Surface::solvent_excluded, 0},   {Surface::solvent_excluded, 3}};
+const std::vector<distance::Body> bodies = {{Surface::van_der_waals, 0},      {Surface::solvent_accessible, 1.4},
+                                            {Surface::solvent_excluded, 1.4}, {Surface::solvent_excluded, 0.5},
+                                            {Surface::solvent_excluded, 0},   {Surface::solvent_excluded, 3}};
 
 /// Every point of the grid: values, sides, and active points exactly on the corners of band cells.
-void check(const Hierarchy& h, const Body& body, density::Options o) {
+void check(const Hierarchy& h, const distance::Body& body, density::Options o) {
   INFO("surface " << int(body.surface) << ", probe " << body.probe << ", spacing " << o.spacing);
   const test::SurfaceOracle oracle(h, body);
   const BlockGrid g = compute(h, body, o);
@@ -97,7 +96,7 @@ void check(const Hierarchy& h, const Body& body, density::Options o) {
 
 TEST_CASE("distances to the surfaces of clouds of atoms are those of the nearest place") {
   for (const unsigned seed : {1u, 2u, 3u})
-    for (const Body& body : bodies) {
+    for (const distance::Body& body : bodies) {
       density::Options o;
       o.spacing = seed == 1 ? 0.7 : seed == 2 ? 1.1 : 2.3;
       o.tolerance = 1e-6;
@@ -125,7 +124,7 @@ TEST_CASE("spheres that meet in one place, coincide, touch or lie within each ot
     cube.push_back({{2.0 * (c & 1), 2.0 * (c >> 1 & 1), 2.0 * (c >> 2)}, std::sqrt(3.0)}); // eight in one place
   lists.push_back(cube);
   for (const List& list : lists)
-    for (const Body& body : bodies)
+    for (const distance::Body& body : bodies)
       for (const double spacing : {0.5, 1.0}) {
         INFO("list " << &list - lists.data());
         density::Options o;
