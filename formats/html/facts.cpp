@@ -1,0 +1,189 @@
+// facts.cpp — measures the mesh and puts the figures into JSON.
+#include "formats/html/facts.hpp"
+#include "formats/vtu/names.hpp"
+#include "geom/tet_quality.hpp"
+#include "par/par.hpp"
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+namespace molmesh::formats {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json finite(double v) {
+  return std::isfinite(v) ? json(v) : json(nullptr);
+}
+json numbers(Vec3d p) {
+  return {p.x, p.y, p.z};
+}
+
+json distribution(const Distribution& d) {
+  return {{"min", finite(d.min)}, {"max", finite(d.max)}, {"mean", finite(d.mean)},
+          {"low", d.low},         {"width", d.width},     {"bins", d.bin}};
+}
+
+/// Range over the elements of an element's smallest and of its largest dihedral angle.
+struct Extremes {
+  double least[2] = {180, 0}, most[2] = {180, 0};
+};
+Extremes extremes(const TetMesh& m, int threads) {
+  return par::reduce(
+      static_cast<int64_t>(m.tet.size()), threads, Extremes{},
+      [&](int64_t t) {
+        const auto p = [&](size_t i) { return m.point[m.tet[t][i]]; };
+        const DihedralTrig d = dihedral_trig(p(0), p(1), p(2), p(3));
+        double low = 1, high = -1; // cosines
+        for (const double c : d.cosine)
+          if (c == c)
+            low = std::min(low, c), high = std::max(high, c);
+        const auto degrees = [](double c) {
+          return std::acos(std::clamp(c, -1., 1.)) * (180 / 3.14159265358979323846);
+        };
+        const double a = degrees(high), b = degrees(low);
+        return Extremes{{a, a}, {b, b}};
+      },
+      [](Extremes a, const Extremes& b) {
+        a.least[0] = std::min(a.least[0], b.least[0]), a.least[1] = std::max(a.least[1], b.least[1]);
+        a.most[0] = std::min(a.most[0], b.most[0]), a.most[1] = std::max(a.most[1], b.most[1]);
+        return a;
+      });
+}
+
+/// The residues whose triangles a body has, those with the most first.
+struct Residues {
+  std::string text;
+  int64_t named = 0, count = 0;
+};
+std::vector<Residues> residues_of(const TetMesh& m, const TriangleSides& sides, const MeshBodies& bodies,
+                                  const PlaceNames& places) {
+  constexpr size_t most = 8;
+  std::vector<std::map<int32_t, int64_t>> triangles(bodies.body.size());
+  for (size_t i = 0; i < m.tri.size(); ++i)
+    if (const int32_t r = places.triangle(static_cast<int64_t>(i)); r >= 0)
+      for (const int32_t f : sides.face[i])
+        if (f >= 0)
+          ++triangles[bodies.of[f / 4]][r];
+  std::vector<Residues> all;
+  for (const auto& of : triangles) {
+    std::vector<std::pair<int64_t, int32_t>> order; // most triangles first, then the file's order
+    for (const auto& [r, n] : of)
+      order.push_back({-n, r});
+    std::sort(order.begin(), order.end());
+    Residues r;
+    r.count = static_cast<int64_t>(order.size());
+    r.named = static_cast<int64_t>(std::min(most, order.size()));
+    for (int64_t i = 0; i < r.named; ++i)
+      r.text += (i > 0 ? ", " : "") + places.name(order[static_cast<size_t>(i)].second);
+    all.push_back(r);
+  }
+  return all;
+}
+
+} // namespace
+
+std::vector<int64_t> worst_by_quality(const TetMesh& m, size_t most, int threads) {
+  const auto tets = static_cast<int64_t>(m.tet.size());
+  LargeArray<float> quality(m.tet.size());
+  par::for_n(tets, threads, [&](int64_t t) {
+    const auto p = [&](size_t i) { return m.point[m.tet[t][i]]; };
+    const float q = tet_quality(p(0), p(1), p(2), p(3));
+    quality[t] = q == q ? q : -1;
+  });
+  std::vector<int64_t> worst(static_cast<size_t>(tets));
+  std::iota(worst.begin(), worst.end(), 0);
+  const size_t kept = std::min(most, worst.size());
+  std::partial_sort(
+      worst.begin(), worst.begin() + static_cast<std::ptrdiff_t>(kept), worst.end(),
+      [&](int64_t a, int64_t b) { return quality[a] != quality[b] ? quality[a] < quality[b] : a < b; });
+  worst.resize(kept);
+  return worst;
+}
+
+std::string facts_json(const TetMesh& m, const TriangleSides& sides, const MeshBodies& bodies,
+                       const std::vector<CellLabel>& labels, const ReportedMesh& more,
+                       const std::vector<int64_t>& worst, const LargeArray<int32_t>& place, int threads) {
+  const PlaceNames places(labels);
+  json j;
+  j["name"] = more.name;
+  j["file"] = more.file;
+  j["source"] = m.source;
+  j["creator"] = m.creator;
+  j["isovalue"] = m.isovalue;
+  j["decay"] = m.decay;
+  j["points"] = m.point.size();
+  j["tets"] = m.tet.size();
+  j["triangles"] = m.tri.size();
+  Vec3d low = m.point[0], high = low;
+  for (const Vec3d& p : m.point)
+    for (int axis = 0; axis < 3; ++axis)
+      low[axis] = std::min(low[axis], p[axis]), high[axis] = std::max(high[axis], p[axis]);
+  j["low"] = numbers(low);
+  j["high"] = numbers(high);
+  j["colour"] = more.colour;
+  j["notes"] = more.notes;
+  j["valid"] = more.validity ? json(more.validity->valid()) : json(nullptr);
+  j["faults"] = json::array();
+  if (more.validity)
+    for (const Fault& f : more.validity->faults)
+      j["faults"].push_back({{"rule", f.rule}, {"count", f.count}, {"example", f.example}});
+
+  const std::vector<Residues> residues = residues_of(m, sides, bodies, places);
+  j["bodies"] = json::array();
+  for (size_t b = 0; b < bodies.body.size(); ++b) {
+    const MeshBody& body = bodies.body[b];
+    j["bodies"].push_back({{"region", body.region},
+                           {"tets", body.tets},
+                           {"volume", body.volume},
+                           {"area", body.area},
+                           {"centre", numbers(body.centre)},
+                           {"low", numbers(body.low)},
+                           {"high", numbers(body.high)},
+                           {"residues", residues[b].text},
+                           {"residues_named", residues[b].named},
+                           {"residue_count", residues[b].count}});
+  }
+  const CellLabel& boundary = *find_label(labels, "boundary");
+  std::vector<double> area(boundary.names.size());
+  std::vector<int64_t> triangles(boundary.names.size());
+  for (size_t i = 0; i < m.tri.size(); ++i) {
+    area[boundary.tri[i]] += tri_area(m.point[m.tri[i][0]], m.point[m.tri[i][1]], m.point[m.tri[i][2]]);
+    ++triangles[boundary.tri[i]];
+  }
+  j["boundaries"] = json::array();
+  for (size_t b = 0; b < area.size(); ++b)
+    j["boundaries"].push_back({{"name", boundary.names[b]}, {"triangles", triangles[b]}, {"area", area[b]}});
+
+  const Quality q = measure_quality(m, threads).all;
+  const Extremes e = extremes(m, threads);
+  j["quality"] = {{"dihedral", distribution(q.dihedral)},
+                  {"joe_liu_q", distribution(q.joe_liu_q)},
+                  {"edge_ratio", distribution(q.edge_ratio)},
+                  {"smallest", e.least},
+                  {"largest", e.most}};
+  j["worst"] = json::array();
+  for (const int64_t t : worst) {
+    const auto p = [&](size_t i) { return m.point[m.tet[t][i]]; };
+    const Dihedrals d = dihedrals(p(0), p(1), p(2), p(3));
+    j["worst"].push_back(
+        {{"tet", t},
+         {"place", place.empty() ? -1 : place[t]},
+         {"min", finite(*std::min_element(d.degree, d.degree + 6))},
+         {"max", finite(*std::max_element(d.degree, d.degree + 6))},
+         {"q", finite(joe_liu_q(six_volume(p(0), p(1), p(2), p(3)), edge_sum2(p(0), p(1), p(2), p(3))))},
+         {"region", m.region[t]},
+         {"centre", numbers(cell_centroid(m, static_cast<size_t>(t)))},
+         {"residue", places.of_tet(m, t)}});
+  }
+  j["runs"] = json::array();
+  for (const std::string& r : more.run_report)
+    j["runs"].push_back(json::parse(r));
+  std::string text = j.dump(-1, ' ', false, json::error_handler_t::replace);
+  text.pop_back();
+  return text;
+}
+
+} // namespace molmesh::formats
