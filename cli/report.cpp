@@ -94,6 +94,10 @@ std::unique_ptr<OutputFile> open_report(const Table& table, const Common& o) {
   return o.report.empty() ? nullptr : std::make_unique<OutputFile>(o.report);
 }
 
+std::string json_text(const Value& value) {
+  return json_of(value).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
 std::string report_text(const Table& table, const Common& o, const Run& run, int64_t peak_rss_bytes) {
   Json j;
   j["tool"] = run.tool;

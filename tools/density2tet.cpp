@@ -6,6 +6,7 @@
 #include "formats/vtu/vtu.hpp"
 #include "tools/device_report.hpp"
 #include "tools/mesh_line.hpp"
+#include "tools/plan.hpp"
 #include <algorithm>
 #include <optional>
 
@@ -75,9 +76,13 @@ Status run_tool(const Options& o, cli::Run& run) {
 
   run.phase("read");
   cli::InputFile input(o.input);
-  cli::OutputFile output(o.output, cli::OutputFile::Content::binary);
+  std::optional<cli::OutputFile> output;
+  if (!o.plan)
+    output.emplace(o.output, cli::OutputFile::Content::binary);
   run.show_phases();
-  const BlockGrid grid = formats::read_vdb(input.stream(), input.name(), options.threads);
+  const BlockGrid grid = plans::planned_grid(o, o, options, input, run);
+  if (o.plan)
+    return Status::good;
   contour::Summary summary;
   TetMesh mesh;
   try {
@@ -117,8 +122,8 @@ Status run_tool(const Options& o, cli::Run& run) {
 
   run.phase("write");
   mesh.creator = cli::creator("density2tet");
-  formats::write_vtu(output.stream(), mesh);
-  run.complete(output);
+  formats::write_vtu(output->stream(), mesh);
+  run.complete(*output);
   run.end_phase();
   if (!run.quiet)
     run.made = cli::counted(std::ssize(mesh.tet), "tetrahedron", "tetrahedra") + ", " +

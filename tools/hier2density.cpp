@@ -11,7 +11,9 @@
 #include "formats/vdb/vdb.hpp"
 #include "molecule/words.hpp"
 #include "par/par.hpp"
+#include "tools/density_report.hpp"
 #include "tools/device_report.hpp"
+#include "tools/plan.hpp"
 #include <optional>
 #include <sstream>
 
@@ -65,6 +67,7 @@ std::optional<distance::Body> body_of(const Options& o) {
   refuse("--isovalue", o.isovalue.has_value(), gaussian);
   refuse("--search full", o.search == "full", gaussian);
   refuse("--atoms", o.atoms != "bvh", gaussian);
+  refuse("--plan", o.plan, gaussian);
   refuse("--mode cuda", o.on_device(), "--mode omp: distances are computed on the host");
   return distance::Body{o.surface == "ses"   ? Surface::solvent_excluded
                         : o.surface == "sas" ? Surface::solvent_accessible
@@ -72,28 +75,13 @@ std::optional<distance::Body> body_of(const Options& o) {
                         o.probe.value_or(1.4)};
 }
 
-void report(cli::Run& r, const Band& band, const formats::Leaves& leaves, const density::Counts& counts) {
-  const Vec3i n = band.frame.points;
-  r.counts["atoms"] = band.info.atoms;
-  r.counts["grid_points"] = std::vector{n.x, n.y, n.z};
-  r.counts["spacing"] = band.frame.spacing;
-  r.counts["margin"] = counts.margin;
-  r.counts["analyzed_points"] = band.info.analyzed_points;
-  r.counts["k_A"] = double(band.info.analyzed_points) / (double(n.x) * n.y * n.z);
-  r.counts["active_points"] = counts.search.active_points;
-  r.counts["blocks"] = leaves.size();
-  r.counts["inside_blocks"] = band.inside.size();
-  r.counts["blocks_visited"] = counts.search.blocks_visited;
-  r.counts["blocks_evaluated"] = counts.search.blocks_evaluated;
-  r.counts["group_visits"] = counts.search.group_visits;
-  r.counts["atom_visits"] = counts.search.atom_visits;
-}
-
 Status run(const Options& o, cli::Run& r) {
   density::Options d = density_options(o);
   const std::optional<distance::Body> body = body_of(o);
   cli::InputFile in(o.input);
-  cli::OutputFile out(o.output, cli::OutputFile::Content::binary);
+  std::optional<cli::OutputFile> out;
+  if (!o.plan)
+    out.emplace(o.output, cli::OutputFile::Content::binary);
   r.phase("read");
   Hierarchy h;
   par::start_threads_during(o.resolved_threads(), [&] { h = formats::read_hier(in.stream(), in.name()); });
@@ -101,6 +89,8 @@ Status run(const Options& o, cli::Run& r) {
     fail(Status::mode_unavailable, in.name() + ": found bodies without atoms, expected --mode omp or seq for them");
   if (body && !h.body.empty())
     fail_input(in.name() + ": found bodies without atoms, expected --surface gaussian for them");
+  if (!body && plans::density_is_planned(o, o, d, h, r))
+    return Status::good;
   formats::Leaves leaves(o.resolved_threads());
   d.take = [&](const FieldInfo& info, std::span<const BandBlocks> runs) {
     r.phase("write");
@@ -131,8 +121,8 @@ Status run(const Options& o, cli::Run& r) {
     extras.tail = density::tail(h, d.decay, d.isovalue, band.frame);
   extras.surface = o.surface;
   extras.probe = body ? body->probe : 0;
-  formats::write_vdb(out.stream(), band.frame, band.info, band.inside, leaves, extras);
-  r.complete(out);
+  formats::write_vdb(out->stream(), band.frame, band.info, band.inside, leaves, extras);
+  r.complete(*out);
   const Vec3i n = band.frame.points;
   std::ostringstream spacing;
   spacing << band.frame.spacing;

@@ -13,6 +13,7 @@
 #include "tools/device_report.hpp"
 #include "tools/mesh_line.hpp"
 #include "tools/optimization_report.hpp"
+#include "tools/plan.hpp"
 #include <optional>
 #include <utility>
 
@@ -29,7 +30,9 @@ Status run_tool(const Options& o, cli::Run& run) {
   if (!o.hier.empty())
     structure.emplace(o.hier);
   cli::InputFile input(o.input);
-  cli::OutputFile output(o.output, cli::OutputFile::Content::binary);
+  std::optional<cli::OutputFile> output;
+  if (!o.plan)
+    output.emplace(o.output, cli::OutputFile::Content::binary);
   run.show_phases();
   std::optional<BlockGrid> grid;
   if (density)
@@ -41,6 +44,9 @@ Status run_tool(const Options& o, cli::Run& run) {
   TetMesh mesh = read_mesh(run, input, o.mesh, formats::CellArrays::keep, notes);
   if (grid)
     require_same_source(mesh, !notes.isovalue_missing, grid->info, density->name());
+  if (plans::improvement_is_planned(o, o, std::ssize(mesh.tet), std::ssize(mesh.tri),
+                                    grid ? std::ssize(grid->corner) : 0, o.iterations, run))
+    return Status::good;
   const AttributeTransfer arrays(mesh);
   run.counts.add({{"elements_before", mesh.tet.size()}, {"points_before", mesh.point.size()}});
   optimize::Options options;
@@ -93,8 +99,8 @@ Status run_tool(const Options& o, cli::Run& run) {
     run.note("carried from the nearest element before: " + arrays.names());
   mesh.creator = cli::creator("tetsmooth");
   run.phase("write");
-  formats::write_vtu(output.stream(), mesh);
-  run.complete(output);
+  formats::write_vtu(output->stream(), mesh);
+  run.complete(*output);
   if (run.verbose)
     run.note("dihedral angles " + optimize::text(result.before) + "; now " + optimize::text(result.after));
   if (!run.quiet)

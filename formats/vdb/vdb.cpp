@@ -5,6 +5,7 @@
 #include "formats/vdb/decode.hpp"
 #include "par/pages.hpp"
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <istream>
@@ -230,14 +231,50 @@ BlockGrid Reader::read() {
 
 } // namespace
 
-BlockGrid read_vdb(std::istream& in, const std::string& file, int threads, VdbExtras* extras) {
-  const std::string bytes = read_all(in, file);
-  const vdb::FloatGrid decoded = vdb::decode(bytes, "density", file);
-  Reader reader(decoded, file, threads);
+struct PackedVdb::Content {
+  std::string file, bytes;
+  vdb::FloatGrid grid; ///< points into bytes
+};
+
+PackedVdb::PackedVdb(std::istream& in, const std::string& file) {
+  auto c = std::make_unique<Content>();
+  c->file = file;
+  c->bytes = read_all(in, file);
+  c->grid = vdb::decode(c->bytes, "density", file);
+  content_ = std::move(c);
+}
+
+PackedVdb::~PackedVdb() = default;
+
+double PackedVdb::spacing() const {
+  return content_->grid.spacing;
+}
+
+int64_t PackedVdb::blocks() const {
+  return static_cast<int64_t>(content_->grid.leaf.size());
+}
+
+int64_t PackedVdb::active_points() const {
+  int64_t n = 0;
+  for (const vdb::Leaf& leaf : content_->grid.leaf)
+    for (size_t i = 0; i < 8; ++i) {
+      uint64_t word;
+      std::memcpy(&word, leaf.data.data() + 8 * i, sizeof word);
+      n += std::popcount(word);
+    }
+  return n;
+}
+
+BlockGrid PackedVdb::unpack(int threads, VdbExtras* extras) const {
+  Reader reader(content_->grid, content_->file, threads);
   BlockGrid grid = reader.read();
   if (extras)
     *extras = reader.extras;
   return grid;
+}
+
+BlockGrid read_vdb(std::istream& in, const std::string& file, int threads, VdbExtras* extras) {
+  return PackedVdb(in, file).unpack(threads, extras);
 }
 
 } // namespace molmesh::formats

@@ -3,6 +3,7 @@
 #include "formats/vdb/extras.hpp"
 #include "grid/block_grid.hpp"
 #include <iosfwd>
+#include <memory>
 #include <string>
 
 namespace molmesh::formats {
@@ -12,6 +13,21 @@ class Leaves;
 /// Throws Error(bad_input) when the stream is no OpenVDB file, or has no grid `density` of molmesh_profile 1.
 /// extras: gets what else the file says.
 BlockGrid read_vdb(std::istream& in, const std::string& file, int threads = 1, VdbExtras* extras = nullptr);
+/// A file whose tree is known and whose values are still packed: its size, before the grid takes its memory. Throws
+/// as read_vdb().
+class PackedVdb {
+public:
+  PackedVdb(std::istream& in, const std::string& file);
+  ~PackedVdb();
+  double spacing() const; ///< Å
+  int64_t blocks() const;
+  int64_t active_points() const;
+  BlockGrid unpack(int threads, VdbExtras* extras = nullptr) const;
+
+private:
+  struct Content;
+  std::unique_ptr<const Content> content_;
+};
 /// Contents depend on the grid alone; OpenVDB adds a fresh UUID to the bytes.
 void write_vdb(std::ostream& out, const BlockGrid& grid, int threads = 1, const VdbExtras& extras = {});
 /// The same from leaves that are ready; inside: corners of blocks that lie wholly inside.

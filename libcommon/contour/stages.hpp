@@ -43,6 +43,7 @@ public:
   TetMesh assemble(Options::Meshed meshed) override;
   void count(Summary& summary) const override;
 
+  const Octree& tree() const { return *tree_; }
   const Dual& dual() const { return dual_; } ///< the elements' positions stand for the complex's
 
 private:

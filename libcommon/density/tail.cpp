@@ -32,11 +32,6 @@ private:
     const double rho2 = a.radius * a.radius - ln_isovalue_ / (kappa_ * exponent);
     return rho2 > 0 ? std::sqrt(rho2) : -1;
   }
-  bool is_body(int64_t atom) const {
-    const auto before = [](const Body& b, int64_t a) { return b.atom < a; };
-    const auto found = std::lower_bound(h_.body.begin(), h_.body.end(), atom, before);
-    return found != h_.body.end() && found->atom == atom;
-  }
   bool seen(double ball) const { return ball > half_diagonal * frame_.spacing * (1 + 1e-9); }
   template <class Use>
   void for_atoms(size_t level, int64_t begin, int64_t end, double exponent, const Use& use) const;
@@ -116,8 +111,8 @@ Tail Climber::run() {
   double depth = 2 * half_diagonal * frame_.spacing;
   for_atoms(0, 0, outermost(), 1, [&](int64_t begin, int64_t end, double exponent) {
     for (int64_t a = begin; a < end && std::isfinite(depth); ++a)
-      if (h_.atom[a].radius > 0 && !seen(ball(h_.atom[a], exponent))) // of a body it would hold at the center alone
-        depth = is_body(a) ? infinity : std::max(depth, radius_ + nearest_inside(a, begin, end, exponent));
+      if (h_.atom[a].radius > 0 && !seen(ball(h_.atom[a], exponent)))
+        depth = std::max(depth, radius_ + nearest_inside(a, begin, end, exponent));
   });
   const Bound b = sum(0, 0, outermost(), 1);
   if (!std::isfinite(depth) || !std::isfinite(b.log))

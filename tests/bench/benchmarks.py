@@ -484,6 +484,7 @@ class Page:
             self.include("set_figures.md")
         self.include("peer_figures.md")
         self.include("gpu_figures.md")
+        self.include("plan_figures.md")
         self.include("limits.md")
         if self.skipped:
             self.write("## Not measured in this run", "\n".join(f"- {s}" for s in sorted(set(self.skipped))))

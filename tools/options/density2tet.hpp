@@ -1,11 +1,12 @@
 // density2tet.hpp — options and page of density2tet.
 #pragma once
+#include "cli/plan.hpp"
 #include "cli/run.hpp"
 #include "cuda/par/device.hpp"
 
 namespace molmesh {
 
-struct Options : cli::Common {
+struct Options : cli::Common, cli::PlanOptions {
   Options() { require_device = cuda::require_device; }
   std::string region = "interior", box = "auto", adapt = "auto", cavities = "keep";
   double drop_below = 0;
@@ -32,6 +33,7 @@ inline void describe(cli::Table& t, Options& o) {
         "parts of the molecule smaller than this become what is round them; those that the box cuts stay")
       .unit("Å³")
       .within(0, 1e300);
+  cli::add_plan_options(t, o);
   t.quantity("margin", "hier2density --margin");
   t.page.about =
       "Meshes the isosurface of a density grid by dual contouring on an octree: the inside of the molecule, its "

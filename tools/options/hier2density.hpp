@@ -1,11 +1,12 @@
 // hier2density.hpp — options and page of hier2density.
 #pragma once
+#include "cli/plan.hpp"
 #include "cli/run.hpp"
 #include "cuda/par/device.hpp"
 
 namespace molmesh {
 
-struct Options : cli::Common {
+struct Options : cli::Common, cli::PlanOptions {
   Options() { require_device = cuda::require_device; }
   std::optional<double> spacing;
   int64_t grid = 0;
@@ -46,6 +47,7 @@ inline void describe(cli::Table& t, Options& o) {
       .one_of({"neighbor", "full"});
   t.add("--atoms", o.atoms, "how contributing atoms are found: bvh: boxes of the hierarchy, kdtree, all")
       .one_of({"bvh", "kdtree", "all"});
+  cli::add_plan_options(t, o);
   t.page.about =
       "Computes the density of a molecular hierarchy on a grid, near the surface alone. The density is the sum "
       "over "

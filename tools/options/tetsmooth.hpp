@@ -1,12 +1,13 @@
 // tetsmooth.hpp — options and page of tetsmooth.
 #pragma once
 #include "cli/limits.hpp"
+#include "cli/plan.hpp"
 #include "cuda/par/device.hpp"
 #include "tools/options/mesh_input.hpp"
 
 namespace molmesh {
 
-struct Options : cli::Common {
+struct Options : cli::Common, cli::PlanOptions {
   Options() {
     require_device = cuda::require_device;
     keep_input = false; // a mesh may be improved in its place
@@ -28,6 +29,7 @@ inline void describe(cli::Table& t, Options& o) {
   t.group("quality");
   cli::add_dihedral_limits(t, o.min_dihedral, o.max_dihedral, ", and an aim up to 34 and 125");
   describe_mesh_input(t, o.mesh);
+  cli::add_plan_options(t, o);
   t.page.about =
       "Improves a tetrahedral mesh by swaps, contractions, moves and splits. It never inverts an element and never "
       "makes the worst one worse. With a density, surface points are put on the isosurface and kept there; "

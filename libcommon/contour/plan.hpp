@@ -1,0 +1,33 @@
+// plan.hpp — how large a mesh will be and what it takes, before it is made.
+#pragma once
+#include "contour/options.hpp"
+#include "grid/block_grid.hpp"
+
+namespace molmesh::contour {
+
+/// The octree of a mesh of both sides: elements are some 16 a leaf, on the side where the leaf lies.
+struct Leaves {
+  double all = 0, inside = 0; ///< inside: by the share of a leaf's corners that are
+  int halvings = 0;           ///< as in Summary
+};
+
+/// Counts them: surface cells and octree of contour(), a tenth of its time. Throws as contour().
+Leaves count_leaves(const BlockGrid& grid, const Options& options);
+
+/// The leaves of the same structure on a grid of another spacing, with the default tolerance: within 8 % from twice
+/// or half the spacing, for 0.25 to 3 Å.
+Leaves at_spacing(const Leaves& counted, double from, double to);
+/// The leaves of a grid with so many active points, with the default tolerance and box: within a sixth for
+/// molecules of some thousand atoms and more.
+Leaves expected_leaves(double spacing, int64_t active_points);
+
+struct Plan {
+  int64_t elements = 0, points = 0, triangles = 0;
+  int64_t memory = 0; ///< bytes at the peak of density2tet
+  double seconds = 0; ///< of one core of the machine of docs/benchmarks.md
+};
+
+/// blocks: of the grid.
+Plan plan(const Leaves& leaves, int64_t blocks, Options::Meshed meshed);
+
+} // namespace molmesh::contour

@@ -1,0 +1,37 @@
+// plan.hpp — what the density of a hierarchy will take, told from a coarser one.
+#pragma once
+#include "density/density.hpp"
+
+namespace molmesh::density {
+
+/// What a grid of some spacing holds.
+struct GridSize {
+  double spacing = 0;        ///< h, Å
+  Vec3i points;              ///< of the full grid
+  int64_t active_points = 0; ///< in the file
+  int64_t blocks = 0;        ///< of 8³ points, those with active points
+  int64_t inside_blocks = 0; ///< those that lie wholly inside
+};
+
+/// The same structure on a grid of another spacing. Exact for the spacing that was counted.
+GridSize at_spacing(const GridSize& counted, double spacing);
+
+/// Of hier2density on a grid of that size: bytes at the peak, and seconds of one core of the machine of
+/// docs/benchmarks.md.
+struct Cost {
+  int64_t memory = 0;
+  double seconds = 0;
+};
+Cost cost(const GridSize& size, int64_t atoms);
+
+struct Plan {
+  GridSize size, counted; ///< of the run, and of the grid that was counted: the run's own, or a coarser one
+  Band band;              ///< of the counted grid
+  double margin = 0;      ///< Å
+};
+
+/// Counts the band on a grid of h, 2h or 4h, the first of some three million active points, and no coarser than
+/// 1.5 Å where h is finer; throws as compute().
+Plan plan(const Hierarchy& hierarchy, const Options& options);
+
+} // namespace molmesh::density

@@ -1,0 +1,62 @@
+// plan_test.cpp — a mesh is as large as its plan says.
+#include "contour/contour.hpp"
+#include "contour/plan.hpp"
+#include "density/density.hpp"
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <random>
+
+using namespace molmesh;
+
+namespace {
+
+/// Atoms of 1.7 Å at random in a ball of 9 Å.
+BlockGrid ball_of_atoms(double spacing) {
+  Hierarchy h;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> at(-9, 9);
+  while (h.atom.size() < 150) {
+    const Vec3d p{at(random), at(random), at(random)};
+    if (norm2(p) < 81) {
+      Atom a;
+      a.center = p;
+      a.radius = 1.7;
+      h.atom.push_back(a);
+    }
+  }
+  density::Options o;
+  o.spacing = spacing;
+  density::Counts counts;
+  return to_block_grid(density::compute(h, o, counts), 1);
+}
+
+} // namespace
+
+TEST_CASE("the octree tells the elements of a mesh within 15 %") {
+  for (const double spacing : {0.5, 0.8}) {
+    const BlockGrid grid = ball_of_atoms(spacing);
+    for (const auto meshed : {contour::Options::interior, contour::Options::exterior, contour::Options::both}) {
+      contour::Options options;
+      options.meshed = meshed;
+      contour::Summary summary;
+      const auto true_elements =
+          double(contour::contour(grid, options, summary, [](const std::string&) {}).tet.size());
+      const contour::Leaves leaves = contour::count_leaves(grid, options);
+      const contour::Plan plan = contour::plan(leaves, std::ssize(grid.corner), meshed);
+      CAPTURE(spacing, int(meshed), plan.elements, true_elements);
+      CHECK(std::abs(double(plan.elements) - true_elements) <= 0.15 * true_elements);
+    }
+  }
+}
+
+TEST_CASE("a coarser grid has fewer leaves, and the way back is the same") {
+  const contour::Leaves fine{1000, 550, 0};
+  double before = 1001;
+  for (const double spacing : {0.5, 0.6, 1.0, 1.7, 4.0, 9.0}) {
+    const contour::Leaves coarse = contour::at_spacing(fine, 0.5, spacing);
+    CHECK(coarse.all < before);
+    CHECK(coarse.inside <= coarse.all);
+    before = coarse.all;
+    CHECK(contour::at_spacing(coarse, spacing, 0.5).all == Approx(1000));
+  }
+}

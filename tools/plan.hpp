@@ -1,0 +1,169 @@
+// plan.hpp — what the programs tell before they work: sizes, memory, seconds, and the spacing that would fit.
+#pragma once
+#include "cli/plan.hpp"
+#include "contour/plan.hpp"
+#include "density/plan.hpp"
+#include "formats/vdb/vdb.hpp"
+#include "optimize/plan.hpp"
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace molmesh::plans {
+
+/// A structure on a grid: what the chain's programs get.
+struct Chain {
+  density::GridSize size;
+  contour::Leaves leaves;
+  Chain at(double spacing) const {
+    return {density::at_spacing(size, spacing), contour::at_spacing(leaves, size.spacing, spacing)};
+  }
+  contour::Plan mesh(contour::Options::Meshed meshed) const { return contour::plan(leaves, size.blocks, meshed); }
+  optimize::Plan improvement(contour::Options::Meshed meshed, int iterations = 15) const {
+    const contour::Plan m = mesh(meshed);
+    return optimize::plan(m.elements, m.triangles, size.blocks, iterations);
+  }
+  /// Of density2tet and tetsmooth, the larger.
+  int64_t memory(contour::Options::Meshed meshed) const {
+    return std::max(mesh(meshed).memory, improvement(meshed).memory);
+  }
+};
+
+/// "--spacing 0.62 fits": the finest from h on, in steps of 3 %, whose need leaves a tenth of the limit.
+template <class Need>
+std::string fitting_spacing(double h, int64_t limit, Need need) {
+  for (double s = h; s < 100 * h; s *= 1.03)
+    if (10 * need(s) <= 9 * limit) {
+      char text[64];
+      std::snprintf(text, sizeof text, "hier2density --spacing %.2g fits", std::max(s, 0.01) + 0.005 * s);
+      return text;
+    }
+  return "no spacing fits";
+}
+
+inline void add_mesh(cli::Value& plan, const contour::Plan& p, double speed) {
+  plan.add(
+      {{"elements", p.elements}, {"points", p.points}, {"memory_bytes", p.memory}, {"seconds", p.seconds / speed}});
+}
+
+inline void add_improvement(cli::Value& plan, const optimize::Plan& p, double speed) {
+  plan.add({{"elements", p.elements}, {"memory_bytes", p.memory}, {"seconds", p.seconds / speed}});
+}
+
+/// hier2density: with --plan writes what all three programs take and returns true. Throws Error(failed) where the
+/// memory is too small.
+inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, const density::Options& d,
+                               const Hierarchy& h, const cli::Run& run) {
+  using contour::Options;
+  const auto atoms = static_cast<int64_t>(h.atom.size());
+  const int64_t limit = p.memory_limit();
+  if (!p.plan) { // a bound first: most runs need no plan
+    density::GridSize most;
+    most.active_points = int64_t(std::min(24 * double(atoms) / (d.spacing * d.spacing), 1e17));
+    if (limit < 0 || (d.grid_points == 0 && density::cost(most, atoms).memory <= limit))
+      return false;
+  }
+  density::Plan plan = density::plan(h, d);
+  const density::Cost cost = density::cost(plan.size, atoms);
+  if (!p.plan) {
+    cli::require_memory(p, cost.memory, "a density at " + cli::length_text(plan.size.spacing),
+                        fitting_spacing(plan.size.spacing, limit, [&](double s) {
+                          return density::cost(density::at_spacing(plan.counted, s), atoms).memory;
+                        }));
+    return false;
+  }
+  const Vec3i n = plan.size.points;
+  cli::Value v{{"atoms", atoms},
+               {"spacing", plan.size.spacing},
+               {"margin", plan.margin},
+               {"grid_points", std::vector{n.x, n.y, n.z}},
+               {"active_points", plan.size.active_points},
+               {"blocks", plan.size.blocks},
+               {"memory_bytes", cost.memory},
+               {"seconds", cost.seconds / p.speed}};
+  Options both;
+  both.meshed = Options::both;
+  both.threads = d.threads;
+  const Chain counted{plan.counted, contour::count_leaves(to_block_grid(plan.band, d.threads), both)};
+  const Chain chain = counted.at(plan.size.spacing);
+  for (const auto& [region, meshed] :
+       {std::pair{"interior", Options::interior}, std::pair{"both", Options::both}}) {
+    add_mesh(v["density2tet"][region], chain.mesh(meshed), p.speed);
+    add_improvement(v["tetsmooth"][region], chain.improvement(meshed), p.speed);
+  }
+  cli::write_plan(o, p, run, v);
+  return true;
+}
+
+/// density2tet: as above. grid: unpacks the values; a mesh that is far too large is refused without them.
+template <class Unpack>
+bool mesh_is_planned(const cli::Common& o, const cli::PlanOptions& p, const contour::Options& options,
+                     const density::GridSize& size, const cli::Run& run, Unpack grid) {
+  const int64_t limit = p.memory_limit();
+  const auto refuse = [&](const Chain& chain) {
+    cli::require_memory(
+        p, chain.mesh(options.meshed).memory, "a mesh at " + cli::length_text(size.spacing),
+        fitting_spacing(size.spacing, limit, [&](double s) { return chain.at(s).memory(options.meshed); }));
+  };
+  const bool usual = !options.adapt && options.box.kind == contour::BoxRequest::automatic;
+  Chain chain{size, contour::expected_leaves(size.spacing, size.active_points)};
+  if (!p.plan) {
+    const int64_t expected = chain.mesh(options.meshed).memory;
+    if (limit < 0 || (usual && 2 * expected < limit))
+      return false;
+    if (usual && 2 * expected > 3 * limit)
+      refuse(chain);
+  }
+  constexpr int64_t countable = 20'000'000;
+  if (!p.plan || !usual || size.active_points <= countable)
+    chain.leaves = contour::count_leaves(grid(), options);
+  if (!p.plan) {
+    refuse(chain);
+    return false;
+  }
+  cli::Value v{{"spacing", size.spacing},
+               {"active_points", size.active_points},
+               {"blocks", size.blocks},
+               {"leaves", std::llround(chain.leaves.all)}};
+  add_mesh(v, chain.mesh(options.meshed), p.speed);
+  add_improvement(v["tetsmooth"], chain.improvement(options.meshed), p.speed);
+  cli::write_plan(o, p, run, v);
+  return true;
+}
+
+/// The grid that density2tet reads, after its plan; with --plan any grid.
+inline BlockGrid planned_grid(const cli::Common& o, const cli::PlanOptions& p, const contour::Options& options,
+                              cli::InputFile& input, const cli::Run& run) {
+  const formats::PackedVdb packed(input.stream(), input.name());
+  const density::GridSize size{packed.spacing(), {}, packed.active_points(), packed.blocks(), 0};
+  std::optional<BlockGrid> grid;
+  const auto unpack = [&]() -> const BlockGrid& {
+    return grid ? *grid : grid.emplace(packed.unpack(options.threads));
+  };
+  if (!mesh_is_planned(o, p, options, size, run, unpack))
+    unpack();
+  return grid ? std::move(*grid) : BlockGrid();
+}
+
+/// tetsmooth: as above. blocks: of the density's grid, 0 without.
+inline bool improvement_is_planned(const cli::Common& o, const cli::PlanOptions& p, int64_t elements,
+                                   int64_t triangles, int64_t blocks, int iterations, const cli::Run& run) {
+  const optimize::Plan plan = optimize::plan(elements, triangles, blocks, iterations);
+  if (p.plan) {
+    cli::Value v;
+    v["elements_before"] = elements;
+    add_improvement(v, plan, p.speed);
+    cli::write_plan(o, p, run, v);
+    return true;
+  }
+  const int64_t limit = p.memory_limit();
+  char times[80];
+  std::snprintf(times, sizeof times, "a mesh of %.2g million elements fits",
+                limit > 0 ? 0.9e-6 * double(limit) / double(plan.memory) * double(elements) : 0);
+  cli::require_memory(p, plan.memory, std::to_string(elements) + " elements", times);
+  return false;
+}
+
+} // namespace molmesh::plans
