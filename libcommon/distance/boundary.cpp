@@ -56,7 +56,8 @@ private:
   /// sphere.
   static bool within(const Cap& c, const Cap& larger) {
     constexpr double rounding = 1e-12;
-    return dot(c.normal, larger.normal) >= larger.height * c.height + larger.rim * c.rim + rounding;
+    return dot(c.normal, larger.normal) >=
+           larger.height * c.height + larger.circle_radius * c.circle_radius + rounding;
   }
 
   const UnionOfBalls& balls_;
@@ -85,15 +86,15 @@ private:
     double begin, end; ///< begin in [0, 2π)
   };
 
-  /// Finds the caps that cover parts of a cap's rim. False when one covers all of it.
-  bool uncovered(const Cap& rim, const std::vector<Cap>& caps) {
+  /// Finds the caps that cover parts of the circle that ends a cap. False when one covers all of it.
+  bool uncovered(const Cap& own, const std::vector<Cap>& caps) {
     cover_.clear();
-    span_plane(rim.normal, first_, second_);
+    span_plane(own.normal, first_, second_);
     for (const Cap& o : caps) {
-      if (&o == &rim)
+      if (&o == &own)
         continue;
-      const Cover v{rim.rim * dot(first_, o.normal), rim.rim * dot(second_, o.normal),
-                    o.buries() - rim.height * dot(rim.normal, o.normal)};
+      const Cover v{own.circle_radius * dot(first_, o.normal), own.circle_radius * dot(second_, o.normal),
+                    o.buries() - own.height * dot(own.normal, o.normal)};
       if (v.c * v.c < v.a * v.a + v.b * v.b)
         cover_.push_back(v);
       else if (v.c < 0)
@@ -102,17 +103,17 @@ private:
     return true;
   }
 
-  void add(const Ball& b, int32_t number, const Cap& rim, std::vector<Arc>& arc, std::vector<Vec3d>& vertex,
+  void add(const Ball& b, int32_t number, const Cap& own, std::vector<Arc>& arc, std::vector<Vec3d>& vertex,
            size_t first_vertex) {
-    const Arc circle{b.center + (rim.height * b.radius) * rim.normal,
-                     rim.normal,
+    const Arc circle{b.center + (own.height * b.radius) * own.normal,
+                     own.normal,
                      first_,
                      second_,
-                     b.radius * rim.rim,
+                     b.radius * own.circle_radius,
                      1,
                      0,
                      Arc::Length::circle,
-                     {number, rim.other}};
+                     {number, own.other}};
     if (cover_.empty())
       return arc.push_back(circle);
     interval_.clear();

@@ -10,11 +10,11 @@ namespace molmesh::distance {
 
 /// The part of a ball's sphere that lies within another ball: center + radius·u with u·normal > height.
 struct Cap {
-  Vec3d normal;  ///< of length 1
-  double height; ///< between -1 and 1
-  double rim;    ///< radius of the rim, in radii of the ball
-  double slack;  ///< places up to this much higher count as free: they are hardly within the other ball
-  int32_t other; ///< the other ball
+  Vec3d normal;         ///< of length 1
+  double height;        ///< between -1 and 1
+  double circle_radius; ///< of the circle that ends it, in radii of the ball
+  double slack;         ///< places up to this much higher count as free: they are hardly within the other ball
+  int32_t other;        ///< the other ball
   double buries() const { return height + slack; }
 };
 
