@@ -113,8 +113,7 @@ void add_plan_options(Table& table, PlanOptions& o) {
   table.add("--plan", o.plan, "tell what the run will take, and do not run");
   table.add("--json", o.json, "the plan as one JSON object (formats/report/REPORTv1.md)");
   table.add("--speed", o.speed, "speed of a core, for seconds; docs/benchmarks.md: 1").positive();
-  table.add("--max-mem", o.max_mem, "memory at most: 500M, 2G, none; auto: as the batch system grants")
-      .unit("SIZE");
+  table.add("--max-mem", o.max_mem, "memory at most: 2G, none; auto: what is granted").unit("SIZE");
 }
 
 void write_plan(const Common& o, const PlanOptions& p, const Run& run, const Value& plan) {
