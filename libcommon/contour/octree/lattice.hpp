@@ -14,8 +14,8 @@ inline constexpr int most_merges = 5;
 struct BoxRequest {
   enum Kind { automatic, tight, factor, padding, corners } kind = automatic;
   double scale = 0;    ///< factor: times the surface's own extents, about its centre
-  double distance = 0; ///< padding: Å from the surface's own extents to every wall
   Vec3d lower, upper;  ///< corners: Å; met to the last bit
+  double distance = 0; ///< padding: Å from the surface's own extents to every wall
 };
 
 /// A lattice as plain arrays. Host and device.
