@@ -70,7 +70,8 @@ TEST_CASE("rules set exponents in order, on all that they touch") {
         "A=1(0.5 0.5) B=2(0.5 0.9) ");
   CHECK(exponents(convert(structure(), with_rules({"//B/2/CA P_R=0.9", "//A,B P_R=0.1"})).hierarchy) ==
         "A=1(0.1 0.1) B=1(0.1 0.1) ");
-  CHECK(refusal(structure(), with_rules({"//C P_R=0.9"})) == "-r: found no atom in selection '//C', expected some");
+  CHECK(refusal(structure(), with_rules({"//C P_R=0.9"})) ==
+        "-r: found no atom in selection '//C', expected some; chains here: A, B (for example '//A', '//A/45-60')");
   CHECK(refusal(structure(), with_rules({"//A[ P_R=0.9"})).substr(0, 3) == "-r:");
 }
 
@@ -194,7 +195,8 @@ TEST_CASE("gaps, overlaps and torn residues or chains name an atom") {
   CHECK(refusal(structure(), with_domains("one //A\ntwo //B/1\none //B/2\n", levels))
             .find("found chain B in domains 'two' (B/GLY:1/N) and 'one' (B/GLY:2/N)") != std::string::npos);
   CHECK(refusal(structure(), with_domains("one *\ntwo //C\n", levels)) ==
-        "D:2: found no atom in '//C', expected some in domain 'two'");
+        "D:2: found no atom in '//C', expected some in domain 'two'; chains here: A, B (for example '//A', "
+        "'//A/45-60')");
 }
 
 TEST_CASE("an assembly of the PDB format: copies with unique names") {
