@@ -169,7 +169,7 @@ TEST_CASE("the sum of pieces far enough apart is the density of their atoms, and
   }
 }
 
-TEST_CASE("pieces that meet add up where their bands know low densities; else their sum is refused") {
+TEST_CASE("pieces that meet add up where their bands know low densities, else their sum is refused") {
   const double h = 0.75;
   const Hierarchy one = test::random_chains(1, 8, 6, {0.5, 1}, 5);
   const Piece narrow = make(one, h), wide = make(one, h, 0.01, 1.1);
