@@ -217,7 +217,8 @@ TEST_CASE("what is written for other programs reads back whole: boundaries, name
   CHECK(formats::names_of(back, "patch_names") == formats::names_of(m, "patch_names"));
 }
 
-TEST_CASE("numbers in exports are distinct over all dimensions; numbers of others stay where they are so already") {
+TEST_CASE(
+    "numbers in exports are distinct over all dimensions, and numbers of others stay where they are so already") {
   TetMesh m = own_mesh();
   const formats::ExportLabels e = formats::export_labels(m);
   CHECK(e.step == 10);
