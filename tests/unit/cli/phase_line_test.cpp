@@ -1,6 +1,8 @@
 // phase_line_test.cpp — what a long run says of itself on a terminal.
 #include "cli/phase_line.hpp"
 #include <catch2/catch.hpp>
+#include <fstream>
+#include <string>
 
 using namespace molmesh::cli;
 
@@ -11,8 +13,17 @@ TEST_CASE("a phase line has the phase and the seconds, and with a share the bar 
   CHECK(phase_text("tetsmooth", "improve", 0, 1, 1) == "tetsmooth: improve [............]   0 %, 1 s");
 }
 
-TEST_CASE("a phase line without a terminal writes nothing and ends") {
-  PhaseLine line("tetsmooth", false);
+TEST_CASE("a quiet phase line starts no thread that would have to end") {
+  const auto threads = [] {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+      if (line.rfind("Threads:", 0) == 0)
+        return line;
+    return std::string();
+  };
+  const std::string before = threads();
+  PhaseLine line("tetsmooth", true);
   line.phase("read");
   line.share(0.5);
+  CHECK(threads() == before);
 }
