@@ -1,5 +1,6 @@
 // text.cpp — lines of UTF-8 text for a terminal.
 #include "cli/text.hpp"
+#include "base/grouped.hpp"
 #include <algorithm>
 #include <cstdio>
 #include <sstream>
@@ -31,15 +32,8 @@ std::string one_line(const std::string& text) {
   return line;
 }
 
-std::string grouped(int64_t n) {
-  std::string s = std::to_string(n);
-  for (auto at = static_cast<std::ptrdiff_t>(s.size()) - 3; at > (n < 0 ? 1 : 0); at -= 3)
-    s.insert(static_cast<size_t>(at), 1, ',');
-  return s;
-}
-
 std::string counted(int64_t n, const std::string& one, const std::string& several) {
-  return grouped(n) + ' ' + (n == 1 ? one : several);
+  return molmesh::grouped(n) + ' ' + (n == 1 ? one : several);
 }
 
 size_t columns(const std::string& text) {

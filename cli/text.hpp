@@ -11,9 +11,6 @@ namespace molmesh::cli {
 /// most.
 std::string one_line(const std::string& text);
 
-/// 1234567 → 1,234,567
-std::string grouped(int64_t n);
-
 /// "1 body", "40 cavities"
 std::string counted(int64_t n, const std::string& one, const std::string& several);
 

@@ -1,5 +1,6 @@
 // density2map.cpp — the sparse density grid (.vdb) as a dense map that other viewers read (CCP4/MRC, OpenDX).
 #include "tools/options/density2map.hpp"
+#include "base/grouped.hpp"
 #include "cli/text.hpp"
 #include "formats/map/map.hpp"
 #include "formats/vdb/vdb.hpp"
@@ -35,7 +36,7 @@ Status run(const Options& o, cli::Run& r) {
   (format == "dx" ? formats::write_dx : formats::write_ccp4)(out.stream(), grid, in.name());
   r.complete(out);
   const Vec3i n = grid.frame.points;
-  r.made = cli::grouped(n.x) + " × " + cli::grouped(n.y) + " × " + cli::grouped(n.z) + " points";
+  r.made = grouped(n.x) + " × " + grouped(n.y) + " × " + grouped(n.z) + " points";
   return Status::good;
 }
 

@@ -1,5 +1,6 @@
 // hier2density.cpp — molecular hierarchy (.hier) to the sparse density grid near its surface (.vdb).
 #include "tools/options/hier2density.hpp"
+#include "base/grouped.hpp"
 #include "cli/progress.hpp"
 #include "cli/text.hpp"
 #include "cuda/density/density.hpp"
@@ -126,8 +127,8 @@ Status run(const Options& o, cli::Run& r) {
   const Vec3i n = band.frame.points;
   std::ostringstream spacing;
   spacing << band.frame.spacing;
-  r.made = cli::counted(band.info.atoms, "atom", "atoms") + " on " + cli::grouped(n.x) + " × " + cli::grouped(n.y) +
-           " × " + cli::grouped(n.z) + " points, " + spacing.str() + " Å apart; " +
+  r.made = cli::counted(band.info.atoms, "atom", "atoms") + " on " + grouped(n.x) + " × " + grouped(n.y) + " × " +
+           grouped(n.z) + " points, " + spacing.str() + " Å apart; " +
            cli::counted(counts.search.active_points, "value", "values") + " kept near the surface";
   return Status::good;
 }

@@ -1,5 +1,6 @@
 // tetlabel.cpp — a mesh (.vtu) and its structure (.hier) to the mesh with the structure's labels.
 #include "tools/options/tetlabel.hpp"
+#include "base/grouped.hpp"
 #include "cli/text.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/pdb/hier_selection.hpp"
@@ -101,7 +102,7 @@ Status run_tool(const Options& o, cli::Run& run) {
                  "'s surface belongs to it, expected at least one");
     run.counts["boundary " + boundary[b].name] = patches.count[b];
     names[patches.first + static_cast<int32_t>(b)] = boundary[b].name;
-    run.made += ", boundary " + boundary[b].name + ": " + cli::grouped(patches.count[b]);
+    run.made += ", boundary " + boundary[b].name + ": " + grouped(patches.count[b]);
   }
   label::add_labels(mesh, places, std::move(labels));
   formats::add_level_names(mesh, h);

@@ -1,5 +1,6 @@
 // html.cpp — decides how much of each mesh the page can hold, compresses it, and puts the page together.
 #include "formats/html/html.hpp"
+#include "base/grouped.hpp"
 #include "formats/html/embedded.hpp"
 #include "formats/html/facts.hpp"
 #include "par/par.hpp"
@@ -75,12 +76,6 @@ std::string quoted(const std::string& text) {
     } else
       s += c;
   return s + '"';
-}
-std::string grouped(int64_t n) {
-  std::string s = std::to_string(n);
-  for (int64_t i = static_cast<int64_t>(s.size()) - 3; i > 0; i -= 3)
-    s.insert(static_cast<size_t>(i), ",");
-  return s;
 }
 std::string number(double v) {
   char text[32];

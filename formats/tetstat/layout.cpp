@@ -15,13 +15,6 @@ std::string print(const char* format, ...) {
   return buffer;
 }
 
-std::string grouped(int64_t n) {
-  std::string s = std::to_string(n);
-  for (auto at = static_cast<std::ptrdiff_t>(s.size()) - 3; at > (n < 0 ? 1 : 0); at -= 3)
-    s.insert(static_cast<size_t>(at), 1, ',');
-  return s;
-}
-
 std::string amount(double v) {
   if (std::isnan(v))
     return "-";

@@ -1,5 +1,6 @@
 // mesh_picture.cpp — chooses what is seen, looks at it from the viewer's place, and captions it.
 #include "picture/mesh_picture.hpp"
+#include "base/grouped.hpp"
 #include "geom/tet_measures.hpp"
 #include "par/par.hpp"
 #include "picture/colours.hpp"
@@ -126,13 +127,6 @@ void add_normals(const TetMesh& m, Scene& s, const Camera& camera) {
     const double length = norm(sum[i]);
     s.normal[i] = length > 0 ? camera.turned(sum[i] / length) : Vec3f{};
   }
-}
-
-std::string grouped(int64_t n) {
-  std::string s = std::to_string(n);
-  for (int64_t i = static_cast<int64_t>(s.size()) - 3; i > 0; i -= 3)
-    s.insert(static_cast<size_t>(i), ",");
-  return s;
 }
 
 std::string number(double v) {
