@@ -56,12 +56,7 @@ bool motions(const std::string& key, const KeyValue& line, const AssemblyReader&
     const std::vector<double> v = line.numbers(expected);
     if (v.size() != 9 && v.size() != 12)
       line.refuse(expected);
-    Rigid m;
-    const size_t width = v.size() / 3;
-    for (size_t i = 0; i < 3; ++i) {
-      m.row[i] = at(v, width * i);
-      m.t[static_cast<int>(i)] = width == 4 ? v[4 * i + 3] : 0;
-    }
+    const Rigid m = rigid_of_rows(v);
     if (!is_rotation(m, rotation_rounding))
       line.refuse("a rotation, which neither scales nor shears nor mirrors");
     steps = {m};

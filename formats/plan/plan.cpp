@@ -84,12 +84,7 @@ std::vector<Rigid> motions(const Key& key) {
   if (key.name == "matrix") {
     const std::vector<double> v =
         key.numbers({9, 12}, "9 numbers, or 12 of which every fourth is a shift (Å): the rows of a rotation");
-    Rigid m;
-    const size_t width = v.size() / 3;
-    for (size_t i = 0; i < 3; ++i) {
-      m.row[i] = at(v, width * i);
-      m.t[static_cast<int>(i)] = width == 4 ? v[4 * i + 3] : 0;
-    }
+    Rigid m = rigid_of_rows(v);
     if (!is_rotation(m, rotation_rounding))
       key.refuse("P4", "a rotation, which neither scales nor shears nor mirrors");
     m.row[0] = m.row[0] / norm(m.row[0]); // to the last bit

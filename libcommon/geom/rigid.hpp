@@ -2,6 +2,7 @@
 #pragma once
 #include "geom/vec.hpp"
 #include <cmath>
+#include <vector>
 
 namespace molmesh {
 
@@ -67,6 +68,17 @@ inline Rigid rotation(Vec3d axis, double degrees, Vec3d point) {
 inline Rigid translation(Vec3d t) {
   Rigid m;
   m.t = t;
+  return m;
+}
+
+/// Of its three rows, 9 numbers, or 12 of which every fourth is the shift along that axis.
+inline Rigid rigid_of_rows(const std::vector<double>& v) {
+  Rigid m;
+  const size_t width = v.size() / 3;
+  for (size_t i = 0; i < 3; ++i) {
+    m.row[i] = {v[width * i], v[width * i + 1], v[width * i + 2]};
+    m.t[static_cast<int>(i)] = width == 4 ? v[4 * i + 3] : 0;
+  }
   return m;
 }
 
