@@ -4,6 +4,7 @@
 #include "density/culling/middles_simd.hpp"
 #include "density/field/field.hpp"
 #include "density/values/block_sums_simd.hpp"
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -69,6 +70,8 @@ public:
   std::vector<UnitBody> unit_bodies;
   Vec3d block_middle; ///< Å
   int64_t group_of(int32_t u) const { return near_.group[kept_[u]]; }
+  /// What sums may lose, relative, that are carried as logarithms: these hardly round.
+  double loss_by_logarithms() const { return std::max(1e-15, 0.4 * budget_.rounding / steep_); }
 
 private:
   static constexpr double single = 1e-3;         ///< more than single precision can do to a bound, relative

@@ -3,7 +3,6 @@
 #include "density/values/block_sums_simd.hpp"
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #ifdef __SSE2__
 #include <immintrin.h>
@@ -30,7 +29,6 @@ private:
 #endif
 };
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int points = 512;
 
 } // namespace
@@ -105,47 +103,46 @@ void Evaluator::in_double(const Field& f, const BlockAtoms& s, double h, float* 
   std::copy_n(exact_.begin(), points, out);
 }
 
-void Evaluator::by_logarithms(const Field& f, const BlockAtoms& s, double h, float* out) {
-  constexpr double ln2 = std::numbers::ln2;
-  const ExactUnits& units = s.exact_units;
-  OpenGroups groups(f);
-  std::vector<double> open(groups.levels());
-  for (int point = 0; point < points; ++point) {
-    const Vec3d at{(point >> 6) - 3.5, (point >> 3 & 7) - 3.5, (point & 7) - 3.5}, d = h * at;
-    std::fill(open.begin(), open.end(), -infinity);
-    const auto close = [&](size_t l, int64_t g) {
-      double& to = l + 1 < open.size() ? open[l + 1] : open[0];
-      to = log_add(to, f.level[l].exponent[g] * open[l]);
-      open[l] = -infinity;
-    };
-    auto body = s.unit_bodies.begin();
-    for (int32_t n = 0; n < units.n; ++n) {
-      const auto u = static_cast<size_t>(n);
-      groups.enter(s.group_of(n), close);
-      double& to = open.size() > 1 ? open[1] : open[0];
-      if (body != s.unit_bodies.end() && body->unit == n) {
-        const FieldBody& b = f.body[body++->body];
-        to = log_add(to,
-                     units.exponent[u] * (f.ln_peak[b.cluster] - f.decay * b.core.distance2(s.block_middle + d)));
-        continue;
-      }
-      double top = -infinity, sum = 0;
-      const auto term = [&](size_t a) {
-        return ln2 * (units.atom_constant[a] + dot(at, Vec3d{units.atom_x[a], units.atom_y[a], units.atom_z[a]}));
-      };
-      const auto begin = static_cast<size_t>(units.begin[u]), end = static_cast<size_t>(units.begin[u + 1]);
-      for (size_t a = begin; a < end; ++a)
-        top = std::max(top, term(a));
-      for (size_t a = begin; a < end; ++a)
-        sum += std::exp(term(a) - top);
-      const Vec3d center{units.x[u], units.y[u], units.z[u]};
-      const double ln_sum =
-          top + std::log(sum) + ln2 * units.log2_term[u] + f.decay * (2 * dot(d, center) - norm2(d));
-      to = log_add(to, units.exponent[u] * ln_sum);
-    }
-    groups.finish(close);
-    out[point] = static_cast<float>(std::exp(open[0]) + s.added);
+/// As add_body(), of logarithms, and of the body itself.
+void Evaluator::add_log_body(const Field& f, const BlockAtoms& s, const BlockAtoms::UnitBody& body, double h,
+                             LogSums& to) const {
+  const FieldBody& b = f.body[body.body];
+  const double p = f.level[0].exponent[f.group[b.cluster]];
+  for (int i = 0; i < points; ++i) {
+    const int point = LogSums::slot(i);
+    const Vec3d at = s.block_middle + h * Vec3d{(point >> 6) - 3.5, (point >> 3 & 7) - 3.5, (point & 7) - 3.5};
+    const double term = p * std::numbers::log2e * (f.ln_peak[b.cluster] - f.decay * b.core.distance2(at)),
+                 before = to.largest[i], more = std::max(before, term);
+    to.parts[i] = to.parts[i] * std::exp2(before - more) + std::exp2(term - more);
+    to.largest[i] = more;
   }
+}
+
+void Evaluator::by_logarithms(const Field& f, const BlockAtoms& s, double h, float* out) {
+  const double step = 2 * f.decay * h * std::numbers::log2e;
+  const BlockShape<double> shape{{}, step, -0.5 * step * h};
+  OpenGroups groups(f);
+  logs_.assign(groups.levels(), {}); // the root's first
+  const auto sum_of = [&](size_t l) -> LogSums& { return logs_[l < logs_.size() ? l : 0]; };
+  const auto close = [&](size_t l, int64_t g) {
+    raise_log_group(f.level[l].exponent[g], sum_of(l), sum_of(l + 1));
+  };
+  const auto parent = [&](int32_t i) { return groups.levels() > 1 ? f.level[0].parent[s.group_of(i)] : 0; };
+  auto body = s.unit_bodies.begin();
+  for (int32_t i = 0, end; i < s.exact_units.n; i = end) {
+    groups.enter(s.group_of(i), close);
+    const int32_t next_body = body != s.unit_bodies.end() ? body->unit : s.exact_units.n;
+    end = i + 1;
+    if (i == next_body) {
+      add_log_body(f, s, *body++, h, sum_of(1));
+      continue;
+    }
+    while (end < next_body && parent(end) == parent(i))
+      ++end;
+    add_log_units(s.exact_units, shape, i, end, s.loss_by_logarithms(), log_scratch_, sum_of(1));
+  }
+  groups.finish(close);
+  sums_of_logs(sum_of(0), s.added, out);
 }
 
 void Evaluator::evaluate(const Field& f, const BlockAtoms& s, double h, float* out) {

@@ -2,6 +2,7 @@
 #pragma once
 #include "density/culling/block_atoms.hpp"
 #include "density/values/block_sums_simd.hpp"
+#include "density/values/log_sums_simd.hpp"
 
 namespace molmesh::density {
 
@@ -22,12 +23,16 @@ private:
            Scratch<T>& scratch, T* out);
   template <class T>
   void add_body(const Field& f, const BlockAtoms& s, const BlockAtoms::UnitBody& body, double h, T* out) const;
+  void add_log_body(const Field& f, const BlockAtoms& s, const BlockAtoms::UnitBody& body, double h,
+                    LogSums& to) const;
   void in_single(const Field& f, const BlockAtoms& s, double h, float* out);
   void in_double(const Field& f, const BlockAtoms& s, double h, float* out);
   void by_logarithms(const Field& f, const BlockAtoms& s, double h, float* out);
   Scratch<float> single_;
   Scratch<double> double_;
   AlignedVector<double> exact_;
+  std::vector<LogSums> logs_;
+  LogScratch log_scratch_;
 };
 
 } // namespace molmesh::density

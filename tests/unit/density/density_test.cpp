@@ -122,7 +122,7 @@ TEST_CASE("a kd-tree finds what the boxes find, and all atoms give the same fiel
   }
 }
 
-TEST_CASE("every instruction set of this machine keeps the bound, in single and in double precision") {
+TEST_CASE("every instruction set of this machine keeps the bound, in single and in double precision and logarithms") {
   const int64_t here = hwy::SupportedTargets();
   std::vector<std::string> names;
   for (const int64_t set : {HWY_SCALAR, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
@@ -141,6 +141,18 @@ TEST_CASE("every instruction set of this machine keeps the bound, in single and 
         CHECK(test::worst_error(h, g, 300) <= 1);
         o.threads = 3;
         check_equal(compute(h, o), g);
+      }
+    // Far coarser than the atoms: sums are carried as logarithms.
+    for (const std::vector<double>& exponents : {std::vector<double>{0.1, 0.5}, {0.05}, {0.1, 2, 0.3}})
+      for (const double spacing : {4.0, 7.0}) {
+        INFO(names.back() << ", innermost exponent " << exponents[0] << ", spacing " << spacing);
+        Hierarchy h = test::random_chains(4, 40, 9, exponents, 12);
+        if (exponents.size() == 2)
+          h = test::with_bodies(std::move(h));
+        density::Options o;
+        o.spacing = spacing;
+        o.tolerance = spacing == 4 ? 1e-6 : 1e-4;
+        CHECK(test::worst_error(h, compute(h, o), 300) <= 1);
       }
   }
   hwy::SetSupportedTargetsForTest(0);
