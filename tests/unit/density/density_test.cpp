@@ -122,7 +122,7 @@ TEST_CASE("a kd-tree finds what the boxes find, and all atoms give the same fiel
   }
 }
 
-TEST_CASE("every instruction set of this machine keeps the bound, in single and in double precision and logarithms") {
+TEST_CASE("every instruction set of this machine keeps the bound, in single, double and logarithms") {
   const int64_t here = hwy::SupportedTargets();
   std::vector<std::string> names;
   for (const int64_t set : {HWY_SCALAR, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
