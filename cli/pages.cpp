@@ -83,9 +83,11 @@ std::string cell(const std::string& text) {
   std::string out;
   for (const char c : text)
     out += c == '|' ? std::string("\\|") : std::string(1, c);
-  if (const size_t page = out.find("formats/"); page != std::string::npos) {
-    const std::string path = out.substr(page, out.find_first_of(" )", page) - page);
-    out.replace(page, path.size(), "[" + path + "](../../" + path + ")");
+  for (size_t page = 0; (page = out.find("formats/", page)) != std::string::npos;) {
+    const std::string path = out.substr(page, out.find_first_of(" ,)", page) - page);
+    const std::string link = "[" + path + "](../../" + path + ")";
+    out.replace(page, path.size(), link);
+    page += link.size();
   }
   return out;
 }

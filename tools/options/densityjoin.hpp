@@ -45,11 +45,11 @@ inline void describe(cli::Table& t, Options& o) {
       "else densityjoin refuses, and hierjoin or --combine max will do. Pieces marked 'subtract' are cut out of "
       "all others.";
   t.page.examples = {
-      {"densityjoin --piece 'a.vdb' --piece 'a.vdb translate=0,0,60' -o two.vdb",
+      {"densityjoin --piece A.vdb --piece 'A.vdb translate=0,0,60' -o two.vdb",
        "a density and a copy 60 Å above it"},
-      {"densityjoin lattice.join -o lattice.vdb", "by a plan"},
-      {"densityjoin --combine max --piece map.vdb --piece model.vdb -o both.vdb", "a map and the model in it"},
-      {"densityjoin --piece all.vdb --piece 'pore.vdb combine=subtract' -o open.vdb", "one body without another"}};
+      {"densityjoin LATTICE.join -o lattice.vdb", "by a plan"},
+      {"densityjoin --combine max --piece MAP.vdb --piece MODEL.vdb -o both.vdb", "a map and the model in it"},
+      {"densityjoin --piece ALL.vdb --piece 'PORE.vdb combine=subtract' -o open.vdb", "one body without another"}};
   t.page.files = {{".join", "plan of pieces, read: formats/plan/PLAN.md"},
                   {".vdb", "density grids (OpenVDB), read and written: formats/vdb/VDBv1.md"}};
   t.page.see_also = {"hier2density", "density2tet"};

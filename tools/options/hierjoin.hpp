@@ -40,10 +40,10 @@ inline void describe(cli::Table& t, Options& o) {
       "nothing "
       "is rounded. Later pieces make room for earlier ones (--carve). Chains and domains keep distinct names.";
   t.page.examples = {
-      {"hierjoin filament.join -o filament.hier", "all pieces of the plan"},
-      {"hierjoin --carve 2.5 membrane.join | hier2density --spacing 1 -o membrane.vdb",
+      {"hierjoin FILAMENT.join -o filament.hier", "all pieces of the plan"},
+      {"hierjoin --carve 2.5 MEMBRANE.join | hier2density --spacing 1 -o membrane.vdb",
        "lipids and waters within 2.5 Å of the protein, which stands first, are left out"},
-      {"hierjoin --clash number -r '//A P_R=0.5' pair.join -o pair.hier", "chains of one name become A_1, A_2"}};
+      {"hierjoin --clash number -r '//A P_R=0.5' PAIR.join -o pair.hier", "chains of one name become A_1, A_2"}};
   t.page.files = {
       {".join", "plan, read: formats/join/JOINv1.md"},
       {".hier", "molecular hierarchy, read and written: formats/hier/HIERv1.md, formats/hier/HIERv2.md"},

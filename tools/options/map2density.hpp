@@ -39,12 +39,12 @@ inline void describe(cli::Table& t, Options& o) {
       "map's "
       "walls is outside; where the contour reaches them the body is closed there, and a note says so.";
   t.page.examples = {
-      {"map2density --level 0.025 emd_2660.map.gz -o emd.vdb", "a cryo-EM map at its recommended level"},
-      {"map2density --level 0.025 --spacing 1 emd_2660.map -o emd.vdb", "on a grid of 1 Å"},
-      {"map2density cloud.vdb --grid density --level 0.1 -o cloud.density.vdb", "a fog volume"},
-      {"map2density --level 0.025 --like model.vdb emd_2660.map -o emd.vdb",
+      {"map2density --level 0.025 MAP.map.gz -o map.vdb", "a cryo-EM map at its recommended level"},
+      {"map2density --level 0.025 --spacing 1 MAP.map -o map.vdb", "on a grid of 1 Å"},
+      {"map2density CLOUD.vdb --grid density --level 0.1 -o cloud.density.vdb", "a fog volume"},
+      {"map2density --level 0.025 --like MODEL.vdb MAP.map -o map.vdb",
        "on the lattice of the fitted model's density"},
-      {"densityjoin --combine max --piece emd.vdb --piece model.vdb -o both.vdb", "with the model in the map"}};
+      {"densityjoin --combine max --piece map.vdb --piece MODEL.vdb -o both.vdb", "with the model in the map"}};
   t.page.files = {
       {".map, .mrc, .ccp4, .dx (with or without .gz), .vdb",
        "maps and OpenVDB grids of other programs, read: formats/map/MAP.md, formats/openvdb/OPENVDB.md"},

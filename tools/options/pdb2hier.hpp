@@ -50,7 +50,7 @@ inline void describe(cli::Table& t, Options& o) {
   t.page.examples = {
       {"pdb2hier 1tii.pdb -o 1tii.hier", "the whole structure with the default exponents"},
       {"pdb2hier -r '* P_R=0.05 P_C=0.5' -r '//D P_R=0.5 P_C=1' 1tii.pdb -o 1tii.hier", "blurred, but for chain D"},
-      {"pdb2hier --assembly 1 --select //A,B --waters keep 4hhb.cif.gz -o 4hhb.hier",
+      {"pdb2hier --assembly 1 --select //A,B --waters keep ENTRY.cif.gz -o entry.hier",
        "chains A and B of a biological assembly, with waters"}};
   t.page.files = {
       {".pdb, .cif, .bcif, .json, .pqr, .gro, .xyzr", "atomic structure, also as .gz, read: formats/pdb/PDB.md"},

@@ -30,7 +30,7 @@ inline void describe(cli::Table& t, Options& o) {
   t.page.examples = {{"tetconvert 1tii.vtu -o 1tii.msh", "for Gmsh, with physical groups and their names"},
                      {"tetconvert 1tii.vtu -o 1tii.xdmf", "for DOLFINx: writes 1tii.xdmf and 1tii.h5"},
                      {"tetconvert 1tii.vtu -o 1tii.stl", "the molecular surface alone"},
-                     {"tetconvert --scale 10 part.msh -o part.vtu", "a mesh of Gmsh in nanometres as .vtu in Å"}};
+                     {"tetconvert --scale 10 PART.msh -o part.vtu", "a mesh of Gmsh in nanometres as .vtu in Å"}};
   t.page.files = {{".vtu", "mesh (VTK), read and written: formats/vtu/VTUv1.md"},
                   {".msh, .msh2", "Gmsh 4.1 and 2.2, read and written: formats/gmsh/GMSH.md"},
                   {".mesh", "MEDIT, for FreeFEM and Mmg, read and written: formats/medit/MEDIT.md"},

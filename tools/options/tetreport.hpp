@@ -63,7 +63,7 @@ inline void describe(cli::Table& t, Options& o) {
                  "table. With "
                  "--png it draws a picture, which needs no display. Of one mesh it can do both.";
   t.page.examples = {{"tetreport 1tii.vtu -o 1tii.html", "the page of one mesh"},
-                     {"tetreport out/*.vtu -o all.html", "a gallery"},
+                     {"tetreport FOLDER/*.vtu -o all.html", "a gallery"},
                      {"tetreport 1tii.vtu --png 1tii.png", "a picture, without a page"},
                      {"tetreport 1tii.vtu --png cut.png --clip x --clip-at 0.4 --region both", "another cut"}};
   t.page.files = {{".vtu, .msh, .mesh, .vtk", "mesh, read: formats/mesh/MESH.md"},
