@@ -126,10 +126,8 @@ bool LocalSearch::operate(const Trial& trial) {
     return contract_edge(r_, a, t, i, j);
   case 3:
     return contract_edge(r_, a, t, j, i);
-  case 4:
-    return merge_edge(r_, a, t, i, j);
   default:
-    return swap_face(r_, a, t, trial.operation % 6);
+    return merge_edge(r_, a, t, i, j);
   }
 }
 

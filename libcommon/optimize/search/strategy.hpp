@@ -30,7 +30,6 @@ struct Strategy {
   // Of one run.
   float goal = 0;          ///< quality
   bool worst_first = true; ///< deficit(), in the first round of each repair; the other one in the second
-  bool operator==(const Strategy&) const = default;
 };
 
 } // namespace molmesh::optimize
