@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """docs/benchmarks.md from one run on one machine: target beside result, the paper's figures and peers beside both.
 
-    benchmarks.py BIN DATA [--quick] [--threads N | --shared] [--only density,mesh,improvement,chain,surface] [--note TEXT]
-                           [-o docs/benchmarks.md]
+    benchmarks.py BIN DATA [--quick] [--threads N | --shared] [--only density,mesh,improvement,chain,complexes,surface]
+                           [--update] [--note TEXT] [-o docs/benchmarks.md]
 
 BIN: folder of the programs; where field_errors, surface_distances and bench_contour are built there too (targets of that
 name) their tables are made as well. DATA: folder of public structures (MOLMESH_TEST_DATA) with paper/, typical/, pqr/ and
@@ -10,11 +10,14 @@ large/; what is not there is skipped, with a line on standard error and one in t
 one run each, a few minutes; else medians of three and every structure, which takes hours. --shared: other work goes on
 beside this one: everything on one thread, and seconds are those of the clock times the share of a processor that the
 program had. --note: a sentence about the machine for the page. Tables that this machine cannot make (a GPU, other programs) come from the .md files beside this
-script."""
+script. --update: the sections that were measured (--only) take their places in the page that there is, and so do those of the
+.md files; the others stay. Such a section says on which machine it was measured."""
 import argparse
+import json
 import os
 import pathlib
 import re
+import shutil
 import statistics
 import subprocess
 import sys
@@ -40,12 +43,21 @@ VARIANTS = {"T0": ("full", "all"), "NS": ("neighbor", "all"), "KD": ("full", "kd
             "NS+KD": ("neighbor", "kdtree"), "default": ("neighbor", "bvh")}
 # Table 1 of the paper, 2KFX: band, analyzed points as a part of the grid.
 TABLE_1 = {"0.9,1.1": 0.026, "0.6,1.4": 0.048, "0.3,1.7": 0.092, "0.1,2.0": 0.12}
-# Table 3 of the paper: density, mesh, quality in seconds; V#, E#, edge ratio, Q, dihedral angles.
+# Table 3 of the paper: recipe and mesh here, what stands for what, atoms there; density, mesh, quality in seconds; V#, E#, edge
+# ratio, Q, dihedral angles.
 TABLE_3 = {
-    "SERCA, 80,157 atoms": {"sequential": (165.1, 12.8, 163.5), "8 threads": (38.4, 6.3, 37.7), "GPU": (11.7, 2.3, 7.2),
-                            "mesh": (190356, 946273, 10.23, 0.14, 15.01, 167.25)},
-    "1HTQ, ten models, 0.98 M atoms": {"sequential": (6494.7, 13.1, 250.6), "8 threads": (1589.4, 6.7, 68.3),
-                                       "GPU": (88.4, 2.7, 12.5), "mesh": (399994, 1989245, 9.56, 0.10, 15.03, 167.46)},
+    "thin filament": ("filament", "filament", "filament.exterior", "TFC", "69,222",
+                      (188.6, 13.2, 157.8), (37.8, 6.6, 35.8), (4.8, 2.4, 6.3), (212120, 1094424, 10.24, 0.12, 15.00, 165.25)),
+    "SERCA pump": ("membrane", "membrane", "membrane.exterior", "SERCA", "80,157",
+                   (165.1, 12.8, 163.5), (38.4, 6.3, 37.7), (11.7, 2.3, 7.2), (190356, 946273, 10.23, 0.14, 15.01, 167.25)),
+    "myofibril lattice": ("lattice", "lattice", "lattice.exterior", "ML", "95,853",
+                          (377.5, 13.1, 189.5), (75.6, 6.7, 36.7), (7.3, 2.4, 5.8), (271523, 1327336, 10.31, 0.18, 15.03, 164.20)),
+    "1HTQ, 24 chains": ("1htq", "1htq", "1htq", "2W4A", "0.19 M",
+                        (687.4, 12.9, 213.7), (143.5, 6.7, 53.2), (10.2, 2.4, 6.5), (276458, 1334008, 10.98, 0.11, 15.10, 166.23)),
+    "4V6X": ("4v6x", "4v6x", "4v6x", "1HTQ", "0.98 M",
+             (6494.7, 13.1, 250.6), (1589.4, 6.7, 68.3), (88.4, 2.7, 12.5), (399994, 1989245, 9.56, 0.10, 15.03, 167.46)),
+    "2BTV's capsid": ("2btv", "2btv", "2btv", "2KU2", "1.23 M",
+                      (3050.2, 12.9, 178.0), (645.5, 6.5, 44.2), (63.2, 2.4, 6.7), (243463, 1201048, 10.60, 0.15, 14.86, 167.42)),
 }
 
 
@@ -411,17 +423,86 @@ class Page:
                              f"{quality['joe_liu_q']['min']:.2f}",
                              angles((quality["dihedral"]["min"], quality["dihedral"]["max"])),
                              megabytes(max(r["peak_rss_bytes"] for r in (density, mesh, improvement)))))
-        for title, paper in TABLE_3.items():
-            v, e, ratio, q, low, high = paper["mesh"]
-            for mode in ("sequential", "8 threads", "GPU"):
-                rows.append((f"*paper:* {title}", mode, *(f"{s:,g}" for s in paper[mode]), f"{sum(paper[mode]):,.1f}", count(v),
-                             count(e), ratio, q, angles((low, high)), ""))
-        self.write("## The whole chain: the paper's table 3", "Seconds of density, mesh generation and quality improvement; 513 "
-                   "points on the longest axis, both regions, defaults. The paper's SERCA pump is 1SU4 in a membrane, on a "
-                   "Xeon E5-1620 (4 cores, 8 threads) and a GTX 680. Our default field draws atoms more sharply than the "
-                   "paper's and meshes both sides, so that meshes are larger.",
+        self.write("## The whole chain", "Seconds of density, mesh generation and quality improvement; 513 points on the longest axis, "
+                   "both regions, defaults. Our default field draws atoms more sharply than the paper's and meshes both sides, so that "
+                   "meshes are larger than [those of its complexes](#complexes-the-papers-table-3).",
                    table(("", "", "density", "mesh", "quality", "total", "V#", "E#", "edge ratio ≤", "Q ≥", "dihedral angles",
                           "memory"), rows))
+
+    # --- complexes
+
+    def recipe(self, name):
+        """What it makes on a coarse grid and without improvement: the hierarchies, and in reports the options of the meshes."""
+        script = ROOT / "complexes" / f"{name}.sh"
+        if not script.exists():
+            return None
+        folder, stubs = self.chain.path(f"recipe_{name}"), self.chain.path("stubs")
+        stubs.mkdir(exist_ok=True)
+        for program in ("tetsmooth", "tetlabel", "tetstat"):  # each makes an empty file
+            stub = stubs / program
+            stub.write_text('#!/bin/sh\nwhile [ $# -gt 1 ]; do [ "$1" = -o ] && : >"$2"; shift; done\n')
+            stub.chmod(0o755)
+        path = f"{stubs}:{self.arguments.bin.resolve()}:{os.environ['PATH']}"
+        subprocess.run(["bash", script, self.data, folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                       env={**os.environ, "PATH": path, "GRID": "65", "THREADS": str(self.threads)})
+        return folder
+
+    def complexes(self):
+        modes = [("seq", 1), ("omp", max(2, self.arguments.threads or os.cpu_count())), ("cuda", 1)]
+        rows, below, measured = [], 0, 0
+        for title, (name, hier, mesh, theirs, their_atoms, sequential, cores, gpu, paper) in TABLE_3.items():
+            folder = self.recipe(name)
+            reports = [folder / f"{hier}.vdb.json", folder / f"{mesh}.tet.vtu.json"] if folder else []
+            if not reports or not all(report.exists() for report in reports):
+                self.skipped.append(f"{title} of the paper's table 3")
+                self.say(f"skipped {title}: its recipe made no {mesh}")
+                continue
+            of_density, of_mesh = (json.loads(report.read_text())["options"] for report in reports)
+            grid = ["--grid", "513"] if of_density.get("grid") else ["--spacing", of_density["spacing"] * 64 / 512]
+            grid += ["--isovalue", of_density["isovalue"]]
+            options = [f"--{key}={of_mesh[key]}" for key in ("region", "box", "adapt", "cavities", "drop-below")]
+            shutil.copy(folder / f"{hier}.hier", self.chain.path("hier"))
+            found, totals = None, []
+            for mode, threads in modes:
+                try:
+                    density = self.chain.density(*grid, threads=threads, mode=mode)
+                    made = self.chain.mesh(*options, threads=threads, mode=mode)
+                    improvement = self.chain.improve(threads=threads, mode=mode, good=(0, 5))
+                except ToolError as problem:
+                    if mode != "cuda":
+                        raise
+                    self.skipped.append("the paper's table 3 with `--mode cuda`")
+                    self.say(f"  {problem}")
+                    continue
+                if not found or mode == "cuda":  # the host's modes give the same bytes
+                    found = self.chain.stat("out")
+                parts = [density["seconds"]["density"], made["work"], improvement["work"]]
+                totals.append(sum(parts))
+                quality = found["quality"]
+                rows.append((f"**{title}**", count(density["counts"]["atoms"]),
+                             f"{mode}, {threads} thread{'s' if threads > 1 else ''}" if mode != "cuda" else mode,
+                             *map(seconds, parts), seconds(totals[-1]), count(found["points"]), count(found["tets"]),
+                             f"{quality['edge_ratio']['max']:.2f}", f"{quality['joe_liu_q']['min']:.2f}",
+                             angles((quality["dihedral"]["min"], quality["dihedral"]["max"])),
+                             "yes" if found["valid"] else "**no**"))
+                self.say(f"  {title}, {mode}: {' '.join(map(seconds, parts))}, {found['tets']} elements")
+            v, e, ratio, q, low, high = paper
+            for mode, parts in (("sequential", sequential), ("8 threads", cores), ("GPU", gpu)):
+                rows.append((f"*the paper's {theirs}*", their_atoms, mode, *(f"{s:,g}" for s in parts), f"{sum(parts):,.1f}", count(v),
+                             count(e), f"{ratio:.2f}", f"{q:.2f}", angles((low, high)), ""))
+            measured += 1
+            below += totals[1] < sum(gpu)
+        if not rows:
+            return
+        self.promise("table 3: complexes whose total on two cores is below that of the paper's GPU", f"{measured}", f"{below}",
+                     below == measured)
+        self.write("## Complexes: the paper's table 3", "Seconds of density, mesh generation and quality improvement without reading and "
+                   "writing; 513 points on the longest axis, the paper's exponents. The structures stand for those of the paper "
+                   "(`complexes/` holds the recipes, [figures.md](figures.md) shows them). As in the paper the first three are "
+                   "meshes of the surroundings up to a box, the others of the molecule. The paper's are from a Xeon E5-1620 (4 cores, 8 "
+                   "threads) and a GTX 680.",
+                   table(("", "atoms", "mode", "density", "mesh", "quality", "total", "V#", "E#", "edge ratio ≤", "Q ≥",
+                          "dihedral angles", "valid"), rows))
 
     # --- the body
 
@@ -458,6 +539,30 @@ class Page:
                 f"{int(memory.group(1)) / 2**20:.0f} GiB{', a virtual machine' if 'hypervisor' in flags else ''}; "
                 f"molmesh {version.split()[-1]}; all threads: {self.threads}. {self.arguments.note}").strip()
 
+    def updated(self, body):
+        """The page that there is, with the sections of `body` and of the .md files in place of its own."""
+        sections = re.split(r"(?m)^(?=## )", self.arguments.output.read_text())
+        fresh = re.split(r"(?m)^(?=## )", "\n\n".join(body) + "\n\n")[1:]
+        kind = ("seconds of the clock times the share of a processor that the program had (of several threads: without the time "
+                "that the thread which waited longest waited for one)" if self.arguments.shared else "of one run")
+        fresh = [s.rstrip() + f"\n\nMeasured on: {self.machine()} Times are {kind}.\n\n" for s in fresh]
+        fresh += [path.read_text().strip() + "\n\n" for path in sorted(HERE.glob("*.md"))
+                  if any(s.startswith(path.read_text().split("\n")[0] + "\n") for s in sections)]
+        for section in fresh:
+            head = section.split("\n")[0]
+            at = [i for i, old in enumerate(sections) if old.startswith(head)]
+            if at:
+                sections[at[0]] = section
+            else:  # before the parts that other scripts measure
+                place = [i for i, old in enumerate(sections) if old.startswith("## The default surface beside")]
+                sections.insert(place[0] if place else len(sections), section)
+        for row in self.promises:
+            for i, section in enumerate(sections):
+                if section.startswith("## Targets and results"):
+                    lines = [line for line in section.rstrip().split("\n") if not line.startswith(f"| {row[0]} |")]
+                    sections[i] = "\n".join([*lines, "| " + " | ".join(row) + " |"]) + "\n\n"
+        return "".join(sections).rstrip() + "\n"
+
     def include(self, name):
         path = HERE / name
         if path.exists():
@@ -466,17 +571,21 @@ class Page:
     def page(self):
         wanted = self.arguments.only.split(",") if self.arguments.only else None
         for name, section in (("density", self.density), ("mesh", self.mesh), ("improvement", self.improvement),
-                              ("chain", self.whole_chain), ("surface", self.surface)):
+                              ("chain", self.whole_chain), ("complexes", self.complexes),
+                              ("surface", self.surface)):
             if not wanted or name in wanted:
                 self.say(name)
                 section()
         body, self.text = self.text, []
+        if self.arguments.update:
+            return self.updated(body)
         self.write("# Benchmarks", "Made by `tests/bench/benchmarks.py" + (" --quick" if self.quick else "")
                    + "`: do not edit. Target beside result, the paper's figures and other programs beside both. What the "
                    "contracts I1 to I12 are, units and measures: [conventions.md](conventions.md).",
                    f"**Machine.** {self.machine()}", "Times are " + ("of one run" if self.quick else "medians of three runs")
                    + (", on a shared machine: one thread, and seconds of the clock times the share of a processor "
-                      "that the program had. A quiet machine is faster" if self.arguments.shared else "")
+                      "that the program had (of several threads: without the time that the thread which waited longest waited "
+                      "for one). A quiet machine is faster" if self.arguments.shared else "")
                    + "; ratios of times say more than times. Any number of threads gives the same bytes.",
                    "## Targets and results", table(("", "target", "result", "met"), self.promises))
         self.text += body
@@ -499,6 +608,7 @@ def main():
     parser.add_argument("--threads", type=int, default=0)
     parser.add_argument("--shared", action="store_true")
     parser.add_argument("--only", default="")
+    parser.add_argument("--update", action="store_true")
     parser.add_argument("--note", default="")
     parser.add_argument("-o", dest="output", type=pathlib.Path, default=ROOT / "docs" / "benchmarks.md")
     arguments = parser.parse_args()

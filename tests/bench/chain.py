@@ -1,9 +1,12 @@
 """chain.py: the programs run one after the other, and what is measured of them. A module of the scripts beside it."""
+import glob
 import json
+import os
 import pathlib
 import random
 import resource
 import subprocess
+import threading
 import time
 
 
@@ -11,9 +14,31 @@ class ToolError(Exception):
     """A program ended with another status than 0: its name and what it wrote to standard error."""
 
 
+class Waits(threading.Thread):
+    """Looks after a process until that ends: `longest` are the seconds for which the thread that waited longest waited for a
+    processor (Linux)."""
+
+    def __init__(self, process):
+        super().__init__()
+        self.process, self.longest = process, 0
+        self.start()
+
+    def run(self):
+        waited = {}
+        while self.process.returncode is None:
+            for task in glob.glob(f"/proc/{self.process.pid}/task/*/schedstat"):
+                try:
+                    waited[task] = int(pathlib.Path(task).read_text().split()[1]) / 1e9
+                except (OSError, IndexError):
+                    pass  # the thread has ended
+            time.sleep(0.05)
+        self.longest = max(waited.values(), default=0)
+
+
 class Chain:
     """The programs in one folder, their files in another. threads: of those that have a choice. shared: other work goes on
-    beside this one; one thread, and every second counts as the share of a processor that the run had."""
+    beside this one; one thread where a run does not name its threads, and seconds count as if it did not: of one thread the
+    share of a processor that the run had, of several without the time that the thread which waited longest waited for one."""
 
     def __init__(self, programs, folder, threads, shared=False):
         self.programs, self.folder, self.shared = pathlib.Path(programs), pathlib.Path(folder), shared
@@ -22,20 +47,28 @@ class Chain:
     def path(self, name):
         return self.folder / name
 
-    def run(self, program, *options, threads=None):
-        """The run report; `seconds` of each phase, `wall` of all, `work` without reading and writing, `processor`: user and
+    def run(self, program, *options, threads=None, mode="omp", good=(0,)):
+        """The run report, where the status is a good one; `seconds` of each phase, `wall` of all, `work` without reading and writing, `processor`: user and
         system."""
         report = self.path(f"{program}.json")
         before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
-        threads = 1 if self.shared else threads or self.threads
-        done = subprocess.run([self.programs / program, "-q", "-t", str(threads), "--report", report,
-                               *map(str, options)], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
-        if done.returncode != 0:
-            raise ToolError(f"{program}: status {done.returncode}: {done.stderr.strip()}")
+        threads = threads or self.threads
+        process = subprocess.Popen([self.programs / program, "-q", "--mode", mode, "-t", str(threads), "--report", report,
+                                    *map(str, options)], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
+                                   env={"OMP_WAIT_POLICY": "passive", **os.environ})
+        waits = Waits(process) if self.shared and int(threads) > 1 else None
+        error = process.communicate()[1]
         after, elapsed = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic() - start
+        if process.returncode not in good:
+            raise ToolError(f"{program}: status {process.returncode}: {error.strip()}")
         text = json.loads(report.read_text())
         text["processor"] = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        share = min(1, text["processor"] / elapsed) if self.shared else 1
+        share = 1
+        if waits:
+            waits.join()
+            share = max(0, 1 - waits.longest / elapsed)
+        elif self.shared:
+            share = min(1, text["processor"] / elapsed)
         text["seconds"] = {p["name"]: p["seconds"] * share for p in text["phases"]}
         text["wall"] = sum(text["seconds"].values())
         text["work"] = sum(s for name, s in text["seconds"].items() if name not in ("read", "write"))
@@ -44,15 +77,15 @@ class Chain:
     def hierarchy(self, structure, *options):
         return self.run("pdb2hier", *options, structure, "-o", self.path("hier"))
 
-    def density(self, *options, threads=None, output=None):
-        return self.run("hier2density", *options, self.path("hier"), "-o", output or self.path("vdb"), threads=threads)
+    def density(self, *options, threads=None, mode="omp", output=None):
+        return self.run("hier2density", *options, self.path("hier"), "-o", output or self.path("vdb"), threads=threads, mode=mode)
 
-    def mesh(self, *options, threads=None, output=None):
-        return self.run("density2tet", *options, self.path("vdb"), "-o", output or self.path("tet"), threads=threads)
+    def mesh(self, *options, threads=None, mode="omp", output=None):
+        return self.run("density2tet", *options, self.path("vdb"), "-o", output or self.path("tet"), threads=threads, mode=mode)
 
-    def improve(self, *options, threads=None):
+    def improve(self, *options, threads=None, mode="omp", good=(0,)):
         return self.run("tetsmooth", "--density", self.path("vdb"), *options, self.path("tet"), "-o", self.path("out"),
-                        threads=threads)
+                        threads=threads, mode=mode, good=good)
 
     def stat(self, name):
         """tetstat's answer; a mesh that is not valid has status 5 and an answer too."""
