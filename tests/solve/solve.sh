@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# solve.sh BIN SOURCE ion|harmonic|diffusion|kirkwood — structure to solution: the whole chain, judged by FreeFEM. Status 77: skipped.
+# solve.sh BIN SOURCE ion|harmonic|diffusion|kirkwood|dolfinx — structure to solution: the whole chain, judged by FreeFEM. Status 77: skipped.
 set -eu
 bin=$(realpath "$1") SOURCE=$(realpath "$2") what=$3
 export PATH="$bin:$PATH" OMP_NUM_THREADS=2
@@ -43,6 +43,29 @@ harmonic) # a harmonic polynomial to 1e-10; with one tetrahedron missing it must
     echo "with one missing: $(head -n 1 missing)"
     grep -q '^error' missing || { cat missing; exit 1; } # not for another reason
   done
+  ;;
+dolfinx) # DOLFINx finds what FreeFEM finds, and nothing where the permittivity is the same everywhere
+  for python in python3 /usr/bin/python3; do
+    ! "$python" -c 'import dolfinx, meshio' 2>/dev/null || break
+    [ "$python" = python3 ] || { echo "SKIPPED: no DOLFINx (Debian: python3-dolfinx-real python3-meshio)"; exit 77; }
+  done
+  pdb2hier -q --levels none "$SOURCE/tests/data/ion.pqr" -o ion.hier
+  mesh ion both 0.7 "--box 3x"
+  tetconvert -q ion.vtu -o ion.mesh
+  tetconvert -q ion.vtu -o ion.xdmf
+  printf '2\n0 1.5 0 1 3\n0 0 -1 -0.5 3\n' >ion.charges
+  solve poisson_boltzmann ion.mesh ion.charges freefem.vtu 2 0.5 nonlinear | tee energies
+  "$python" "$SOURCE/tests/solve/poisson_boltzmann.py" ion.xdmf ion.charges dolfinx.vtu --salt 0.5 --equation nonlinear | tee -a energies
+  "$python" "$SOURCE/tests/solve/poisson_boltzmann.py" ion.xdmf ion.charges same.vtu --eps 2=2 | tee -a energies
+  awk '/^energy/ { e[n++] = $2 } END { d = e[0] - e[1]; exit !(n == 3 && e[0] < -50 && d * d < 1e-6 && e[2] * e[2] < 1e-12) }' energies
+  "$python" - <<'PY'
+import meshio, numpy
+a, b = meshio.read("freefem.vtu"), meshio.read("dolfinx.vtu")
+order = [numpy.lexsort(numpy.round(m.points, 6).T) for m in (a, b)]
+apart = [numpy.abs(x[order[0]] - y[order[1]]).max() for x, y in ((a.points, b.points), (a.point_data["potential"], b.point_data["potential"]))]
+print(f"{len(a.points)} points of the surface, apart by {apart[0]:.1g} Å and {apart[1]:.1g} kT/e")
+assert apart[0] < 1e-6 and apart[1] < 1e-3
+PY
   ;;
 diffusion) # a rate that converges with the mesh
   structure=${MOLMESH_TEST_DATA:-}/pqr/misc__mache.pqr.gz
