@@ -73,7 +73,7 @@ TEST_CASE("a single atom is resampled nearly exactly, since the logarithm of its
   CHECK(error.value < 1e-2);
 }
 
-TEST_CASE("resampled chains are complete, and err by no more than is reported") {
+TEST_CASE("resampled chains are complete, and err by no more than is reported", "[slow]") {
   for (const double spacing : {0.4, 0.8})
     for (const std::vector<double>& exponents : {std::vector<double>{0.3, 1}, {0.6, 0.8}, {}})
       for (const double lower : {0.9, 0.5}) {

@@ -16,7 +16,7 @@ constexpr double pi = 3.14159265358979323846;
 
 } // namespace
 
-TEST_CASE("a sphere: volume and area converge, every region is valid") {
+TEST_CASE("a sphere: volume and area converge, every region is valid", "[slow]") {
   for (double h : {1.0, 0.5, 0.25}) {
     const BlockGrid grid = cube_grid(6, h, atom);
     for (auto meshed : {Options::interior, Options::exterior, Options::both})
@@ -43,7 +43,7 @@ TEST_CASE("a sphere: volume and area converge, every region is valid") {
   }
 }
 
-TEST_CASE("chords of merged cells cut off little, whatever the tolerance, and large bodies merge") {
+TEST_CASE("chords of merged cells cut off little, whatever the tolerance, and large bodies merge", "[slow]") {
   for (int radius : {6, 12, 40}) { // spacings
     CAPTURE(radius);
     const double h = 3. / radius;
@@ -156,7 +156,7 @@ TEST_CASE("dust in a cavity goes with the cavity, a hollow part goes with its ow
   }
 }
 
-TEST_CASE("the same bytes at any number of threads") {
+TEST_CASE("the same bytes at any number of threads", "[slow]") {
   const BlockGrid grid = cube_grid(6, 0.3, atom);
   for (double adapt : {0.0, 0.25}) {
     Options options;

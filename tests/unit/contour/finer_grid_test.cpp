@@ -279,7 +279,7 @@ TEST_CASE("half the spacing with the topology of the grid", "[slow]") {
   CHECK(refused < 30);
 }
 
-TEST_CASE("what chords of fine cells cut off a ball is the same share of h²/r² whatever its radius") {
+TEST_CASE("what chords of fine cells cut off a ball is the same share of h²/r² whatever its radius", "[slow]") {
   for (int radius : {6, 20, 110}) { // spacings; the largest by every other cell
     CAPTURE(radius);
     const BlockGrid grid = cube_grid(radius + 2, 1, [=](Vec3d x) {

@@ -42,7 +42,7 @@ TEST_CASE("a thousand random densities: always valid, ties with the isovalue amo
   }
 }
 
-TEST_CASE("uniform meshes have the Euler number of the trilinear isosurface") {
+TEST_CASE("uniform meshes have the Euler number of the trilinear isosurface", "[slow]") {
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> u(0, 2);
   for (int trial = 0; trial < 40; ++trial) {

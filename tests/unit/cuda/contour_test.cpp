@@ -181,7 +181,7 @@ TEST_CASE("device stages: the host's on a molecule, in a cut box, at any number 
   CHECK(compare(grid, options).differ == 0);
 }
 
-TEST_CASE("device stages: the host's where surface triangles far from the isosurface come nearer") {
+TEST_CASE("device stages: the host's where surface triangles far from the isosurface come nearer", "[slow]") {
   Options options;
   options.adapt = 0.41;
   for (const unsigned seed : {3u, 4u, 6u}) {

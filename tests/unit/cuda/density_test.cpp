@@ -147,7 +147,7 @@ TEST_CASE("device density: molecules far apart and a hollow ball are all found")
   check_same(ball, on_host(hollow, o));
 }
 
-TEST_CASE("device density: slabs, threads and the full search change nothing") {
+TEST_CASE("device density: slabs, threads and the full search change nothing", "[slow]") {
   const Hierarchy h = long_chains();
   density::Options o;
   o.spacing = 0.5;
@@ -172,7 +172,7 @@ TEST_CASE("device density: slabs, threads and the full search change nothing") {
   check_equal(on_backend(h, o).grid, one.grid);
 }
 
-TEST_CASE("device density: slabs are given away as they are found, each block once") {
+TEST_CASE("device density: slabs are given away as they are found, each block once", "[slow]") {
   const Hierarchy h = long_chains();
   density::Options o;
   o.spacing = 0.5;

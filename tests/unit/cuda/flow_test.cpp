@@ -38,7 +38,7 @@ optimize::Pass pass_with(double degrees, bool worst_first) {
 
 } // namespace
 
-TEST_CASE("flow: the worst element rises, none is inverted, what is bound stays bound") {
+TEST_CASE("flow: the worst element rises, none is inverted, what is bound stays bound", "[slow]") {
   const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
   const Isosurface surface(grid, 1);
   const int keep = GENERATE(0, 1, 2);
@@ -127,7 +127,7 @@ TEST_CASE("flow: points are grouped by valence and stars are complete") {
   CHECK(stars.begin.data()[m.point.size()] == 4 * std::ptrdiff_t(corners.size()));
 }
 
-TEST_CASE("improvement with the device's flow keeps what improvement keeps, at any number of threads") {
+TEST_CASE("improvement with the device's flow keeps what improvement keeps, at any number of threads", "[slow]") {
   const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
   const bool with_density = GENERATE(true, false);
   std::vector<TetMesh> result;
@@ -155,7 +155,8 @@ TEST_CASE("improvement with the device's flow keeps what improvement keeps, at a
   CHECK(result[0].tet == result[1].tet);
 }
 
-TEST_CASE("flow: what stays on the device between rounds is what a mesh sent anew would be, for fewer bytes") {
+TEST_CASE("flow: what stays on the device between rounds is what a mesh sent anew would be, for fewer bytes",
+          "[slow]") {
   const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
   const auto copied = [](cuda::HostBackend& b) {
     double bytes = 0;

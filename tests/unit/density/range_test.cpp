@@ -56,7 +56,7 @@ TEST_CASE("powers so small that the sums below them need more range than doubles
   }
 }
 
-TEST_CASE("sums beyond doubles, whose powers are not") {
+TEST_CASE("sums beyond doubles, whose powers are not", "[slow]") {
   Hierarchy h = test::random_chains(2, 8, 6, {1, 0.5}, 5);
   for (Atom& a : h.atom)
     a.radius += 26;

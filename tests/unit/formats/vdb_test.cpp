@@ -134,7 +134,7 @@ TEST_CASE("whatever is cut off a .vdb file is missed") {
   }
 }
 
-TEST_CASE("damaged bytes are refused or read, never worse") {
+TEST_CASE("damaged bytes are refused or read, never worse", "[slow]") {
   const std::string whole = bytes(example());
   std::mt19937 random(11);
   int refused = 0;

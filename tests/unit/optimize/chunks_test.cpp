@@ -55,7 +55,7 @@ TetMesh labelled_last(const TetMesh& mesh) {
 
 } // namespace
 
-TEST_CASE("chunks of elements know of their labels and their worst") {
+TEST_CASE("chunks of elements know of their labels and their worst", "[slow]") {
   constexpr double h = 0.5;
   const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, 24);
   const TetMesh mesh = labelled_last(lattice_mesh(three_atoms, {0, 0, 0}, h, 24, GENERATE(0, 1, 2)));

@@ -70,7 +70,7 @@ bool same(const TetMesh& a, const TetMesh& b) {
 
 } // namespace
 
-TEST_CASE("improvement keeps regions, walls and topology, and puts the surface on the isosurface") {
+TEST_CASE("improvement keeps regions, walls and topology, and puts the surface on the isosurface", "[slow]") {
   const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
   const int keep = GENERATE(0, 1, 2);
   const bool with_density = GENERATE(true, false);
@@ -193,7 +193,7 @@ TEST_CASE("a few rounds improve, and nothing becomes worse for want of more") {
   }
 }
 
-TEST_CASE("whatever quality is asked for, the surface stays on the isosurface") {
+TEST_CASE("whatever quality is asked for, the surface stays on the isosurface", "[slow]") {
   const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
   for (const double min : {28., 34., 60.}) {
     TetMesh mesh = lattice_mesh(three_atoms, {0, 0, 0}, h, n);

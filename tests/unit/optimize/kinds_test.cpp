@@ -139,7 +139,7 @@ TEST_CASE("a mesh far from the origin is improved as one at the origin is") {
   CHECK(b.after.below_25 <= a.after.below_25 + 1);
 }
 
-TEST_CASE("without a density a plate thinner than its triangles stays where it is") {
+TEST_CASE("without a density a plate thinner than its triangles stays where it is", "[slow]") {
   TetMesh mesh; // cubes of six tetrahedra, pressed flat
   const int n = 6;
   for (int i = 0; i <= n; ++i)

@@ -77,7 +77,7 @@ TEST_CASE("the surface follows a passage of hundredths of a spacing", "[slow]") 
   CHECK_NOTHROW(optimize::build(now, 180, 1));
 }
 
-TEST_CASE("a surface that touches itself is left alone where it does") {
+TEST_CASE("a surface that touches itself is left alone where it does", "[slow]") {
   const Field tube = pierced_ball(0.6 * h, 2 * h, {0.6, 0, 0.8}),
               field = pierced_ball(0.05 * h, 2 * h, {0.6, 0, 0.8});
   const BlockGrid grid = lattice_grid(tube, {0, 0, 0}, h, n);

@@ -43,7 +43,7 @@ double volume(const TetMesh& mesh) {
 
 } // namespace
 
-TEST_CASE("all points of a hole smaller than the grid come to lie on it") {
+TEST_CASE("all points of a hole smaller than the grid come to lie on it", "[slow]") {
   const int keep = GENERATE(0, 1);
   const double radius = GENERATE(0.3, 0.1, 0.03) * h;
   Case c(radius, keep);
@@ -55,7 +55,7 @@ TEST_CASE("all points of a hole smaller than the grid come to lie on it") {
   CHECK_NOTHROW(optimize::build(c.mesh, 180, 1));
 }
 
-TEST_CASE("a hole much larger than what it stands for shrinks among good elements") {
+TEST_CASE("a hole much larger than what it stands for shrinks among good elements", "[slow]") {
   const int keep = GENERATE(0, 1);
   Case large(0.6 * h, keep), small(0.02 * h, keep);
   optimize::improve(large.mesh, &large.grid, {});
@@ -73,7 +73,7 @@ TEST_CASE("a hole much larger than what it stands for shrinks among good element
   CHECK_NOTHROW(optimize::build(optimize::extract(m), 180, 1));
 }
 
-TEST_CASE("a part has room for the shells of a hole that has grown to several spacings") {
+TEST_CASE("a part has room for the shells of a hole that has grown to several spacings", "[slow]") {
   const int keep = GENERATE(0, 1);
   Case large(1.6 * h, keep), small(0.03 * h, keep);
   optimize::improve(large.mesh, &large.grid, {});

@@ -9,7 +9,7 @@
 using namespace molmesh;
 using namespace molmesh::test;
 
-TEST_CASE("improvement keeps a cut surface in the box and out of its walls") {
+TEST_CASE("improvement keeps a cut surface in the box and out of its walls", "[slow]") {
   const auto meshed = GENERATE(contour::Options::interior, contour::Options::exterior);
   for (uint32_t seed = 1; seed <= 4; ++seed) {
     const BlockGrid grid = cluster(seed, 1);
