@@ -32,13 +32,14 @@ GUIDE = "docs/guide.md"
 # (page, beginning of a block): why no test runs it. A block that is no longer there is an error.
 NOT_RUN = {
     ("README.md", "make -f Makefile.pipeline demo"): "installs packages and builds; `check` is how CI tests",
+    (GUIDE, "make -f Makefile.pipeline deb"): "builds; the tests `install: Debian packages` and `install: Debian chroot`",
     (GUIDE, "make -f Makefile.pipeline demo"): "installs packages and builds",
     (GUIDE, "cmake -S . -B build"): "builds; the test `install: example` runs the installation",
     (GUIDE, "molmesh-array -o meshes structures"): "needs Slurm: the test `cluster: job arrays on Slurm`",
     (GUIDE, 'name=$(sed -n "${PBS_ARRAY_INDEX}p"'): "needs PBS or Grid Engine",
 }
 # Pages whose blocks are for developers: they build, or need other tools. Their options are checked.
-BUILD_PAGES = {"CONTRIBUTING.md", "tests/fuzz/README.md"}
+BUILD_PAGES = {"CONTRIBUTING.md", "packaging/README.md", "tests/fuzz/README.md"}
 # A command that may end with other statuses than 0.
 STATUSES = {"hier2density --mode cuda": (0, 6), "tetsmooth --min-dihedral": (0, 5)}
 # What a block needs that may not be on a machine: a word of it, and the command that says whether it is here.
