@@ -1,0 +1,50 @@
+# common.sh — what the recipes share: arguments, inputs, and the way from a plan to meshes that are checked and labelled.
+#
+# A recipe is called as NAME.sh DATA OUT. DATA holds the structures, under the names that the recipe asks for, OUT takes
+# what it makes. GRID is the number of grid points along the longest edge (513, as in the paper); MODE and THREADS are
+# --mode and -t of the programs, which have to be in PATH. Each stage leaves its run report: X.vdb.json beside X.vdb.
+set -euo pipefail
+recipe=$(basename "$0" .sh)
+[ $# = 2 ] || { echo "usage: $0 DATA OUT" >&2; exit 2; }
+data=$(realpath -m "$1")
+mkdir -p "$2" && cd "$2"
+GRID=${GRID:-513}
+common=(--mode "${MODE:-omp}" -t "${THREADS:-0}")
+
+# needs FILE…: of DATA; a recipe without its structures says so, and is no failure.
+needs() {
+  local file
+  for file; do
+    [ -e "$data/$file" ] || { echo "$recipe: skipped, $data/$file is not there"; exit 0; }
+  done
+}
+
+# density NAME OPTION…: NAME.vdb of NAME.hier
+density() {
+  local name=$1
+  shift
+  hier2density "${common[@]}" "$@" "$name.hier" -o "$name.vdb" --report "$name.vdb.json"
+}
+
+# mesh NAME MESH OPTION…: MESH.tet.vtu of NAME.vdb with these options of density2tet; MESH.vtu, improved; MESH.labels.vtu, which
+# names the structures of NAME.hier; MESH.txt, what tetstat says of MESH.vtu.
+mesh() {
+  local name=$1 mesh=$2
+  shift 2
+  density2tet "${common[@]}" "$@" "$name.vdb" -o "$mesh.tet.vtu" --report "$mesh.tet.vtu.json"
+  tetsmooth "${common[@]}" --density "$name.vdb" "$mesh.tet.vtu" -o "$mesh.vtu" --report "$mesh.vtu.json"
+  tetlabel -q "$mesh.vtu" "$name.hier" -o "$mesh.labels.vtu"
+  check "$mesh"
+}
+
+# check MESH: valid, without triangles that cross, angles within 25° and 140°? A mesh that is not makes the recipe end with status 5.
+below=0
+trap '[ $? != 0 ] || exit $below' EXIT
+check() {
+  tetstat --crossings --min-dihedral 25 --max-dihedral 140 "$1.vtu" -o "$1.txt" || below=5
+  echo "$1.vtu: $(sed -n 2p "$1.txt"), $(sed -n 's/ tetrahedra,.*/ tetrahedra/p' "$1.txt")"
+  sed -n '/^region/,/^$/p' "$1.txt"
+}
+
+# spacing Å: of GRID points along an edge of that length
+spacing() { awk -v l="$1" -v n="$GRID" 'BEGIN { printf "%.6g", l / (n - 1) }'; }

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# filament.sh — the thin filament of muscle in three levels (figures 1 and 4 of the paper): filament.sh DATA OUT.
+#
+# Stand-ins for PDB 2W4U: F-actin of 28 subunits, without hydrogens; tropomyosin is 56 pieces of a real helix (residues 740 to
+# 778 of PDB 1SU4), two side by side, end to end along both grooves; troponin is four copies of lysozyme (PDB 1AKI).
+#
+# Makes filament.hier, with figure 1's exponents; filament.exterior.vtu, the box without the filament, and
+# filament.both.vtu, the box with it; filament_blurred.vtu and filament_kept.vtu, the filament alone with figure 4's P_D.
+# Beside each: .labels.vtu (domain, chain, residue at every triangle), .txt (tetstat), .json (run reports).
+. "$(dirname "$0")/common.sh"
+needs paper/actin_filament_28mer_for_2w4u_derived.pdb.gz paper/1su4.pdb.gz typical/1aki.pdb
+
+pdb2hier -q --hydrogens drop "$data/paper/actin_filament_28mer_for_2w4u_derived.pdb.gz" -o actin.hier
+pdb2hier -q --select '//A/740-778' "$data/paper/1su4.pdb.gz" -o helix.hier
+pdb2hier -q "$data/typical/1aki.pdb" -o knob.hier
+
+# Two helices side by side, along z, their middle in the origin.
+cat >strand.join <<'END'
+join 1
+piece helix.hier chains=A:Tm matrix=-0.98448,0,-0.17551,54.693,0.09038,0.8572,-0.50699,-7.174,0.15044,-0.51498,-0.8439,15.333 lattice=1,2,1,0,-9.8,0
+END
+hierjoin -q strand.join -o strand.hier
+
+# A strand is tilted as the groove is; the next one is 55 Å further and 27.2° round, as every second actin. The last step leads from one
+# groove to the other.
+cat >filament.join <<'END'
+join 1
+piece actin.hier  domain=actin       P_R=0.8 P_C=0.5 P_D=1
+piece strand.hier domain=tropomyosin P_R=0.5 P_C=0.3 P_D=0.8 rotate=1,0,0,-19 translate=40,0,27.5 rotate=0,0,1,98 helix=14,55,27.2 helix=2,27.5,-166.4
+piece knob.hier   domain=troponin    P_R=2   P_C=1   P_D=1   chains=A:Tn translate=34.4,-25,-0.2 rotate=0,0,1,197 translate=0,0,200 helix=2,385,190.4 helix=2,27.5,-166.4
+rule //K P_R=2 P_C=1
+END
+hierjoin filament.join -o filament.hier
+density filament --grid "$GRID"
+mesh filament filament.exterior --region exterior --box +40
+mesh filament filament.both --region both --box +40
+
+hierjoin -q -r '* P_R=0.7 P_C=0.4 P_D=0.25' filament.join -o filament_blurred.hier
+hierjoin -q -r '* P_R=0.7 P_C=0.4 P_D=0.25' -r '//K P_D=0.8' -r '//Tm P_D=0.8' filament.join -o filament_kept.hier
+for name in filament_blurred filament_kept; do
+  density $name --grid "$GRID"
+  mesh $name $name
+done
