@@ -18,10 +18,7 @@ const std::vector<const char*>& needed_keys(Shape shape) {
 }
 
 Vec3d vector(const KeyValue& line) {
-  const std::vector<double> v = line.numbers("X,Y,Z (Å)");
-  if (v.size() != 3)
-    line.refuse("X,Y,Z (Å)");
-  return at(v, 0);
+  return at(line.numbers({3}, "X,Y,Z (Å)"), 0);
 }
 
 double length(const KeyValue& line) {

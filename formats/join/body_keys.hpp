@@ -1,6 +1,6 @@
 // body_keys.hpp — the keys by which a .join says what a body without atoms is.
 #pragma once
-#include "formats/join/key_value.hpp"
+#include "formats/plan/key_value.hpp"
 #include "molecule/body.hpp"
 
 namespace molmesh::formats {

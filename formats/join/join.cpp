@@ -1,7 +1,7 @@
-// join.cpp — .join line by line: words, keys, motions and copies.
+// join.cpp — .join line by line: pieces, bodies, rules, and their keys.
 #include "formats/join/join.hpp"
 #include "formats/join/body_keys.hpp"
-#include "formats/join/key_value.hpp"
+#include "formats/plan/motions.hpp"
 #include "molecule/limits.hpp"
 #include <algorithm>
 #include <istream>
@@ -9,85 +9,13 @@
 namespace molmesh::formats {
 namespace {
 
-constexpr double rotation_rounding = 0.01; // files of old entries have few decimals
-
-/// Words between blanks; double quotes hold blanks.
-std::vector<std::string> quoted_words(const std::string& line, const std::string& where) {
-  std::vector<std::string> all;
-  bool open = false, quoted = false;
-  for (const char c : line) {
-    if (c == '"') {
-      quoted = !quoted;
-      if (!open)
-        all.emplace_back();
-      open = true;
-    } else if (!quoted && (c == ' ' || c == '\t')) {
-      open = false;
-    } else {
-      if (!open)
-        all.emplace_back();
-      open = true;
-      all.back() += c;
-    }
-  }
-  if (quoted)
-    fail_input(where + ": found a quote that does not end, expected another");
-  return all;
-}
+constexpr MotionRules rules; // rotations of old entries have few decimals
 
 /// What a key does to the copies so far; false: it is none of these.
-bool motions(const std::string& key, const KeyValue& line, const AssemblyReader& assembly, const std::string& where,
-             std::vector<Rigid>& copies) {
-  std::vector<Rigid> steps;
-  if (key == "translate") {
-    const char* const expected = "X,Y,Z (Å)";
-    const std::vector<double> v = line.numbers(expected);
-    if (v.size() != 3)
-      line.refuse(expected);
-    steps = {translation(at(v, 0))};
-  } else if (key == "rotate") {
-    const char* const expected = "X,Y,Z,DEGREES or X,Y,Z,DEGREES,PX,PY,PZ, an axis that is not 0 and a point on it";
-    const std::vector<double> v = line.numbers(expected);
-    if ((v.size() != 4 && v.size() != 7) || !(norm(at(v, 0)) > 0))
-      line.refuse(expected);
-    steps = {rotation(at(v, 0), v[3], v.size() == 7 ? at(v, 4) : Vec3d{})};
-  } else if (key == "matrix") {
-    const char* const expected = "9 numbers, or 12 of which every fourth is a shift (Å): the rows of a rotation";
-    const std::vector<double> v = line.numbers(expected);
-    if (v.size() != 9 && v.size() != 12)
-      line.refuse(expected);
-    const Rigid m = rigid_of_rows(v);
-    if (!is_rotation(m, rotation_rounding))
-      line.refuse("a rotation, which neither scales nor shears nor mirrors");
-    steps = {m};
-  } else if (key == "helix") {
-    const char* const expected = "N,RISE,DEGREES, or with an axis N,RISE,DEGREES,X,Y,Z, or with a point on it "
-                                 "N,RISE,DEGREES,X,Y,Z,PX,PY,PZ; "
-                                 "N from 1 to 100000";
-    const std::vector<double> v = line.numbers(expected);
-    if ((v.size() != 3 && v.size() != 6 && v.size() != 9) || (v.size() > 3 && !(norm(at(v, 3)) > 0)))
-      line.refuse(expected);
-    const Vec3d axis = v.size() > 3 ? at(v, 3) / norm(at(v, 3)) : Vec3d{0, 0, 1};
-    const int n = line.count(v[0], expected);
-    for (int k = 0; k < n; ++k)
-      steps.push_back(translation(k * v[1] * axis) * rotation(axis, k * v[2], v.size() > 6 ? at(v, 6) : Vec3d{}));
-  } else if (key == "lattice") {
-    const char* const expected = "NX,NY,NZ,DX,DY,DZ (steps along the axes, Å) or NX,NY,NZ and three vectors; NX, "
-                                 "NY, NZ from 1, 100000 at most";
-    const std::vector<double> v = line.numbers(expected);
-    if (v.size() != 6 && v.size() != 12)
-      line.refuse(expected);
-    const bool skew = v.size() == 12;
-    const Vec3d a = skew ? at(v, 3) : Vec3d{v[3], 0, 0}, b = skew ? at(v, 6) : Vec3d{0, v[4], 0},
-                c = skew ? at(v, 9) : Vec3d{0, 0, v[5]};
-    const int nx = line.count(v[0], expected), ny = line.count(v[1], expected), nz = line.count(v[2], expected);
-    if (double{1} * nx * ny * nz > double{most_copies})
-      line.refuse(expected);
-    for (int i = 0; i < nx; ++i)
-      for (int j = 0; j < ny; ++j)
-        for (int k = 0; k < nz; ++k)
-          steps.push_back(translation(double(i) * a + double(j) * b + double(k) * c));
-  } else if (key == "assembly") {
+bool move(const std::string& key, const KeyValue& line, const AssemblyReader& assembly, const std::string& where,
+          std::vector<Rigid>& copies) {
+  std::vector<Rigid> steps = motions(key, line, rules);
+  if (key == "assembly") {
     const char* const expected = "FILE:ID, an assembly of a structure file";
     const std::string value = line.text(expected);
     const size_t colon = value.rfind(':');
@@ -95,18 +23,12 @@ bool motions(const std::string& key, const KeyValue& line, const AssemblyReader&
       line.refuse(expected);
     steps = assembly(value.substr(0, colon), value.substr(colon + 1), where);
     for (const Rigid& m : steps)
-      if (!is_rotation(m, rotation_rounding))
+      if (!is_rotation(m, rules.rounding))
         line.refuse("operators that neither scale nor shear nor mirror");
-  } else {
+  } else if (steps.empty()) {
     return false;
   }
-  if (steps.size() * copies.size() > most_copies)
-    line.refuse("at most 100000 copies");
-  std::vector<Rigid> moved;
-  for (const Rigid& step : steps)
-    for (const Rigid& copy : copies)
-      moved.push_back(copy.is_identity() ? step : step * copy);
-  copies = std::move(moved);
+  repeat(copies, steps, line);
   return true;
 }
 
@@ -141,7 +63,7 @@ Piece read_piece(const std::vector<std::string>& word, size_t first, const std::
       fail_input(where + ": found '" + word[i] + "', expected KEY=VALUE");
     const std::string key = word[i].substr(0, equals), value = word[i].substr(equals + 1);
     const KeyValue line(where, key, value);
-    if (motions(key, line, assembly, where, p.copies))
+    if (move(key, line, assembly, where, p.copies))
       continue;
     if (std::find(seen.begin(), seen.end(), key) != seen.end())
       line.refuse("each key once, but for motions and copies");
