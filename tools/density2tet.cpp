@@ -2,12 +2,15 @@
 #include "tools/options/density2tet.hpp"
 #include "contour/contour.hpp"
 #include "cuda/contour/contour.hpp"
+#include "formats/hier/hier.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "tools/device_report.hpp"
+#include "tools/domains.hpp"
 #include "tools/mesh_line.hpp"
 #include "tools/plan.hpp"
 #include <algorithm>
+#include <memory>
 #include <optional>
 
 using namespace molmesh;
@@ -63,7 +66,22 @@ std::optional<double> parse_adapt(const std::string& text) {
   return adapt;
 }
 
+/// Whose regions are asked for; none: the molecule is one.
+std::unique_ptr<Domains> read_domains(const Options& o, const BlockGrid& grid, cli::InputFile& file) {
+  const Hierarchy h = formats::read_hier(file.stream(), file.name());
+  if (other_structure(h.source, grid.info.source) || static_cast<int64_t>(h.atom.size()) != grid.info.atoms)
+    fail_input(file.name() + ": " + std::to_string(h.atom.size()) + " atoms of " + h.source + ", expected the " +
+               std::to_string(grid.info.atoms) + " atoms of the density's " + grid.info.source);
+  return std::make_unique<Domains>(h, file.name(), o.regions,
+                                   label::Options{grid.info.decay, grid.info.isovalue, o.resolved_threads()});
+}
+
 Status run_tool(const Options& o, cli::Run& run) {
+  if ((o.regions != "molecule") != !o.hier.empty())
+    fail(Status::usage, "--regions: found " + o.regions + (o.hier.empty() ? " without --hier" : " with --hier") +
+                            ", expected a level and --hier, or neither");
+  if (o.regions != "molecule" && o.region == "exterior")
+    fail(Status::usage, "--regions: found --region exterior, expected interior or both");
   contour::Options options;
   options.meshed = o.region == "interior"   ? contour::Options::interior
                    : o.region == "exterior" ? contour::Options::exterior
@@ -75,6 +93,9 @@ Status run_tool(const Options& o, cli::Run& run) {
   options.threads = o.resolved_threads();
 
   run.phase("read");
+  std::optional<cli::InputFile> structure;
+  if (!o.hier.empty())
+    structure.emplace(o.hier);
   cli::InputFile input(o.input);
   std::optional<cli::OutputFile> output;
   if (!o.plan)
@@ -83,6 +104,11 @@ Status run_tool(const Options& o, cli::Run& run) {
   const BlockGrid grid = plans::planned_grid(o, o, options, input, run);
   if (o.plan)
     return Status::good;
+  std::unique_ptr<Domains> domains;
+  if (structure) {
+    domains = read_domains(o, grid, *structure);
+    options.owners = domains->owners();
+  }
   contour::Summary summary;
   TetMesh mesh;
   try {
@@ -94,6 +120,10 @@ Status run_tool(const Options& o, cli::Run& run) {
       run.counts["device"] = device_value(device);
   } catch (const Error& e) {
     fail(e.status, (e.status == Status::usage ? "" : input.name() + ": ") + e.what(), e.quantities);
+  }
+  if (domains) {
+    run.phase("divide");
+    run.counts["regions"] = domains->divide(mesh);
   }
   run.counts["points"] = mesh.point.size();
   run.counts["tetrahedra"] = mesh.tet.size();

@@ -11,6 +11,7 @@
 #include "molecule/hierarchy.hpp"
 #include "optimize/optimize.hpp"
 #include "tools/device_report.hpp"
+#include "tools/domains.hpp"
 #include "tools/mesh_line.hpp"
 #include "tools/optimization_report.hpp"
 #include "tools/plan.hpp"
@@ -47,6 +48,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   if (plans::improvement_is_planned(o, o, std::ssize(mesh.tet), std::ssize(mesh.tri),
                                     grid ? std::ssize(grid->corner) : 0, o.iterations, run))
     return Status::good;
+  const std::string level = formats::region_level(mesh);
   const AttributeTransfer arrays(mesh);
   run.counts.add({{"elements_before", mesh.tet.size()}, {"points_before", mesh.point.size()}});
   optimize::Options options;
@@ -58,6 +60,16 @@ Status run_tool(const Options& o, cli::Run& run) {
   if (mesh.creator.rfind("density2tet", 0) == 0)
     options.sharp = 180; // an isosurface is smooth: folds of its first mesh are no features
   options.progress = [&](double share) { run.share(share); };
+  if (hierarchy && grid && !level.empty()) {
+    if (other_structure(hierarchy->source, mesh.source))
+      fail_input(structure->name() + ": of " + hierarchy->source + ", expected the mesh's " + mesh.source);
+    const Domains domains(*hierarchy, structure->name(), level, {grid->info.decay, grid->info.isovalue, threads});
+    options.interfaces = domains.interfaces(mesh, grid->frame, structure->name());
+  } else if (!level.empty() && o.iterations > 0) {
+    run.note("regions of level " + level +
+             ": their interfaces are kept where they are; --density and --hier put them "
+             "where shares are equal");
+  }
   optimize::Result result;
   try {
     const auto phase = [&](const std::string& p) { run.phase(p); };
@@ -87,6 +99,9 @@ Status run_tool(const Options& o, cli::Run& run) {
                   {"quality_after", angles_value(result.after)}});
   if (grid && o.iterations > 0)
     run.counts["surface"] = fidelity_value(result.fidelity);
+  if (grid && o.iterations > 0 && !level.empty())
+    run.counts["interfaces"] = {{"points", result.fidelity.interface_points},
+                                {"points_off", result.fidelity.interface_points_off}};
   if (result.rejected)
     run.note("as it came: the worst element was worse after " + std::to_string(result.rounds) + " rounds");
   else if (grid && o.iterations > 0 && 2 * result.fidelity.points_off > result.fidelity.points)

@@ -1,5 +1,7 @@
 // report.cpp — counts, and the JSON form.
 #include "formats/tetstat/tetstat.hpp"
+#include "formats/vtu/names.hpp"
+#include "mesh/region_order.hpp"
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -51,8 +53,11 @@ json mesh_json(const MeshReport& r, const char* place) {
   j["tets"] = r.tets;
   j["triangles"] = r.triangles;
   j["labels"] = json::array();
-  for (const auto& [label, count] : r.labels)
+  for (const auto& [label, count] : r.labels) {
     j["labels"].push_back({{"boundary", label}, {"triangles", count}});
+    if (const auto name = r.label_name.find(static_cast<int32_t>(label)); name != r.label_name.end())
+      j["labels"].back()["name"] = name->second;
+  }
   j["parts"] = r.parts;
   j["dropped_cells"] = r.notes.dropped_cells;
   j["dropped_triangles"] = r.notes.dropped_triangles;
@@ -81,11 +86,14 @@ std::string with_regions(const std::string& text, const MeshReport& r, const cha
   const std::string line = '\n' + std::string(indent + 2, ' ');
   for (size_t i = 0; i < v.region.size(); ++i) {
     const RegionSummary& region = v.region[i];
-    const std::string one = text_of({{"region", region.region},
-                                     {"tets", region.tets},
-                                     {"volume", region.volume},
-                                     {"boundary", surface_json(region.boundary)},
-                                     {"quality", quality_json(r.quality->of[i])}});
+    json entry = {{"region", region.region},
+                  {"tets", region.tets},
+                  {"volume", region.volume},
+                  {"boundary", surface_json(region.boundary)},
+                  {"quality", quality_json(r.quality->of[i])}};
+    if (const auto name = r.region_name.find(region.region); name != r.region_name.end())
+      entry["name"] = name->second;
+    const std::string one = text_of(entry);
     list += i > 0 ? "," + line : line;
     for (const char c : one)
       c == '\n' ? list += line : list += c;
@@ -113,6 +121,14 @@ MeshReport report_mesh(const TetMesh& m, const std::string& file, const MeshNote
   r.parts = static_cast<int64_t>(std::set<int32_t>(m.part.begin(), m.part.end()).size());
   r.notes = notes;
   r.validity = std::move(validity);
+  if (const RegionOrder order(m); order.last_domain > Region::cavity) {
+    for (const auto& [region, name] : names_of(m, region_names_text))
+      if (order.is_domain(region))
+        r.region_name[region] = name;
+    for (const auto& [label, name] : boundary_names(m, m.boundary))
+      if (label > Boundary::box_z1)
+        r.label_name[label] = name;
+  }
   if (!r.validity.region.empty())
     r.quality = measure_quality(m, threads, asked);
   r.asked = asked;

@@ -3,6 +3,7 @@
 #include "formats/vtu/vtu.hpp"
 #include "mesh/quality.hpp"
 #include "mesh/validity.hpp"
+#include <map>
 #include <optional>
 
 namespace molmesh::formats {
@@ -15,7 +16,9 @@ struct MeshReport {
   int64_t parts = 0;                          ///< distinct METIS parts, 0: none
   MeshNotes notes;
   Validity validity;
-  std::optional<MeshQuality> quality; ///< none where an index is out of range
+  std::map<int32_t, std::string> region_name; ///< of domains
+  std::map<int32_t, std::string> label_name;  ///< above 7, where there are domains
+  std::optional<MeshQuality> quality;         ///< none where an index is out of range
   AngleLimits asked;
 
   /// Angles within what was asked for.

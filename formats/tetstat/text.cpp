@@ -7,16 +7,21 @@
 namespace molmesh::formats {
 namespace {
 
-const char* region_name(int32_t region) {
+std::string name_in(const std::map<int32_t, std::string>& names, int32_t number) {
+  const auto at = names.find(number);
+  return at == names.end() ? "" : plain(at->second);
+}
+
+std::string region_name(const MeshReport& r, int32_t region) {
   return region == Region::molecule  ? "molecule"
          : region == Region::outside ? "outside"
          : region == Region::cavity  ? "cavity"
-                                     : "";
+                                     : name_in(r.region_name, region);
 }
 
-const char* label_name(int32_t label) {
+std::string label_name(const MeshReport& r, int32_t label) {
   static const char* names[] = {"", "surface", "-x", "+x", "-y", "+y", "-z", "+z"};
-  return label >= 1 && label <= 7 ? names[label] : "";
+  return label >= 1 && label <= 7 ? names[label] : name_in(r.label_name, label);
 }
 
 std::string measure(const char* name, const Distribution& d, int digits) {
@@ -60,7 +65,7 @@ std::string regions_table(const MeshReport& r) {
     const SurfaceSummary& b = region.boundary;
     const Distribution& angle = r.quality->of[i].dihedral;
     s += print("  %-3d %-9s %12s %17s %14s %7lld %7lld   %6.2f° to %6.2f°\n", region.region,
-               region_name(region.region), grouped(region.tets).c_str(), amount(region.volume).c_str(),
+               region_name(r, region.region).c_str(), grouped(region.tets).c_str(), amount(region.volume).c_str(),
                amount(b.area).c_str(), static_cast<long long>(b.components), static_cast<long long>(b.euler),
                angle.min, angle.max);
   }
@@ -88,7 +93,7 @@ std::string tetstat_text(const MeshReport& r) {
     s += ", " + grouped(r.parts) + " parts";
   s += "\ntriangles by label:";
   for (const auto& [label, count] : r.labels)
-    s += print("  %lld %s ", static_cast<long long>(label), label_name(int32_t(label))) + grouped(count);
+    s += print("  %lld %s ", static_cast<long long>(label), label_name(r, int32_t(label)).c_str()) + grouped(count);
   s += '\n';
   if (!r.quality)
     return s;

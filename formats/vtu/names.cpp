@@ -2,6 +2,7 @@
 #include "formats/vtu/names.hpp"
 #include "base/error.hpp"
 #include "formats/hier/text.hpp"
+#include "mesh/region_order.hpp"
 #include <algorithm>
 #include <charconv>
 #include <iterator>
@@ -11,6 +12,7 @@
 namespace molmesh::formats {
 namespace {
 
+const char* const own_region[] = {"molecule", "outside", "cavity"};
 const char* const own_boundary[] = {"surface", "box_x0", "box_x1", "box_y0", "box_y1", "box_z0", "box_z1"};
 
 void set_text(TetMesh& m, const std::string& name, std::string text) {
@@ -81,6 +83,20 @@ std::map<int32_t, std::string> names_of(const TetMesh& m, const std::string& tex
   return name;
 }
 
+void add_region_names(TetMesh& m, const std::string& level, const std::map<int32_t, std::string>& region,
+                      const std::map<int32_t, std::string>& boundary) {
+  add_names(m, "region_names", region);
+  add_names(m, "boundary_names", boundary);
+  set_text(m, region_level_text, level);
+}
+
+std::string region_level(const TetMesh& m) {
+  for (const NamedText& t : m.named_text)
+    if (t.name == region_level_text)
+      return t.text;
+  return {};
+}
+
 std::string own_boundary_name(int32_t label) {
   return label >= 1 && label <= 7 ? own_boundary[label - 1] : "";
 }
@@ -107,9 +123,10 @@ std::map<int32_t, std::string> boundary_names(const TetMesh& m, const std::vecto
   for (const int32_t l : label)
     if (auto [at, is_new] = name.try_emplace(l); is_new)
       at->second = l >= 1 && l <= 7 ? own_boundary[l - 1] : "boundary_" + std::to_string(l);
-  for (const auto& [id, given] : names_of(m, "patch_names"))
-    if (const auto at = name.find(id); at != name.end())
-      at->second = given;
+  for (const char* text : {"boundary_names", "patch_names"})
+    for (const auto& [id, given] : names_of(m, text))
+      if (const auto at = name.find(id); at != name.end())
+        at->second = given;
   return name;
 }
 

@@ -13,6 +13,12 @@ void add_level_names(TetMesh& m, const Hierarchy& h);
 /// Adds patch_names: lines "ID NAME".
 void add_patch_names(TetMesh& m, const std::map<int32_t, std::string>& name);
 
+/// Adds region_names and boundary_names and region_level: what density2tet --regions divides by.
+void add_region_names(TetMesh& m, const std::string& level, const std::map<int32_t, std::string>& region,
+                      const std::map<int32_t, std::string>& boundary);
+/// The level that regions are groups of; empty: of none.
+std::string region_level(const TetMesh& m);
+
 /// Adds lines "ID NAME" to a text, names percent-encoded, and replaces those of the same numbers.
 void add_names(TetMesh& m, const std::string& text_name, const std::map<int32_t, std::string>& name);
 /// The lines "ID NAME" of a text: patch_names, region_names. Others name nothing.
@@ -25,8 +31,8 @@ std::string region_name(int32_t region);
 /// surface, box_x0 … box_z1 of labels 1 to 7, else empty; and back: 0 of other names.
 std::string own_boundary_name(int32_t label);
 int32_t own_boundary_label(const std::string& name);
-/// Names of the boundary labels that occur in `label`: surface, box_x0 … box_z1, then what patch_names has, else
-/// boundary_N. Lines that are not "ID NAME" name nothing.
+/// Names of the boundary labels that occur in `label`: surface, box_x0 … box_z1, then what boundary_names or
+/// patch_names has, else boundary_N. Lines that are not "ID NAME" name nothing.
 std::map<int32_t, std::string> boundary_names(const TetMesh& m, const std::vector<int32_t>& label);
 /// The label of each triangle for boundary conditions: `patch` where the mesh has a positive one, else `boundary`.
 std::vector<int32_t> patches(const TetMesh& m);

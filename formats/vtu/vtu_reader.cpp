@@ -4,6 +4,7 @@
 #include "formats/vtu/foreign.hpp"
 #include "formats/vtu/vtk_array.hpp"
 #include "formats/vtu/vtu.hpp"
+#include "mesh/region_order.hpp"
 #include "par/pages.hpp"
 #include <algorithm>
 #include <cmath>
@@ -257,13 +258,13 @@ private:
         m_.decay = c.real(0);
     m_.source = text("source");
     m_.creator = text("creator");
-    if (arrays_ != CellArrays::keep)
-      return;
     const Index fields = index_of(d_.field);
     for (const ArrayTag& a : d_.field)
       if (a.type == ValueType::uint8 && a.components == 1 && !a.name.empty() && a.name != "source" &&
           a.name != "creator" && a.name != "isovalue" && find(fields, a.name) == &a)
-        m_.named_text.push_back({a.name, text_of(a)});
+        if (arrays_ == CellArrays::keep || a.name == region_names_text || a.name == region_level_text ||
+            a.name == "boundary_names")
+          m_.named_text.push_back({a.name, text_of(a)});
   }
 
   /// A label of every cell, if the piece has one.

@@ -23,6 +23,8 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
   refine_options.adapt = summary.adapt * (1 << finer.halvings);
   refine_options.inside = options.meshed != Options::exterior;
   refine_options.outside = with_outside;
+  if (options.owners)
+    refine_options.divided = border_nodes(lattice, options.owners);
   stages.select_leaves(refine_options);
   stages.make_dual(options.unmeshed_side(), on_phase);
   on_phase("relaxation");

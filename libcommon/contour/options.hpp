@@ -1,5 +1,6 @@
 // options.hpp — the options and the summary of contour().
 #pragma once
+#include "contour/octree/border_nodes.hpp"
 #include "contour/octree/lattice.hpp"
 #include "contour/surface/split_cell.hpp"
 #include <algorithm>
@@ -24,6 +25,8 @@ struct Options {
   bool fill_cavities = false;
   double drop_below = 0; ///< Å³, 0: nothing
   int threads = 1;
+  /// Where the inside has several owners, cells between these are the smallest ones; empty: one owner.
+  FindOwners owners;
 
   /// The side of the surface without elements in the mesh, whatever components there are; crossed: there is none.
   Side unmeshed_side() const {

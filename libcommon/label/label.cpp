@@ -66,6 +66,28 @@ public:
     return root_.ln;
   }
 
+  /// ln of the shares of all groups of one level; level as in the field. take(group, ln share).
+  template <class Take>
+  void shares(size_t level, Take take) {
+    share_.assign(1, 0);
+    std::vector<double> inner;
+    for (size_t l = sum_.size(); l-- > level;) {
+      inner.assign(sum_[l].size(), -infinity);
+      const auto hand_down = [&](const Sum& s, double ln_share) {
+        for (size_t c = s.first; c < s.last; ++c)
+          inner[c] = ln_share + power(l, sum_[l][c]) - s.ln;
+      };
+      if (l + 1 == sum_.size())
+        hand_down(root_, 0);
+      else
+        for (size_t p = 0; p < sum_[l + 1].size(); ++p)
+          hand_down(sum_[l + 1][p], share_[p]);
+      share_.swap(inner);
+    }
+    for (size_t i = 0; i < share_.size(); ++i)
+      take(sum_[level][i].group, share_[i]);
+  }
+
   /// take(level, index, share), level as in the field: innermost groups 0, outermost last; atoms -1.
   template <class Take>
   void descend(Take take) const {
@@ -169,6 +191,7 @@ private:
   Sum root_{};
   std::vector<double> term_;  ///< of the level in work
   std::vector<double> bound_; ///< [clusters] Q·ln of the largest its sum can be
+  std::vector<double> share_; ///< [groups of a level] ln
   double least_ = 0;          ///< ln G is not below this
 };
 
@@ -203,6 +226,49 @@ Tiles make_tiles(const std::vector<Vec3d>& place, int threads) {
   return t;
 }
 
+/// The field of a hierarchy, to be asked at places.
+struct Evaluator {
+  Field f;
+  double enough; ///< ln: where G is less, what was left out may be felt
+  KdTree tree{f};
+  Reach reach{f};
+
+  Evaluator(const Hierarchy& h, const Options& o)
+      : f(density::make_field(h, o.decay, 1e-8 * o.isovalue)), enough(std::log(1e7 * f.far_error)) {}
+
+  /// take(i, at, ln G) at place i, from any thread.
+  template <class Take>
+  void for_places(const std::vector<Vec3d>& place, int threads, Take take) const {
+    if (place.empty())
+      return;
+    const Tiles tiles = make_tiles(place, threads);
+    par::for_n(static_cast<int64_t>(tiles.begin.size()) - 1, threads, 1, [&](int64_t t) {
+      const auto begin = static_cast<size_t>(tiles.begin[t]),
+                 end = static_cast<size_t>(tiles.begin[static_cast<size_t>(t) + 1]);
+      Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+      for (size_t i = begin; i < end; ++i)
+        for (int a = 0; a < 3; ++a) {
+          const double v = place[tiles.item[i].second][a];
+          box.lo[a] = std::min(box.lo[a], v);
+          box.hi[a] = std::max(box.hi[a], v);
+        }
+      const std::vector<int32_t> near = tree.near(box);
+      std::vector<int32_t> far;
+      Place at(f, reach);
+      for (size_t i = begin; i < end; ++i) {
+        const auto p = static_cast<size_t>(tiles.item[i].second);
+        double ln = at.evaluate(place[p], near);
+        if (!(ln >= enough)) {
+          if (far.empty())
+            far = reach.matter(box);
+          ln = at.evaluate(place[p], far);
+        }
+        take(p, at, ln);
+      }
+    });
+  }
+};
+
 } // namespace
 
 Labels find_labels(const Hierarchy& h, const std::vector<Vec3d>& place, const Options& options) {
@@ -227,48 +293,52 @@ Labels find_labels(const Hierarchy& h, const std::vector<Vec3d>& place, const Op
   if (place.empty())
     return labels;
 
-  const Field f = density::make_field(h, options.decay, 1e-8 * options.isovalue);
-  const double enough = std::log(1e7 * f.far_error); // where G is less, what was left out may be felt
-  const KdTree tree(f);
-  const Reach reach(f);
-  const Tiles tiles = make_tiles(place, options.threads);
-  par::for_n(static_cast<int64_t>(tiles.begin.size()) - 1, options.threads, 1, [&](int64_t t) {
-    const auto begin = static_cast<size_t>(tiles.begin[t]),
-               end = static_cast<size_t>(tiles.begin[static_cast<size_t>(t) + 1]);
-    Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-    for (size_t i = begin; i < end; ++i)
-      for (int a = 0; a < 3; ++a) {
-        const double v = place[tiles.item[i].second][a];
-        box.lo[a] = std::min(box.lo[a], v);
-        box.hi[a] = std::max(box.hi[a], v);
-      }
-    const std::vector<int32_t> near = tree.near(box);
-    std::vector<int32_t> far;
-    Place at(f, reach);
-    for (size_t i = begin; i < end; ++i) {
-      const auto p = static_cast<size_t>(tiles.item[i].second);
-      double ln = at.evaluate(place[p], near);
-      if (!(ln >= enough)) {
-        if (far.empty())
-          far = reach.matter(box);
-        ln = at.evaluate(place[p], far);
-      }
-      labels.ln_field[p] = ln;
-      if (!(ln > -infinity)) {
-        for (size_t l = 0; l < levels; ++l)
-          labels.index[l][p] = -1;
-        continue;
-      }
-      at.descend([&](int level, int64_t index, double share) {
-        const size_t l = levels - 2 - static_cast<size_t>(level); // atoms: levels - 1
-        if (l >= levels)
-          return; // the field's one group of a hierarchy without levels
-        labels.index[l][p] = static_cast<int32_t>(index);
-        labels.share[l][p] = share;
-      });
+  Evaluator(h, options).for_places(place, options.threads, [&](size_t p, const Place& at, double ln) {
+    labels.ln_field[p] = ln;
+    if (!(ln > -infinity)) {
+      for (size_t l = 0; l < levels; ++l)
+        labels.index[l][p] = -1;
+      return;
     }
+    at.descend([&](int level, int64_t index, double share) {
+      const size_t l = levels - 2 - static_cast<size_t>(level); // atoms: levels - 1
+      if (l >= levels)
+        return; // the field's one group of a hierarchy without levels
+      labels.index[l][p] = static_cast<int32_t>(index);
+      labels.share[l][p] = share;
+    });
   });
   return labels;
+}
+
+struct ShareFinder::Impl {
+  Evaluator field;
+  size_t level; ///< as in the field
+};
+
+ShareFinder::ShareFinder(const Hierarchy& h, size_t level, const Options& options)
+    : options_(options), impl_(new Impl{Evaluator(h, options), h.level.size() - 1 - level}) {}
+ShareFinder::~ShareFinder() = default;
+
+std::vector<Shares> ShareFinder::at(const std::vector<Vec3d>& place) const {
+  std::vector<Shares> all(place.size());
+  impl_->field.for_places(place, options_.threads, [&](size_t p, Place& at, double ln) {
+    Shares& s = all[p];
+    s.ln_field = ln;
+    if (!(ln > -infinity))
+      return;
+    at.shares(impl_->level, [&](int64_t group, double share) {
+      for (size_t k = 0; k < Shares::most; ++k)
+        if (share > s.ln[k]) {
+          for (size_t i = Shares::most - 1; i > k; --i)
+            s.ln[i] = s.ln[i - 1], s.group[i] = s.group[i - 1];
+          s.ln[k] = share;
+          s.group[k] = static_cast<int32_t>(group);
+          return;
+        }
+    });
+  });
+  return all;
 }
 
 } // namespace molmesh::label

@@ -1,6 +1,8 @@
 // label.hpp — finds the domain, chain, residue and atom that make the density at a place, and the share of each.
 #pragma once
 #include "molecule/hierarchy.hpp"
+#include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -34,5 +36,39 @@ struct Options {
 /// within 1e-6 divided by the smallest product of exponents on a path to the root. Same result at any number of
 /// threads. Throws Error(bad_input) for over 2^31 - 1 atoms.
 Labels find_labels(const Hierarchy& h, const std::vector<Vec3d>& place, const Options& options);
+
+/// The largest shares of groups of one level at a place.
+struct Shares {
+  static constexpr size_t most = 4;
+  /// ln of a share that is too small to be looked for.
+  static constexpr double none = -20;
+  std::array<int32_t, most> group{-1, -1, -1, -1};     ///< index into Hierarchy::level[l].group; -1: no more
+  std::array<double, most> ln{none, none, none, none}; ///< of the share, descending
+  double ln_field = 0;                                 ///< ln G
+
+  int32_t owner() const { return group[0]; }    ///< has the largest share; of equal ones the first of the file
+  double lead() const { return ln[0] - ln[1]; } ///< ln of its share over the next one's
+  double ln_of(int32_t g) const {
+    for (size_t k = 0; k < most; ++k)
+      if (group[k] == g)
+        return ln[k];
+    return none;
+  }
+};
+
+/// Finds shares at places, many times.
+class ShareFinder {
+public:
+  /// level: index into h.level. The hierarchy need not stay. Throws as make_field.
+  ShareFinder(const Hierarchy& h, size_t level, const Options& options);
+  ~ShareFinder();
+  /// Same result at any number of threads.
+  std::vector<Shares> at(const std::vector<Vec3d>& place) const;
+
+private:
+  struct Impl;
+  Options options_;
+  std::unique_ptr<const Impl> impl_;
+};
 
 } // namespace molmesh::label

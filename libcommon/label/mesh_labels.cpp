@@ -1,7 +1,7 @@
 // mesh_labels.cpp — takes centroids out of the mesh and puts labels into it.
 #include "label/mesh_labels.hpp"
 #include "base/error.hpp"
-#include "mesh/tet_mesh.hpp"
+#include "mesh/region_order.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,9 @@ size_t cells(const TetMesh& m) {
 
 Places places_of(const TetMesh& m, int threads) {
   Places places;
+  const RegionOrder order(m);
   for (size_t t = 0; t < m.tet.size(); ++t)
-    if (m.region[t] == Region::molecule)
+    if (order.is_inside(m.region[t]))
       places.cell.push_back(static_cast<int64_t>(t));
   places.tets = static_cast<int64_t>(places.cell.size());
   for (size_t t = 0; t < m.tri.size(); ++t)

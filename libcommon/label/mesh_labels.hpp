@@ -5,7 +5,7 @@
 
 namespace molmesh::label {
 
-/// The cells that have labels, and their centroids: tetrahedra of region 1, then triangles of the molecular
+/// The cells that have labels, and their centroids: tetrahedra of the molecule, then triangles of its
 /// surface. `cell` counts tetrahedra first, then triangles, as cell arrays do.
 struct Places {
   std::vector<int64_t> cell;

@@ -36,13 +36,14 @@ std::vector<int64_t> boundary_faces(const TetMesh& m, const LargeArray<int32_t>&
 
 void rebuild_triangles(TetMesh& m, int threads) {
   m.tri.clear();
+  const RegionOrder order(m);
   const LargeArray<int32_t> across = face_neighbors(m, threads);
   for (int64_t face : boundary_faces(m, across, threads)) {
     const int32_t region = m.region[face / 4], other = region_across(m, across, face);
-    if (other != 0 && region >= other)
-      continue; // the lower label owns the triangle
+    if (other != 0 && !order.is_first(region, other))
+      continue; // the first region owns the triangle
     Tri t = face_points(m, face);
-    if (!triangle_looks_out(region, other, Boundary::surface))
+    if (!triangle_looks_out(order, region, other, Boundary::surface))
       std::swap(t[1], t[2]);
     m.tri.push_back(t);
   }
@@ -59,6 +60,7 @@ void label_walls(TetMesh& m, int threads) {
         low[a] = std::min(low[a], m.point[v][a]);
         high[a] = std::max(high[a], m.point[v][a]);
       }
+  const RegionOrder order(m);
   const auto wall = [&](const Tri& t, int side) {
     return std::all_of(t.begin(), t.end(),
                        [&](int32_t v) { return m.point[v][side / 2] == (side % 2 == 0 ? low : high)[side / 2]; });
@@ -67,7 +69,7 @@ void label_walls(TetMesh& m, int threads) {
   size_t next = 0; // as rebuild_triangles counts them
   for (int64_t face : boundary_faces(m, across, threads)) {
     const int32_t region = m.region[face / 4], other = region_across(m, across, face);
-    if (other != 0 && region >= other)
+    if (other != 0 && !order.is_first(region, other))
       continue;
     const size_t t = next++;
     for (int side = 0; side < 6 && across[face] == no_face; ++side)

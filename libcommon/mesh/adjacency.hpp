@@ -1,6 +1,7 @@
 // adjacency.hpp — finds the faces that tetrahedra share, and the boundary triangles that follow from them.
 #pragma once
 #include "geom/tet_measures.hpp"
+#include "mesh/region_order.hpp"
 #include "mesh/tet_mesh.hpp"
 
 namespace molmesh {
@@ -36,12 +37,12 @@ inline bool same_turn(const Tri& a, const Tri& b) {
 }
 
 /// Does the triangle on this face look out of its tetrahedron? `other`: region of the neighbor, 0 for none.
-/// Molecular-surface triangles point out of region 1, also where region 1 is not part of the mesh; all others with
-/// a tetrahedron on one side point out of it; all others between two regions out of the lower label.
-inline bool triangle_looks_out(int32_t region, int32_t other, int32_t boundary) {
+/// Molecular-surface triangles point out of region 1 and the domains, also where region 1 is not part of the mesh;
+/// all others with a tetrahedron on one side point out of it; all others between two regions out of the first.
+inline bool triangle_looks_out(const RegionOrder& order, int32_t region, int32_t other, int32_t boundary) {
   if (other != 0)
-    return region < other;
-  return boundary != Boundary::surface || region == Region::molecule;
+    return order.is_first(region, other);
+  return boundary != Boundary::surface || order.is_inside(region);
 }
 
 /// Triangles anew: every face between regions and every face with one tetrahedron, ordered by tetrahedron, label 1.

@@ -34,9 +34,8 @@ struct Tree {
 } // namespace
 
 AttributeTransfer::AttributeTransfer(TetMesh& m)
-    : array_(std::move(m.cell_array)), text_(std::move(m.named_text)), tets_(m.tet.size()) {
+    : array_(std::move(m.cell_array)), text_(m.named_text), tets_(m.tet.size()) {
   m.cell_array.clear();
-  m.named_text.clear();
   if (array_.empty())
     return;
   for (size_t c = 0; c < m.tet.size() + m.tri.size(); ++c) {

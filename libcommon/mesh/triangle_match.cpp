@@ -8,9 +8,10 @@ namespace molmesh {
 TriangleMatch match_triangles(const TetMesh& m, const LargeArray<int32_t>& across,
                               const std::vector<int64_t>& boundary, int threads) {
   const auto region = [&](int64_t face) { return m.region[face / 4]; };
+  const RegionOrder order(m);
   TriangleMatch r;
   for (int64_t f : boundary)
-    if (const int32_t other = region_across(m, across, f); other == 0 || region(f) < other)
+    if (const int32_t other = region_across(m, across, f); other == 0 || order.is_first(region(f), other))
       r.owner.push_back(f);
   const auto n = static_cast<int64_t>(r.owner.size()), tris = static_cast<int64_t>(m.tri.size());
   const auto corners = [&](int64_t i) { return i < n ? face_points(m, r.owner[i]) : m.tri[i - n]; };
@@ -31,7 +32,7 @@ TriangleMatch match_triangles(const TetMesh& m, const LargeArray<int32_t>& acros
         for (int i = 1; i < size; ++i) {
           const auto t = static_cast<size_t>(item[i] - n);
           const bool right =
-              same_turn(m.tri[t], face_points(m, f)) == triangle_looks_out(region(f), other, m.boundary[t]);
+              same_turn(m.tri[t], face_points(m, f)) == triangle_looks_out(order, region(f), other, m.boundary[t]);
           r.kind[item[i]] = i > 1 ? TriangleMatch::twice : right ? TriangleMatch::good : TriangleMatch::turned;
           r.one_sided[t] = other == 0;
         }

@@ -180,9 +180,13 @@ private:
     const auto within = [](const std::vector<int32_t>& labels, int32_t last) {
       return std::all_of(labels.begin(), labels.end(), [&](int32_t l) { return l >= 1 && l <= last; });
     };
-    if (!within(m_.region, Region::cavity) || !within(m_.boundary, Boundary::box_z1))
+    const RegionOrder order(m_);
+    const bool has_domains = order.last_domain > Region::cavity;
+    if (!within(m_.region, order.last_domain) || !within(m_.boundary, has_domains ? INT32_MAX : Boundary::box_z1))
       return;
-    const auto side = [&](int64_t t) { return m_.boundary[t] - Boundary::box_x0; };
+    const auto side = [&](int64_t t) {
+      return m_.boundary[t] > Boundary::box_z1 ? -1 : m_.boundary[t] - Boundary::box_x0;
+    };
     int sides = 0;
     bool closed = true; // by the box alone
     for (int64_t t = 0; t < tris(); ++t) {

@@ -24,9 +24,9 @@ namespace molmesh {
 ///   box_volume           volumes that do not add up to the box
 ///   overlap              a piece of the faces with one tetrahedron that has tetrahedra on its outer side too, or
 ///                        several over each other on its inner side: a hanging node, a body within another
-/// The box rules apply where regions are 1 to 3 and labels 1 to 7; box_volume, where all six sides have triangles
-/// and every face with one tetrahedron is on one of them. overlap (validity_covering.hpp) is looked for where no
-/// other rule is broken.
+/// The box rules apply where regions are 1 to 3 or domains and labels 1 to 7 or interfaces of these; box_volume,
+/// where all six sides have triangles and every face with one tetrahedron is on one of them. overlap
+/// (validity_covering.hpp) is looked for where no other rule is broken.
 struct Fault {
   std::string rule;
   int64_t count = 0;

@@ -20,9 +20,31 @@ std::vector<uint8_t> curved_triangles(const DynamicMesh& m, const TetMesh& mesh)
   std::vector<uint8_t> take(mesh.tri.size());
   for (size_t t = 0; t < mesh.tri.size(); ++t)
     for (const Label& l : m.labels)
-      if (l.name == mesh.boundary[t] && l.curved())
+      if (l.name == mesh.boundary[t] && l.curved() && !l.target)
         take[t] = 1;
   return take;
+}
+
+// Interfaces of a mesh with domains get targets of their own, which the result keeps alive.
+std::vector<std::shared_ptr<const Target>> set_interface_targets(DynamicMesh& m, const TetMesh& mesh,
+                                                                 const Options& options) {
+  std::vector<std::shared_ptr<const Target>> targets;
+  for (size_t l = 1; l < m.labels.size() && m.order.last_domain > molmesh::Region::cavity; ++l) {
+    Label& label = m.labels[l];
+    if (!label.curved() || label.name <= Boundary::box_z1)
+      continue;
+    const auto given = options.interfaces.find(label.name);
+    if (given != options.interfaces.end()) {
+      targets.push_back(given->second);
+    } else {
+      std::vector<uint8_t> take(mesh.tri.size());
+      for (size_t t = 0; t < take.size(); ++t)
+        take[t] = mesh.boundary[t] == label.name;
+      targets.push_back(std::make_shared<ReferenceSurface>(mesh, take));
+    }
+    label.target = targets.back().get();
+  }
+  return targets;
 }
 
 // The goal rises by steps: what is far below it gets room before its neighbors ask for it. The guard is relaxed
@@ -268,6 +290,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     return result;
 
   begin("target");
+  auto interfaces = set_interface_targets(m, mesh, options);
   std::unique_ptr<Isosurface> isosurface;
   std::unique_ptr<Target> input_surface;
   if (density)
@@ -280,7 +303,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
 
   begin("improve");
   Improvement run(m, target, isosurface.get(), options, result);
-  run.run_rounds(flow);
+  run.run_rounds(interfaces.empty() ? flow : FlowPass{}); // which knows one target
   if (density)
     run.search_points();
   run.search_elements();
@@ -288,14 +311,17 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     result.rejected = result.counts.total() > 0;
     result.counts = {};
     m = DynamicMesh(); // two at a time are too much memory
-    if (density)
-      result.fidelity = measure_fidelity(build(mesh, 180, options.threads), *isosurface, options.threads);
+    if (density) {
+      m = build(mesh, 180, options.threads);
+      interfaces = set_interface_targets(m, mesh, options);
+      result.fidelity = measure_fidelity(m, *isosurface, options.threads);
+    }
     return result;
   }
   begin("result");
   mesh = extract(m, options.threads, &result.across, std::move(mesh));
   result.rest = [work = std::move(work), surface = std::shared_ptr<Isosurface>(std::move(isosurface)),
-                 threads = options.threads](Result& r) {
+                 interfaces = std::move(interfaces), threads = options.threads](Result& r) {
     r.after = measure_angles(*work, threads);
     if (surface)
       r.fidelity = measure_fidelity(*work, *surface, threads);

@@ -6,6 +6,8 @@
 #include "optimize/mesh/snapshot.hpp"
 #include "optimize/schedule/pass.hpp"
 #include <functional>
+#include <map>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -20,6 +22,9 @@ struct Options {
   int threads = 1;
   /// Told now and then how much of the improvement is done (0 to 1), by the elements that are still below the goal.
   std::function<void(double)> progress;
+  /// Of a mesh with domains: where shares are equal, by the label of the interface. Others are kept on the
+  /// interface that comes in.
+  std::map<int32_t, std::shared_ptr<const Target>> interfaces = {};
   /// The caller runs Result::measure(), beside what is serial. It still needs the density.
   bool measure_later = false;
 };

@@ -13,11 +13,11 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 
-# mesh NAME REGION SPACING [DENSITY2TET]: NAME.hier to NAME.vtu
+# mesh NAME REGION SPACING [DENSITY2TET [TETSMOOTH]]: NAME.hier to NAME.vtu
 mesh() {
   hier2density -q --spacing "$3" "$1.hier" -o "$1.vdb"
   density2tet -q --region "$2" ${4:-} "$1.vdb" -o "$1.tet.vtu"
-  tetsmooth -q --density "$1.vdb" "$1.tet.vtu" -o "$1.vtu"
+  tetsmooth -q --density "$1.vdb" ${5:-} "$1.tet.vtu" -o "$1.vtu"
 }
 
 case $what in
@@ -29,11 +29,20 @@ ion) # Born's energy within 1 %
   ;;
 harmonic) # a harmonic polynomial to 1e-10; with one tetrahedron missing it must not be found
   pdb2hier -q "$SOURCE/tests/data/1tii.pdb" -o 1tii.hier
-  for region in interior exterior both; do
-    mesh 1tii $region 5
-    tetconvert -q 1tii.vtu -o 1tii.mesh
+  printf 'pentamer //D,E,F,G,H\nA //A,C\n' >domains.txt
+  for region in interior exterior both domains; do
     inner=0
-    [ $region != both ] || inner=1
+    case $region in
+    both) inner=1 ;;
+    domains) inner=3 ;; # across their interface, too
+    esac
+    if [ $region = domains ]; then
+      pdb2hier -q --levels domain,chain,residue --domains domains.txt "$SOURCE/tests/data/1tii.pdb" -o 1tii.hier
+      mesh 1tii both 5 "--regions domain --hier 1tii.hier" "--hier 1tii.hier"
+    else
+      mesh 1tii $region 5
+    fi
+    tetconvert -q 1tii.vtu -o 1tii.mesh
     echo "$region:"
     solve harmonic 1tii.mesh $inner 0 1e-10
     if solve harmonic 1tii.mesh $inner 1 1e-6 >missing 2>&1; then

@@ -8,7 +8,7 @@ namespace molmesh {
 
 struct Options : cli::Common, cli::PlanOptions {
   Options() { require_device = cuda::require_device; }
-  std::string region = "interior", box = "auto", adapt = "auto", cavities = "keep";
+  std::string region = "interior", box = "auto", adapt = "auto", cavities = "keep", regions = "molecule", hier;
   double drop_below = 0;
 };
 
@@ -27,6 +27,12 @@ inline void describe(cli::Table& t, Options& o) {
         "0.2 Å are, at most 0.85; cells are the grid's own and larger, bodies of few spacings get halves or "
         "quarters")
       .unit("ERROR");
+  t.add(
+       "--regions", o.regions,
+       "molecule (one region), or a level of the .hier (domain, chain): each of its groups is a region of its own, "
+       "where its share of the density is the largest; they meet in labelled faces of equal shares")
+      .unit("LEVEL");
+  t.add("--hier", o.hier, "hierarchy (.hier) that the density was made from, for --regions").unit("FILE");
   t.group("small parts");
   t.add("--cavities", o.cavities, "closed cavities: keep (region 3) or fill (region 1)").one_of({"keep", "fill"});
   t.add("--drop-below", o.drop_below,
@@ -40,13 +46,18 @@ inline void describe(cli::Table& t, Options& o) {
       "surroundings up to a box, or both in one conforming mesh. The mesh is valid by construction: positive "
       "volumes, every face in one or two tetrahedra, every region's boundary a closed manifold. Cells are "
       "larger where the surface is flat. Regions of tetrahedra are 1 the molecule, 2 outside and 3 closed "
-      "cavities; boundaries of triangles are 1 the molecular surface and 2 to 7 the walls of the box.";
-  t.page.examples = {{"density2tet 1tii.vdb -o 1tii.tet.vtu", "the molecule alone"},
-                     {"density2tet --region both --box 3x 1tii.vdb -o 1tii.tet.vtu",
-                      "the molecule and its surroundings, in a box three times its extents"},
-                     {"density2tet --region exterior --cavities fill --drop-below 50 1tii.vdb -o 1tii.tet.vtu",
-                      "the surroundings alone, without closed cavities and bodies of less than 50 Å³"}};
+      "cavities; boundaries of triangles are 1 the molecular surface and 2 to 7 the walls of the box. With "
+      "--regions the groups of a level are regions 4, 5, … in the order of the .hier, and the faces between two of "
+      "them have boundaries 8, 9, …; the file has the names of all.";
+  t.page.examples = {
+      {"density2tet 1tii.vdb -o 1tii.tet.vtu", "the molecule alone"},
+      {"density2tet --region both --box 3x 1tii.vdb -o 1tii.tet.vtu",
+       "the molecule and its surroundings, in a box three times its extents"},
+      {"density2tet --regions domain --hier 1tii.hier 1tii.vdb -o 1tii.tet.vtu", "each domain a volume of its own"},
+      {"density2tet --region exterior --cavities fill --drop-below 50 1tii.vdb -o 1tii.tet.vtu",
+       "the surroundings alone, without closed cavities and bodies of less than 50 Å³"}};
   t.page.files = {{".vdb", "density grid (OpenVDB), read: formats/vdb/VDBv1.md"},
+                  {".hier", "molecular hierarchy, read: formats/hier/HIERv1.md"},
                   {".vtu", "mesh (VTK), written: formats/vtu/VTUv1.md"}};
   t.page.see_also = {"hier2density", "tetsmooth", "tetstat"};
 }

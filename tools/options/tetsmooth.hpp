@@ -21,7 +21,9 @@ struct Options : cli::Common, cli::PlanOptions {
 inline void describe(cli::Table& t, Options& o) {
   t.group("improvement");
   t.add("--density", o.density, "density grid (.vdb): surface points are kept on its isosurface").unit("FILE");
-  t.add("--hier", o.hier, "hierarchy (.hier): names what is nearest to elements that miss the quality")
+  t.add("--hier", o.hier,
+        "hierarchy (.hier): names what is nearest to elements that miss the quality; with --density it also keeps "
+        "interfaces between domains (density2tet --regions) where their shares are equal")
       .unit("FILE");
   t.add("--iterations", o.iterations, "rounds at most; 0 leaves the mesh as it is").within(0, 1000);
   t.add("--parts", o.parts, "parts (METIS) that the elements are numbered by in the output, one an element at most")
@@ -33,8 +35,9 @@ inline void describe(cli::Table& t, Options& o) {
   t.page.about =
       "Improves a tetrahedral mesh by swaps, contractions, moves and splits. It never inverts an element and never "
       "makes the worst one worse. With a density, surface points are put on the isosurface and kept there; "
-      "without, they move on the surface of the input. Regions, boundaries and labels stay. It aims at "
-      "dihedral angles from 26° to 138.5° and Q 0.31; narrower limits are aims too, and take longer. A mesh "
+      "without, they move on the surface of the input. Interfaces between domains are kept like the surface, and "
+      "so are the lines where they meet. Regions, boundaries and labels stay. It aims at dihedral angles from 26° "
+      "to 138.5° and Q 0.31; narrower limits are aims too, and take longer. A mesh "
       "outside the limits is valid and written all the same, and the exit status is 5.";
   t.page.examples = {
       {"tetsmooth --density 1tii.vdb 1tii.tet.vtu -o 1tii.vtu", "better elements, the surface on the isosurface"},

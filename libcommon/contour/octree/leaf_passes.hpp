@@ -156,11 +156,17 @@ private:
             : par::gather<par::KeyedWord>(m_, "balance", set(level - 1).n,
                                           ParentsOfNeighbours{set(level - 1), nodes_per_axis(l_.cells, level)});
     const Nodes uniform = level == 1 && !(options_.adapt > 0) ? uniform_nodes() : Nodes{};
+    Nodes divided;
+    if (level == 1 && !options_.divided.empty()) {
+      divided.n = static_cast<int64_t>(options_.divided.size());
+      divided.array = m_.upload(options_.divided.data(), divided.n);
+    }
     Nodes overhang[3]; // nodes that reach beyond the domain
     for (int a = 0; a < 3; ++a)
       if (l_.cells[a] % (1 << level) != 0)
         overhang[a] = layer(level, a);
-    Nodes nodes = par::unite(m_, {&surface, &balance, &uniform, &overhang[0], &overhang[1], &overhang[2]});
+    Nodes nodes =
+        par::unite(m_, {&surface, &balance, &uniform, &divided, &overhang[0], &overhang[1], &overhang[2]});
     if (options_.adapt > 0 && level <= most_merges)
       spread(surface, near, nodes);
     return nodes;

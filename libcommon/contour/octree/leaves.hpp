@@ -4,6 +4,8 @@
 #include "contour/octree/lattice.hpp"
 #include "contour/octree/octree.hpp"
 #include "contour/surface/surface_cell.hpp"
+#include "par/passes.hpp"
+#include <vector>
 
 namespace molmesh::contour {
 
@@ -23,6 +25,8 @@ struct RefineOptions {
   /// little of the volume (chord_items.hpp).
   double adapt = 0;
   bool inside = true, outside = true; ///< regions to mesh
+  /// Nodes of level 1 that have children whatever the surface needs: words of 4³ nodes, ascending.
+  std::vector<par::KeyedWord> divided = {};
 };
 
 /// A node of the octree has children where its surface cells may not be one (more than one component of the

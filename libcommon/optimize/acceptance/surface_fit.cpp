@@ -1,5 +1,6 @@
 // surface_fit.cpp — triangles and trial places eight at a time.
 #include "optimize/acceptance/surface_fit.hpp"
+#include "isosurface/reference_surface.hpp"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -21,22 +22,60 @@ double misfit_within(const Region& r, const Guard& guard, double most_tilt, cons
     p[i] = r.mesh.point[v[i]];
   if (!r.mesh.outward(e, face))
     std::swap(p[1], p[2]);
-  return misfit(*r.target, guard, most_tilt, p[0], p[1], p[2]);
+  return misfit(*r.target_of(e.label[face]), guard, most_tilt, p[0], p[1], p[2]);
+}
+
+// Onto both targets, by steps along both normals.
+bool project_on_both(const Target& first, const Target& second, Vec3d& x, double reach) {
+  constexpr double most_alike = 0.95; // of the normals: where they are more, steps lead far away
+  const Vec3d from = x;
+  for (int step = 0; step < 12; ++step) {
+    double d, e;
+    Vec3d n, m;
+    if (!first.probe(x, d, n) || !second.probe(x, e, m))
+      return false;
+    if (std::abs(d) < 1e-3 * first.spacing() && std::abs(e) < 1e-3 * second.spacing())
+      return norm2(x - from) <= reach * reach;
+    const double g = dot(n, m), det = 1 - g * g;
+    if (std::abs(g) > most_alike || std::abs(d) > reach || std::abs(e) > reach)
+      return false;
+    x -= (d - g * e) / det * n + (e - g * d) / det * m;
+  }
+  return false;
 }
 
 } // namespace
 
-std::optional<double> off_at(const Region& r, Vec3d x) {
-  double distance;
-  Vec3d normal;
-  if (!r.target || !r.target->probe(x, distance, normal))
-    return std::nullopt;
-  return r.target->off_by(distance);
+std::optional<double> off_at(const DynamicMesh& m, const Target* target, const Vertex& vertex, Vec3d x) {
+  double most = 0;
+  for (int k = 0; k < (vertex.kind == Kind::line ? 2 : 1); ++k) {
+    const uint8_t label = k == 0 ? vertex.label : vertex.second;
+    const Target* t = m.labels[label].target ? m.labels[label].target : target;
+    double distance;
+    Vec3d normal;
+    if (!t || !t->probe(x, distance, normal))
+      return std::nullopt;
+    most = std::max(most, t->off_by(distance));
+  }
+  return most;
 }
 
-double off(const Region& r, int32_t v) {
+double off(const DynamicMesh& m, const Target* target, int32_t v) {
   constexpr double two_spacings = 100; // where the target is not known: it is not near
-  return follows_target(r.mesh.vertex[v].kind) && r.target ? off_at(r, r.mesh.point[v]).value_or(two_spacings) : 0;
+  if (!follows_target(m.vertex[v].kind) || !target)
+    return 0;
+  // An interface that came in is only followed: nothing brings points back to it.
+  const auto came_in = [&](uint8_t label) {
+    return dynamic_cast<const ReferenceSurface*>(m.labels[label].target) != nullptr;
+  };
+  Vertex vertex = m.vertex[v];
+  if (vertex.kind == Kind::line && came_in(vertex.second)) {
+    vertex.kind = Kind::surface;
+  } else if (vertex.kind == Kind::line && came_in(vertex.label)) {
+    vertex.kind = Kind::surface;
+    vertex.label = vertex.second;
+  }
+  return came_in(vertex.label) ? 0 : off_at(m, target, vertex, m.point[v]).value_or(two_spacings);
 }
 
 bool is_bent(const Region& r, const Acceptance& accept, int32_t t, size_t face) {
@@ -45,8 +84,8 @@ bool is_bent(const Region& r, const Acceptance& accept, int32_t t, size_t face) 
          misfit_within(r, accept.guard, std::min(accept.most_tilt, widest_tilt), e, face) > 1;
 }
 
-double misfit_of(const Region& r, const Acceptance& accept, Vec3d a, Vec3d b, Vec3d c) {
-  return misfit(*r.target, accept.guard, accept.most_tilt, a, b, c);
+double misfit_of(const Region& r, const Acceptance& accept, uint8_t label, Vec3d a, Vec3d b, Vec3d c) {
+  return misfit(*r.target_of(label), accept.guard, accept.most_tilt, a, b, c);
 }
 
 double misfit_of(const Region& r, const Acceptance& accept, const Element& e, size_t face) {
@@ -56,7 +95,7 @@ double misfit_of(const Region& r, const Acceptance& accept, const Element& e, si
 void add_triangle(Region& r, const Element& e, size_t face, int32_t from) {
   if (!r.target || !r.mesh.labels[e.label[face]].curved() || !r.mesh.counts_here(e, face))
     return;
-  MovingTriangle t{{}, -1};
+  MovingTriangle t{{}, -1, e.label[face]};
   const auto v = outward_triangle(e.v, face);
   for (size_t i = 0; i < 3; ++i) {
     t.p[i] = r.mesh.point[v[i]];
@@ -76,8 +115,10 @@ Fit fit_of_triangles(const Region& r, const Acceptance& accept, const Vec3d* x) 
   EightTriangles triangle;
   EightPlaces centroid;
   EightProbes probes;
-  for (size_t first = 0; first < all.size(); first += 8) {
-    const size_t n = std::min<size_t>(8, all.size() - first);
+  for (size_t first = 0, n; first < all.size(); first += n) {
+    const Target* target = r.target_of(all[first].label);
+    for (n = 1; n < 8 && first + n < all.size() && r.target_of(all[first + n].label) == target;)
+      ++n;
     for (size_t i = 0; i < n; ++i) {
       const MovingTriangle& t = all[first + i];
       EightPlaces* const corner[3] = {&triangle.a, &triangle.b, &triangle.c};
@@ -85,9 +126,9 @@ Fit fit_of_triangles(const Region& r, const Acceptance& accept, const Vec3d* x) 
         corner[k]->set(i, x && t.moving == static_cast<int>(k) ? *x : t.p[k]);
     }
     centroids(triangle, centroid);
-    r.target->probe_eight(centroid, static_cast<int>(n), probes);
+    target->probe_eight(centroid, static_cast<int>(n), probes);
     double misfit[8];
-    misfits(triangle, probes, accept.guard.distance * r.target->spacing(), accept.most_tilt, misfit);
+    misfits(triangle, probes, accept.guard.distance * target->spacing(), accept.most_tilt, misfit);
     for (size_t i = 0; i < n; ++i)
       fit.add(misfit[i]);
   }
@@ -110,8 +151,12 @@ Fit gather_triangles(Region& r, const Acceptance& accept, const std::vector<int3
 }
 
 bool project(const Region& r, const Vertex& vertex, Vec3d& x, double reach) {
-  return r.target && (vertex.kind == Kind::trace ? r.target->project_in_plane(x, vertex.axis(), reach)
-                                                 : r.target->project(x, reach));
+  const Target* target = r.target_of(vertex.label);
+  if (!target)
+    return false;
+  if (vertex.kind == Kind::line)
+    return project_on_both(*target, *r.target_of(vertex.second), x, reach);
+  return vertex.kind == Kind::trace ? target->project_in_plane(x, vertex.axis(), reach) : target->project(x, reach);
 }
 
 bool OnTarget::operator()(Vec3d& x) const {
@@ -133,7 +178,7 @@ int OnTarget::all(Vec3d* x, int n) const {
     EightPlaces eight;
     for (int i = 0; i < count; ++i)
       eight.set(size_t(i), x[first + i]);
-    for (uint32_t put = r.target->project_eight(eight, count, reach); put; put &= put - 1)
+    for (uint32_t put = r.target_of(vertex.label)->project_eight(eight, count, reach); put; put &= put - 1)
       if (const Vec3d y = eight[std::countr_zero(put)]; r.inside_walls(from, y))
         x[there++] = y;
   }
@@ -142,11 +187,16 @@ int OnTarget::all(Vec3d* x, int n) const {
 
 // Whether x is as near to the target as the guard wants it.
 bool Bound::stays_near(Vec3d x) const {
-  double distance;
-  Vec3d normal;
-  return accept.guard.leave == Guard::anywhere ||
-         (target.r.target->probe(x, distance, normal) &&
-          std::fabs(distance) <= accept.guard.leave * target.r.target->spacing());
+  if (accept.guard.leave == Guard::anywhere)
+    return true;
+  for (int k = 0; k < (target.vertex.kind == Kind::line ? 2 : 1); ++k) {
+    const Target* t = target.r.target_of(k == 0 ? target.vertex.label : target.vertex.second);
+    double distance;
+    Vec3d normal;
+    if (!(t->probe(x, distance, normal) && std::fabs(distance) <= accept.guard.leave * t->spacing()))
+      return false;
+  }
+  return true;
 }
 
 bool Bound::operator()(Vec3d& x) const {
@@ -158,11 +208,13 @@ bool Bound::operator()(Vec3d& x) const {
     x[vertex.axis()] = from[vertex.axis()];
     [[fallthrough]];
   case Kind::surface:
+  case Kind::line:
     // The distance to first order means nothing where the gradient vanishes, and that is where points must leave.
     if (r.target && accept.guard.lift > 0)
       return norm(x - from) <= accept.guard.lift * r.target->spacing() && stays_near(x) && r.inside_walls(from, x);
     if (r.target && accept.off_target)
-      return norm(x - from) <= reach && off_at(r, x).value_or(1) <= most_off_target && r.inside_walls(from, x);
+      return norm(x - from) <= reach && off_at(r, vertex, x).value_or(1) <= most_off_target &&
+             r.inside_walls(from, x);
     return target(x);
   case Kind::sliding:
     for (int a = 0; a < 3; ++a)
@@ -192,10 +244,11 @@ int Bound::all(Vec3d* x, int n) const {
     for (int i = 0; i < count; ++i)
       eight.set(size_t(i), x[first + i]);
     EightProbes probes;
-    r.target->probe_eight(eight, count, probes);
+    const Target& own = *r.target_of(vertex.label);
+    own.probe_eight(eight, count, probes);
     for (uint32_t known = probes.known; known; known &= known - 1) {
       const auto i = size_t(std::countr_zero(known));
-      if (r.target->off_by(probes.distance[i]) <= most_off_target && norm(eight[i] - from) <= reach &&
+      if (own.off_by(probes.distance[i]) <= most_off_target && norm(eight[i] - from) <= reach &&
           r.inside_walls(from, eight[i]))
         x[allowed++] = eight[i];
     }

@@ -6,15 +6,25 @@
 
 namespace molmesh::optimize {
 
-/// Target::off_by of a place; none where the target is not known.
-std::optional<double> off_at(const Region& r, Vec3d x);
-/// Of a vertex of the surface or a trace; two spacings where the target is not known. Else 0.
-double off(const Region& r, int32_t v);
+/// Target::off_by of a place of such a vertex, the larger of two targets; none where one is not known.
+std::optional<double> off_at(const DynamicMesh& m, const Target* target, const Vertex& vertex, Vec3d x);
+inline std::optional<double> off_at(const Region& r, const Vertex& vertex, Vec3d x) {
+  return off_at(r.mesh, r.target, vertex, x);
+}
+/// Of a vertex of the surface, a trace or a line; two spacings where the target is not known. Else 0.
+double off(const DynamicMesh& m, const Target* target, int32_t v);
+inline double off(const Region& r, int32_t v) {
+  return off(r.mesh, r.target, v);
+}
+/// Whether it is kept on the mesh's target alone.
+inline bool has_main_target(const DynamicMesh& m, int32_t v) {
+  return m.vertex[v].kind != Kind::line && !m.labels[m.vertex[v].label].target;
+}
 /// Whether the face is a surface triangle, counted from this side, that does not keep the guard, or is turned by
 /// more than Guard::widest_unbent.
 bool is_bent(const Region& r, const Acceptance& accept, int32_t element, size_t face);
-/// misfit() of a triangle that runs as the target's normal does. The target is not null.
-double misfit_of(const Region& r, const Acceptance& accept, Vec3d a, Vec3d b, Vec3d c);
+/// misfit() of a triangle of that label that runs as the target's normal does. The target is not null.
+double misfit_of(const Region& r, const Acceptance& accept, uint8_t label, Vec3d a, Vec3d b, Vec3d c);
 /// Of a labelled face; 0 for flat labels and without a target.
 double misfit_of(const Region& r, const Acceptance& accept, const Element& e, size_t face);
 

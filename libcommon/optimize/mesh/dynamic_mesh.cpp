@@ -72,7 +72,7 @@ std::vector<uint8_t> set_labels(DynamicMesh& m, const TetMesh& mesh) {
 }
 
 // Beside `reversed`: it is of the molecular surface but a face of another region alone, and so looks into it
-// (VTUv1) where those between two regions look out of the lower.
+// (VTUv1) where those between two regions look out of the first.
 constexpr uint8_t lone = 2;
 
 // Faces meet the face on their other side and their triangle.
@@ -94,10 +94,10 @@ std::vector<uint8_t> link(DynamicMesh& m, const TetMesh& mesh, const std::vector
   const auto set_way = [&](const uint32_t* face, int sides) {
     const auto t = size_t(static_cast<int64_t>(face[sides]) - faces);
     const int32_t region = mesh.region[face[0] / 4];
-    const bool second = sides == 2 && mesh.region[face[1] / 4] < region;
+    const bool second = sides == 2 && m.order.is_first(mesh.region[face[1] / 4], region);
     if (sorted_triangle(face_at(mesh, face[second ? 1 : 0])).odd != sorted_triangle(mesh.tri[t]).odd)
       way[t] |= reversed;
-    if (sides == 1 && mesh.boundary[t] == Boundary::surface && region != Region::molecule)
+    if (sides == 1 && mesh.boundary[t] == Boundary::surface && !m.order.is_inside(region))
       way[t] |= lone;
   };
   for_each_face(mesh.tet, mesh.tri, static_cast<int64_t>(mesh.point.size()), threads,
@@ -155,7 +155,7 @@ void split_surface(DynamicMesh& m, const std::vector<uint8_t>& way, std::vector<
       label[t] = added;
   for (Element& e : m.element)
     for (size_t i = 0; i < 4; ++i)
-      if (e.label[i] == surface && e.n[i] < 0 && e.region != Region::molecule)
+      if (e.label[i] == surface && e.n[i] < 0 && !m.order.is_inside(e.region))
         e.label[i] = added;
 }
 
@@ -191,6 +191,7 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads) {
   require_size(static_cast<int64_t>(mesh.tet.size()), static_cast<int64_t>(mesh.tri.size()),
                static_cast<int64_t>(mesh.point.size()));
   DynamicMesh m;
+  m.order = RegionOrder(mesh);
   const size_t points = mesh.point.size(), elements = mesh.tet.size();
   const auto with_room = [&](auto& v, size_t n) { // what it will grow by, untouched till then: no second copy
     par::reserve_pages(v, n, n / 4, threads);

@@ -3,6 +3,7 @@
 #include "base/array.hpp"
 #include "geom/tet_measures.hpp"
 #include "geom/tet_quality.hpp"
+#include "mesh/region_order.hpp"
 #include "mesh/tet_mesh.hpp"
 #include "optimize/mesh/walls.hpp"
 #include <algorithm>
@@ -12,6 +13,10 @@
 #include <cstdint>
 #include <vector>
 
+namespace molmesh {
+class Target;
+}
+
 namespace molmesh::optimize {
 
 /// What a vertex may do.
@@ -20,17 +25,19 @@ enum class Kind : uint8_t {
   surface,  ///< on one curved label: stays on the target
   sliding,  ///< on axis planes alone (box walls): keeps the frozen coordinates
   trace,    ///< where one curved label meets one wall: stays on the target and in the wall
+  line,     ///< where three triangles of curved labels meet, between domains: stays on the targets of two of these
   fixed,    ///< where other labels or sharp edges meet: never moves, is never removed
 };
 /// On a curved label, and free to move on it.
 inline constexpr bool follows_target(Kind k) {
-  return k == Kind::surface || k == Kind::trace;
+  return k == Kind::surface || k == Kind::trace || k == Kind::line;
 }
 
 struct Vertex {
   Kind kind = Kind::interior;
   uint8_t frozen = 0;   ///< sliding, trace: bit a set when coordinate a is kept
   uint8_t label = 0;    ///< of a labelled face at the vertex (0 inside)
+  uint8_t second = 0;   ///< line: of another one
   bool watched = false; ///< the surface is near itself here, with no elements between: CrossingGuard
 
   int axis() const { return std::countr_zero(frozen); } ///< trace: of the coordinate that is kept
@@ -75,10 +82,12 @@ inline constexpr bool molmesh::leave_untouched<molmesh::optimize::Element> = tru
 namespace molmesh::optimize {
 
 struct Label {
-  int32_t name = 0;      ///< TetMesh::boundary
-  int axis = -1;         ///< all its triangles lie in one plane normal to this axis; -1: curved
-  bool wall = false;     ///< and the mesh ends there
-  bool reversed = false; ///< its triangles point into the lower of the two regions, or into the mesh
+  int32_t name = 0;  ///< TetMesh::boundary
+  int axis = -1;     ///< all its triangles lie in one plane normal to this axis; -1: curved
+  bool wall = false; ///< and the mesh ends there
+  /// What its triangles are kept on, between domains; null: the mesh's target.
+  const Target* target = nullptr;
+  bool reversed = false; ///< its triangles point into the first of the two regions, or into the mesh
   bool curved() const { return axis < 0; }
 };
 
@@ -91,6 +100,7 @@ struct DynamicMesh {
   LargeArray<Element> element;
   Array<Label> labels; ///< [0] is no label
   Walls walls;
+  RegionOrder order;
   /// [chunks] 1 if an element of this chunk changed since its worst quality was computed.
   Array<uint8_t> dirty;
   Array<float> worst; ///< [chunks] lowest quality where not dirty; 2 where nothing is alive
@@ -113,14 +123,14 @@ struct DynamicMesh {
       f(e);
   }
 
-  /// Whether the face is labelled and this side's to count: the lower region's.
+  /// Whether the face is labelled and this side's to count: the first region's.
   bool counts_here(const Element& e, size_t face) const {
-    return e.label[face] != 0 && (e.n[face] < 0 || element[e.n[face]].region > e.region);
+    return e.label[face] != 0 && (e.n[face] < 0 || order.is_first(e.region, element[e.n[face]].region));
   }
   /// Whether a labelled face, seen as an outward one of e, runs as the target's normal does.
   bool outward(const Element& e, size_t face) const {
-    const bool lower = e.n[face] < 0 || e.region < element[e.n[face]].region;
-    return lower != labels[e.label[face]].reversed;
+    const bool first = e.n[face] < 0 || order.is_first(e.region, element[e.n[face]].region);
+    return first != labels[e.label[face]].reversed;
   }
   /// Whether two of its corners are.
   bool watched(const std::array<int32_t, 3>& triangle) const {
@@ -148,7 +158,10 @@ DynamicMesh build(const TetMesh& mesh, double sharp, int threads);
 /// creator stay as they are there.
 TetMesh extract(const DynamicMesh& mesh, int threads = 1, LargeArray<int32_t>* across = nullptr, TetMesh out = {});
 
-/// Of a triangle, a bit of its way: it points into the lower of the two regions, or into the mesh.
+/// The vertex where faces of these labels meet in a line: it follows the two first of them by name.
+Vertex line_vertex(const DynamicMesh& m, std::vector<uint8_t> labels);
+
+/// Of a triangle, a bit of its way: it points into the first of the two regions, or into the mesh.
 inline constexpr uint8_t reversed = 1;
 
 /// Sets Label::axis, the walls and the vertices. label [tris]: indices into DynamicMesh::labels; way [tris].

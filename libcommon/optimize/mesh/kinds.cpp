@@ -123,6 +123,41 @@ private:
   std::vector<std::pair<size_t, size_t>> fan_;
 };
 
+/// Vertices where two or three curved labels meet in one line: two of their edges have three triangles, all others
+/// two of one label, and these make three fans.
+class Lines {
+public:
+  explicit Lines(size_t vertices) : edges_(vertices, no_candidate) {}
+  void add_candidate(size_t v) { edges_[v] = 0; }
+  /// An edge that is not one of two triangles of one label.
+  void note_edge(int32_t a, int32_t b, bool of_three) {
+    for (const int32_t v : {a, b})
+      if (uint8_t& edges = edges_[v]; edges != no_candidate)
+        edges = !of_three || edges == 2 ? no_candidate : uint8_t(edges + 1);
+  }
+  void note_fan(size_t v, size_t fan) {
+    if (edges_[v] != no_candidate)
+      fan_.emplace_back(v, fan);
+  }
+  /// f(v) for each of them.
+  template <class F>
+  void for_each(F&& f) {
+    par::sort_unique(fan_, 1);
+    for (size_t i = 0, j; i < fan_.size(); i = j) {
+      const size_t v = fan_[i].first;
+      for (j = i; j < fan_.size() && fan_[j].first == v;)
+        ++j;
+      if (edges_[v] == 2 && j - i == 3)
+        f(v);
+    }
+  }
+
+private:
+  static constexpr uint8_t no_candidate = 255;
+  std::vector<uint8_t> edges_;
+  std::vector<std::pair<size_t, size_t>> fan_;
+};
+
 /// The labels of the triangles at each vertex, in the order that they come in; 0: no more.
 struct VertexLabels {
   std::vector<std::array<uint8_t, 3>> of;
@@ -199,7 +234,7 @@ std::vector<Edge> sorted_edges(const TetMesh& mesh, const std::vector<uint8_t>& 
 
 // Ends of edges of not two triangles, and of sharp ones, are fixed. The two triangles of others are of one fan.
 void fix_kept_edges(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& way,
-                    const std::vector<Edge>& edges, double sharp, Fans& fans, Traces& traces) {
+                    const std::vector<Edge>& edges, double sharp, Fans& fans, Traces& traces, Lines& lines) {
   const auto normal = [&](int32_t t) {
     const Tri& f = mesh.tri[t];
     const Vec3d p = mesh.point[f[0]];
@@ -226,13 +261,15 @@ void fix_kept_edges(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8
     const bool of_both = (j - i == 3 || two_labels) && std::count_if(first, last, curved) == 1;
     if (keep)
       m.vertex[e.a].kind = m.vertex[e.b].kind = Kind::fixed;
+    if (!two || two_labels)
+      lines.note_edge(e.a, e.b, j - i == 3 && std::all_of(first, last, curved));
     if (keep || of_both)
       traces.note_edge(e.a, e.b, of_both, j - i);
   }
 }
 
 // Where the surface touches itself elements may know but one fan: such vertices are fixed.
-void fix_touching(DynamicMesh& m, const TetMesh& mesh, Fans& fans, Traces& traces) {
+void fix_touching(DynamicMesh& m, const TetMesh& mesh, Fans& fans, Traces& traces, Lines& lines) {
   constexpr size_t none = SIZE_MAX;
   std::vector<size_t> fan(m.point.size(), none);
   for (size_t c = 0; c < 3 * mesh.tri.size(); ++c) {
@@ -242,16 +279,37 @@ void fix_touching(DynamicMesh& m, const TetMesh& mesh, Fans& fans, Traces& trace
       m.vertex[v].kind = Kind::fixed;
     fan[v] = here;
     traces.note_fan(v, here);
+    lines.note_fan(v, here);
   }
 }
 
+bool all_curved(const DynamicMesh& m, const std::array<uint8_t, 3>& labels, bool many) {
+  return !many && labels[1] != 0 &&
+         std::all_of(labels.begin(), labels.end(), [&](uint8_t l) { return l == 0 || m.labels[l].curved(); });
+}
+
 } // namespace
+
+Vertex line_vertex(const DynamicMesh& m, std::vector<uint8_t> labels) {
+  std::erase(labels, uint8_t{0});
+  std::sort(labels.begin(), labels.end(), [&](uint8_t a, uint8_t b) {
+    return m.labels[a].name != m.labels[b].name ? m.labels[a].name < m.labels[b].name : a < b;
+  });
+  labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+  Vertex v;
+  v.kind = labels.size() < 2 ? Kind::fixed : Kind::line;
+  v.label = labels.front();
+  v.second = labels.size() < 2 ? uint8_t{0} : labels[1];
+  return v;
+}
 
 void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label,
                const std::vector<uint8_t>& way, double sharp, int threads) {
   find_flat_labels(m, mesh, label);
   const VertexLabels labels(mesh, label);
   Traces traces(m.point.size());
+  Lines lines(m.point.size());
+  const bool has_domains = m.order.last_domain > molmesh::Region::cavity;
   for (size_t v = 0; v < m.point.size(); ++v) {
     if (labels.of[v][0] == 0)
       continue;
@@ -259,15 +317,22 @@ void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& 
     // Of a surface that came in alone nothing says which corners of its outline to keep.
     if (sharp >= 180 && on_surface_and_wall(m, labels.of[v], labels.many[v]))
       traces.add_candidate(v);
+    if (has_domains && sharp >= 180 && all_curved(m, labels.of[v], labels.many[v]))
+      lines.add_candidate(v);
   }
   Fans fans(mesh.tri);
-  fix_kept_edges(m, mesh, way, sorted_edges(mesh, label, threads), sharp, fans, traces);
-  fix_touching(m, mesh, fans, traces);
+  fix_kept_edges(m, mesh, way, sorted_edges(mesh, label, threads), sharp, fans, traces, lines);
+  fix_touching(m, mesh, fans, traces, lines);
+  lines.for_each([&](size_t v) {
+    const auto& s = labels.of[v];
+    m.vertex[v] = line_vertex(m, {s[0], s[1], s[2]});
+  });
   traces.for_each([&](size_t v) {
     const auto& s = labels.of[v];
     const bool flat_first = !m.labels[s[0]].curved();
-    m.vertex[v] = {Kind::trace, static_cast<uint8_t>(1 << m.labels[s[flat_first ? 0 : 1]].axis),
-                   s[flat_first ? 1 : 0]};
+    m.vertex[v] = {.kind = Kind::trace,
+                   .frozen = static_cast<uint8_t>(1 << m.labels[s[flat_first ? 0 : 1]].axis),
+                   .label = s[flat_first ? 1 : 0]};
   });
 }
 

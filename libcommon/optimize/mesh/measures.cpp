@@ -77,6 +77,8 @@ Fidelity add(Fidelity a, const Fidelity& b) {
   a.points_off_wall += b.points_off_wall;
   a.centroids_off += b.centroids_off;
   a.turned += b.turned;
+  a.interface_points += b.interface_points;
+  a.interface_points_off += b.interface_points_off;
   a.volume += b.volume;
   a.missing += b.missing;
   a.area += b.area;
@@ -124,7 +126,7 @@ T sum_of_triangles(const DynamicMesh& m, int threads, Each each, AddTo add_to) {
         m.for_chunk(s, [&](int64_t t) {
           if (const Element& e = m.element[t]; e.alive())
             for (size_t f = 0; f < 4; ++f)
-              if (m.counts_here(e, f) && m.labels[e.label[f]].curved())
+              if (m.counts_here(e, f) && m.labels[e.label[f]].curved() && !m.labels[e.label[f]].target)
                 each(e, f, sum);
         });
       },
@@ -177,11 +179,13 @@ bool runs_against(const DynamicMesh& m, const Isosurface& surface, int threads) 
 Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int threads) {
   Fidelity sum = measure_triangles(m, surface, threads);
   const Regions regions = find_regions(m, threads);
+  const bool has_domains = m.order.last_domain > molmesh::Region::cavity;
   sum.volume += sum_of_chunks<double>(
       m, threads,
       [&](int64_t s, double& volume) {
         m.for_chunk(s, [&](int64_t t) {
-          if (const Element& e = m.element[t]; e.alive() && e.region == regions.lowest)
+          if (const Element& e = m.element[t];
+              e.alive() && (has_domains ? m.order.is_inside(e.region) : e.region == regions.lowest))
             volume += tet_volume(m.point[e.v[0]], m.point[e.v[1]], m.point[e.v[2]], m.point[e.v[3]]);
         });
       },
@@ -195,6 +199,14 @@ Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int t
                         Fidelity one;
                         if (m.incident[v] < 0 || !follows_target(m.vertex[v].kind))
                           return one;
+                        if (const Target* own = m.labels[m.vertex[v].label].target) {
+                          double distance;
+                          Vec3d normal;
+                          one.interface_points = 1;
+                          one.interface_points_off =
+                              !own->probe(m.point[v], distance, normal) || own->off_by(distance) > 1;
+                          return one;
+                        }
                         one.points = 1;
                         double distance;
                         Vec3d normal;

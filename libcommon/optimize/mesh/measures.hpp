@@ -21,14 +21,16 @@ std::string text(const Angles& a);
 struct Fidelity {
   int64_t points = 0; ///< free ones: where the surface touches itself or labels meet they stay as they came
   int64_t triangles = 0;
-  int64_t points_off = 0;        ///< further than 0.02 spacings from it, or where it is not known
-  int64_t points_off_cavity = 0; ///< of these, on closed cavities: where one is smaller than the grid can show
-  int64_t points_off_wall = 0;   ///< and in walls that cut the surface
-  int64_t centroids_off = 0;     ///< further than 0.25 spacings, or not known
-  int64_t turned = 0;            ///< normals more than 45° from its own
-  double volume = 0;             ///< Å³ of the mesh's lowest region: the inside, where that is meshed
-  double missing = 0;            ///< Å³ that the isosurface encloses beyond that (to first order; negative: less)
-  double area = 0;               ///< Å²
+  int64_t points_off = 0;           ///< further than 0.02 spacings from it, or where it is not known
+  int64_t points_off_cavity = 0;    ///< of these, on closed cavities: where one is smaller than the grid can show
+  int64_t points_off_wall = 0;      ///< and in walls that cut the surface
+  int64_t centroids_off = 0;        ///< further than 0.25 spacings, or not known
+  int64_t turned = 0;               ///< normals more than 45° from its own
+  int64_t interface_points = 0;     ///< between domains, lines at the surface apart
+  int64_t interface_points_off = 0; ///< of these, further than 0.02 spacings from where shares are equal
+  double volume = 0;                ///< Å³ of the mesh's lowest region: the inside, where that is meshed
+  double missing = 0; ///< Å³ that the isosurface encloses beyond that (to first order; negative: less)
+  double area = 0;    ///< Å²
 };
 
 Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int threads);

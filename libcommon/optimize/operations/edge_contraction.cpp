@@ -73,6 +73,8 @@ bool may_contract(const Vertex& a, const Vertex& b) {
     return false;
   if (a.kind == Kind::trace)
     return b.kind == Kind::fixed || (b.kind == Kind::trace && a.frozen == b.frozen);
+  if (a.kind == Kind::line)
+    return b.kind == Kind::fixed || (b.kind == Kind::line && a.label == b.label && a.second == b.second);
   return a.kind != Kind::sliding || b.kind != Kind::sliding || (a.frozen & ~b.frozen) == 0;
 }
 
@@ -82,16 +84,18 @@ bool borders_allow(Region& r, int32_t e, int32_t a, int32_t b) {
   const Vertex& ka = r.mesh.vertex[a];
   if (!r.ring(e, a, b, ring))
     return false;
-  const bool trace = ka.kind == Kind::trace;
-  const bool crease = trace || (ka.kind == Kind::sliding && (ka.frozen & (ka.frozen - 1)) != 0);
+  const bool trace = ka.kind == Kind::trace, line = ka.kind == Kind::line;
+  const bool crease = trace || line || (ka.kind == Kind::sliding && (ka.frozen & (ka.frozen - 1)) != 0);
   const auto& label = ring.label;
   // Where a wall meets a surface with elements on both sides its triangle is between two of the wall's.
-  if (label.size() == 3 ? !trace || label[1] == label[0] || label[1] == label[2]
-                        : label.size() != 2 || (label[0] != label[1]) != crease)
+  if (line                ? label.size() != 3
+      : label.size() == 3 ? !trace || label[1] == label[0] || label[1] == label[2]
+                          : label.size() != 2 || (label[0] != label[1]) != crease)
     return false;
-  if (trace && std::any_of(ring.border.begin(), ring.border.end(), [&](int k) { // a loop of three may lie there
+  if ((trace || line) &&
+      std::any_of(ring.border.begin(), ring.border.end(), [&](int k) { // a loop of three may lie there
         const Kind kind = r.mesh.vertex[ring.vertex[k]].kind;
-        return kind == Kind::trace || kind == Kind::fixed;
+        return kind == Kind::trace || kind == Kind::line || kind == Kind::fixed;
       }))
     return false;
   for (const int32_t t : ring.element) { // they go: the faces beyond them take their labels
@@ -138,8 +142,8 @@ bool merge(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
   if (!may_contract(r.mesh.vertex[a], r.mesh.vertex[b]))
     std::swap(a, b);
   const Vertex &ka = r.mesh.vertex[a], &kb = r.mesh.vertex[b];
-  if (!may_contract(ka, kb) || ka.kind == Kind::trace || kb.kind == Kind::trace || kb.kind == Kind::fixed ||
-      !r.star(a, star) || !r.star(b, other_star))
+  if (!may_contract(ka, kb) || ka.kind == Kind::trace || kb.kind == Kind::trace || ka.kind == Kind::line ||
+      kb.kind == Kind::line || kb.kind == Kind::fixed || !r.star(a, star) || !r.star(b, other_star))
     return false;
   const float before = std::min(r.worst(star), r.worst(other_star)), above = accept.demand(before);
   const Vec3d pa = r.mesh.point[a], pb = r.mesh.point[b];
@@ -155,7 +159,7 @@ bool merge(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
     for (const Vec3d& p : s.p)
       ends += (p == pa) + (p == pb);
     if (ends == 2) // found from either end
-      fit.excess -= 0.5 * std::max(0., misfit_of(r, accept, s.p[0], s.p[1], s.p[2]) - 1);
+      fit.excess -= 0.5 * std::max(0., misfit_of(r, accept, s.label, s.p[0], s.p[1], s.p[2]) - 1);
     return ends == 2;
   });
   elements.clear(pb);

@@ -129,7 +129,8 @@ bool remove_edge(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
     });
   }
   if (surface) {
-    const Label& label = r.mesh.labels[ring.label[0]];
+    const uint8_t l = ring.label[0];
+    const Label& label = r.mesh.labels[l];
     const int32_t vs = vertex(s), vt = vertex(t);
     const Element &after = element(s), &before = element(t - 1);
     const size_t face_s = size_t(after.find(vertex(s + 1))), face_t = size_t(before.find(vertex(t - 1)));
@@ -141,8 +142,8 @@ bool remove_edge(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
       old_fit.add(misfit_of(r, accept, before, face_t));
       const auto p = [&](int32_t v) { return r.mesh.point[v]; };
       const bool out = r.mesh.outward(after, face_s);
-      fit.add(out ? misfit_of(r, accept, p(vs), p(b), p(vt)) : misfit_of(r, accept, p(vt), p(b), p(vs)));
-      fit.add(out ? misfit_of(r, accept, p(vs), p(vt), p(a)) : misfit_of(r, accept, p(vt), p(vs), p(a)));
+      fit.add(out ? misfit_of(r, accept, l, p(vs), p(b), p(vt)) : misfit_of(r, accept, l, p(vt), p(b), p(vs)));
+      fit.add(out ? misfit_of(r, accept, l, p(vs), p(vt), p(a)) : misfit_of(r, accept, l, p(vt), p(vs), p(a)));
       if (!accept.fits(fit, old_fit))
         return false;
     }

@@ -6,6 +6,15 @@ namespace molmesh::optimize {
 
 namespace {
 
+// Whether the edge is of a line between domains.
+bool is_line(const Region& r, const Ring& ring) {
+  const auto on_line = [&](int32_t v) {
+    return r.mesh.vertex[v].kind == Kind::line || r.mesh.vertex[v].kind == Kind::fixed;
+  };
+  return ring.border.size() == 3 && r.mesh.order.last_domain > molmesh::Region::cavity && on_line(ring.a) &&
+         on_line(ring.b) && (r.mesh.vertex[ring.a].kind == Kind::line || r.mesh.vertex[ring.b].kind == Kind::line);
+}
+
 bool split(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
   auto& [star, other_star, old, now, ring, elements, triangles] = r.work;
   const int32_t a = r.mesh.element[e].v[i], b = r.mesh.element[e].v[j];
@@ -19,12 +28,16 @@ bool split(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
     return false;
   Vertex kind;
   if (!ring.border.empty()) {
-    if (ring.border.size() != 2 || ring.label[0] != ring.label[1])
-      return false;
     const Label& label = r.mesh.labels[ring.label[0]];
-    kind.label = ring.label[0];
+    if (is_line(r, ring)) {
+      kind = line_vertex(r.mesh, ring.label);
+    } else {
+      if (ring.border.size() != 2 || ring.label[0] != ring.label[1])
+        return false;
+      kind.label = ring.label[0];
+      kind.kind = label.curved() ? Kind::surface : Kind::sliding;
+    }
     kind.watched = r.mesh.vertex[a].watched || r.mesh.vertex[b].watched;
-    kind.kind = label.curved() ? Kind::surface : Kind::sliding;
     if (!label.curved())
       kind.frozen = static_cast<uint8_t>(1 << label.axis);
     if (label.curved() && !r.target)
@@ -39,7 +52,8 @@ bool split(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
   for (const int32_t t : ring.element) {
     const Element& el = r.mesh.element[t];
     for (const int32_t end : ends) {
-      Candidate c{el.v, el.region, 0, {}};
+      Candidate c{el.v, el.region, 0, el.label};
+      c.label[size_t(el.find(a))] = c.label[size_t(el.find(b))] = 0; // one is outer, the other one new
       const int k = el.find(end);
       std::array<Vec3d, 4> p;
       for (size_t n = 0; n < 4; ++n)

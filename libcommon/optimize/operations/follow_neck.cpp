@@ -25,7 +25,7 @@ bool find_ring(Region& r, int32_t v, const Neck& neck, Core& core) {
   std::vector<int32_t> reached{v};
   for (size_t i = 0; i < reached.size() && reached.size() < most_reached; ++i) {
     const int32_t w = reached[i];
-    if (r.mesh.vertex[w].kind != Kind::surface || !r.star(w, star))
+    if (!r.on_main_target(w) || !r.star(w, star))
       continue;
     for (const int32_t k : star) {
       const Element& e = r.mesh.element[k];
@@ -69,7 +69,7 @@ bool find_ring(Region& r, int32_t v, const Neck& neck, Core& core) {
 } // namespace
 
 bool find_neck(const Region& r, int32_t v, Neck& neck) {
-  return r.mesh.vertex[v].kind == Kind::surface && r.target && r.target->neck(r.mesh.point[v], neck);
+  return r.on_main_target(v) && r.target && r.target->neck(r.mesh.point[v], neck);
 }
 
 bool follow_neck(Region& r, int32_t v, const Neck& neck, double ratio) {
@@ -89,7 +89,7 @@ bool follow_neck(Region& r, int32_t v, const Neck& neck, double ratio) {
   for (double s = 0.9; s > 0.005 && least > 0.8; s *= 0.9) {
     double most = 0;
     for (const int32_t w : core.vertex)
-      most = std::max(most, off_at(r, neck.at + s * (r.mesh.point[w] - neck.at)).value_or(1e30));
+      most = std::max(most, off_at(r, r.mesh.vertex[w], neck.at + s * (r.mesh.point[w] - neck.at)).value_or(1e30));
     if (most < least)
       least = most, scale = s;
   }

@@ -97,7 +97,7 @@ bool shrink(Region& r, const Core& core, Vec3d c, double scale, double ratio) {
     outer.insert(outer.end(), s.v.begin(), s.v.end());
   par::sort_unique(outer, 1);
   for (const int32_t v : on_surface)
-    if (r.mesh.vertex[v].kind != Kind::surface)
+    if (!r.on_main_target(v))
       return false;
   for (const int32_t t : core.element) {
     const Element& e = r.mesh.element[t];

@@ -29,7 +29,8 @@ double mean_edge(const Region& r, const std::vector<int32_t>& star, int32_t v) {
   return length / (3. * double(star.size()));
 }
 
-int directions_of(const Vertex& vertex, const Target* target, bool leaves_target, Vec3d x, Vec3d basis[3]) {
+int directions_of(const Region& r, const Vertex& vertex, bool leaves_target, Vec3d x, Vec3d basis[3]) {
+  const Target* target = r.target_of(vertex.label);
   int n = 0;
   if (vertex.kind == Kind::fixed)
     return 0;
@@ -43,9 +44,12 @@ int directions_of(const Vertex& vertex, const Target* target, bool leaves_target
   Vec3d normal;
   if (!target || !target->probe(x, distance, normal))
     return 0;
-  if (vertex.kind == Kind::trace) {
+  if (vertex.kind == Kind::trace || vertex.kind == Kind::line) {
     Vec3d across;
-    across[vertex.axis()] = 1;
+    if (vertex.kind == Kind::trace)
+      across[vertex.axis()] = 1;
+    else if (!r.target_of(vertex.second)->probe(x, distance, across))
+      return 0;
     basis[0] = cross(across, normal);
     const double length = norm(basis[0]);
     if (!(length > 0))
@@ -69,7 +73,7 @@ float worth_at(Region& r, const Acceptance& accept, Vec3d x, float above) {
 bool search_place(Region& r, const Acceptance& accept, const Vertex& vertex, Vec3d& x, float& best, float aim,
                   double length, const Fit& before, float above) {
   Vec3d basis[3];
-  const int dimensions = directions_of(vertex, r.target, accept.guard.lift > 0 || accept.off_target, x, basis);
+  const int dimensions = directions_of(r, vertex, accept.guard.lift > 0 || accept.off_target, x, basis);
   if (dimensions == 0)
     return false;
   const Bound bound{accept, {r, vertex, x, accept.guard.reach * length}};

@@ -42,6 +42,7 @@ struct Ring {
 struct MovingTriangle {
   std::array<Vec3d, 3> p;
   int moving;
+  uint8_t label; ///< which says what target
 };
 
 /// Memory that operations use, each from the beginning.
@@ -84,6 +85,15 @@ public:
   /// The mesh ends in no curved surface.
   bool is_alone() const { return !crossings.on(); }
   double spacing() const { return target ? target->spacing() : 1; }
+  /// What triangles of that label are kept on; null: nothing.
+  const Target* target_of(uint8_t label) const {
+    const Target* own = mesh.labels[label].target;
+    return own ? own : target;
+  }
+  /// A surface vertex that is kept on the mesh's target.
+  bool on_main_target(int32_t v) const {
+    return mesh.vertex[v].kind == Kind::surface && !mesh.labels[mesh.vertex[v].label].target;
+  }
   /// All vertices in this part.
   bool owned(int32_t e) const { return parts_.owns(room.part, mesh.element[e].v); }
 

@@ -17,7 +17,7 @@ bool find_core(Region& r, int32_t v, Core& core) {
   core.vertex.push_back(v);
   for (size_t i = 0; i < core.vertex.size(); ++i) {
     const int32_t w = core.vertex[i];
-    if (core.vertex.size() > most_vertices || r.mesh.vertex[w].kind != Kind::surface || !r.star(w, star))
+    if (core.vertex.size() > most_vertices || !r.on_main_target(w) || !r.star(w, star))
       return false;
     core.element.insert(core.element.end(), star.begin(), star.end());
     for (const int32_t t : star) {
@@ -51,7 +51,7 @@ bool fit_core(const Region& r, const Core& core, Vec3d& to, double& scale) {
   const auto most_off = [&](Vec3d at, double s) {
     double most = 0;
     for (const int32_t w : core.vertex)
-      most = std::max(most, off_at(r, at + s * (r.mesh.point[w] - core.centre)).value_or(1e30));
+      most = std::max(most, off_at(r, r.mesh.vertex[w], at + s * (r.mesh.point[w] - core.centre)).value_or(1e30));
     return most;
   };
   double best = 1e30;

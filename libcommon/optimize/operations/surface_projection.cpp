@@ -16,6 +16,18 @@ void project_vertex(Region& r, const Acceptance& accept, int32_t v, float floor,
   step_towards(r, accept, v, to, 0.5, 0.1, above, later);
 }
 
+// Whether one of the targets of a vertex between domains is known, and farther than that.
+bool is_away(const Region& r, int32_t v, double there) {
+  const Vertex& vertex = r.mesh.vertex[v];
+  double distance;
+  Vec3d normal;
+  for (int k = 0; k < (vertex.kind == Kind::line ? 2 : 1); ++k)
+    if (r.target_of(k == 0 ? vertex.label : vertex.second)->probe(r.mesh.point[v], distance, normal) &&
+        std::abs(distance) >= there)
+      return true;
+  return false;
+}
+
 // Those that are not there yet: a vertex stays where it is until its turn.
 void project_each_vertex(Region& r, const Acceptance& accept, const std::vector<int32_t>& vertices, float floor,
                          Moves* later) {
@@ -24,7 +36,8 @@ void project_each_vertex(Region& r, const Acceptance& accept, const std::vector<
     const size_t n = std::min<size_t>(8, vertices.size() - first);
     const EightProbes probes = probe_some(*r.target, r.mesh.point, vertices.data() + first, n);
     for (size_t i = 0; i < n; ++i)
-      if (probes.is_known(i) && std::abs(probes.distance[i]) >= there)
+      if (has_main_target(r.mesh, vertices[first + i]) ? probes.is_known(i) && std::abs(probes.distance[i]) >= there
+                                                       : is_away(r, vertices[first + i], there))
         project_vertex(r, accept, vertices[first + i], floor, later);
   }
 }

@@ -35,7 +35,7 @@ bool place_on_target(Region& r, const Acceptance& accept, const Vertex& vertex, 
   if (!(best > above))
     return false;
   Vec3d basis[3];
-  const int dimensions = directions_of(vertex, r.target, false, x, basis);
+  const int dimensions = directions_of(r, vertex, false, x, basis);
   pattern_search(elements, x, best, accept.goal, length, basis, dimensions, on_target, fits);
   return true;
 }

@@ -175,7 +175,8 @@ std::vector<int32_t> Schedule::points_off() const {
     const size_t n = std::min<size_t>(8, points.size() - 8 * size_t(group));
     const EightProbes probes = probe_some(*target_, m_.point, v, n);
     for (size_t i = 0; i < n; ++i)
-      if (probes.is_known(i) && target_->off_by(probes.distance[i]) <= 1)
+      if (has_main_target(m_, v[i]) ? probes.is_known(i) && target_->off_by(probes.distance[i]) <= 1
+                                    : off(m_, target_, v[i]) <= 1)
         v[i] = -1;
   });
   std::erase(points, -1);

@@ -1,0 +1,94 @@
+// domains.hpp — regions that are groups of one level of a hierarchy: their shares, numbers and names.
+#pragma once
+#include "base/error.hpp"
+#include "contour/octree/border_nodes.hpp"
+#include "formats/vtu/names.hpp"
+#include "label/divide.hpp"
+#include "label/equal_shares.hpp"
+#include "mesh/same_source.hpp"
+#include "molecule/hierarchy.hpp"
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace molmesh {
+
+class Domains {
+public:
+  /// file: the hierarchy's, for messages. Throws Error(bad_input) where h has no level of that name or a group has
+  /// a name that meshes have themselves.
+  Domains(const Hierarchy& h, const std::string& file, const std::string& level, label::Options options)
+      : level_(level), level_index_(index_of(h, file, level)), shares_(h, level_index_, options),
+        threads_(options.threads) {
+    std::set<std::string> taken;
+    for (const Group& g : h.level[level_index_].group) {
+      if (formats::is_own_name(g.name))
+        fail_input(file + ": found the " + level + " '" + g.name +
+                   "', which is the meshes' own name, expected another");
+      std::string name = g.name;
+      for (int k = 2; !taken.insert(name).second; ++k)
+        name = g.name + '_' + std::to_string(k);
+      name_.push_back(name);
+    }
+  }
+
+  /// Keeps a reference to this.
+  contour::FindOwners owners() const {
+    return [this](const std::vector<Vec3d>& place) {
+      std::vector<contour::Owner> all;
+      for (const label::Shares& s : shares_.at(place))
+        all.push_back({s.owner(), s.lead()});
+      return all;
+    };
+  }
+
+  /// Divides region 1 and names what comes of it. The regions' names.
+  std::vector<std::string> divide(TetMesh& m) const {
+    const label::Division d = label::divide(m, shares_, threads_);
+    std::map<int32_t, std::string> region, boundary;
+    std::vector<std::string> names;
+    for (const int32_t g : d.group) {
+      region[label::first_domain + g] = name_[g];
+      names.push_back(name_[g]);
+    }
+    for (const auto& [l, pair] : d.between)
+      boundary[l] = name_[pair[0]] + '-' + name_[pair[1]];
+    formats::add_region_names(m, level_, region, boundary);
+    return names;
+  }
+
+  /// Of each interface of the mesh, where the shares are equal. file: the hierarchy's.
+  std::map<int32_t, std::shared_ptr<const Target>> interfaces(const TetMesh& m, const GridFrame& frame,
+                                                              const std::string& file) const {
+    std::map<int32_t, std::shared_ptr<const Target>> all;
+    for (const auto& [l, i] : label::interfaces_of(m)) {
+      if (i.group[0] < 0 || i.group[1] >= static_cast<int32_t>(name_.size()) || i.group[0] >= i.group[1])
+        fail_input(file + ": " + std::to_string(name_.size()) + " groups of level " + level_ +
+                   ", expected those of the mesh's boundary " + std::to_string(l));
+      all[l] = std::make_shared<label::EqualShares>(shares_, i, frame, threads_);
+    }
+    return all;
+  }
+
+private:
+  static size_t index_of(const Hierarchy& h, const std::string& file, const std::string& level) {
+    std::string known;
+    for (size_t l = 0; l < h.level.size(); ++l) {
+      if (h.level[l].name == level)
+        return l;
+      known += (known.empty() ? "" : ", ") + h.level[l].name;
+    }
+    fail_input(file + ": no level '" + level + "', expected one of " +
+               (known.empty() ? "its levels: it has none" : known));
+  }
+  std::string level_;
+  size_t level_index_;
+  label::ShareFinder shares_;
+  int threads_;
+  std::vector<std::string> name_;
+};
+
+} // namespace molmesh
