@@ -2,7 +2,6 @@
 #include "tools/options/density2tet.hpp"
 #include "contour/contour.hpp"
 #include "cuda/contour/contour.hpp"
-#include "formats/hier/hier.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "tools/device_report.hpp"
@@ -66,22 +65,8 @@ std::optional<double> parse_adapt(const std::string& text) {
   return adapt;
 }
 
-/// Whose regions are asked for; none: the molecule is one.
-std::unique_ptr<Domains> read_domains(const Options& o, const BlockGrid& grid, cli::InputFile& file) {
-  const Hierarchy h = formats::read_hier(file.stream(), file.name());
-  if (other_structure(h.source, grid.info.source) || static_cast<int64_t>(h.atom.size()) != grid.info.atoms)
-    fail_input(file.name() + ": " + std::to_string(h.atom.size()) + " atoms of " + h.source + ", expected the " +
-               std::to_string(grid.info.atoms) + " atoms of the density's " + grid.info.source);
-  return std::make_unique<Domains>(h, file.name(), o.regions,
-                                   label::Options{grid.info.decay, grid.info.isovalue, o.resolved_threads()});
-}
-
 Status run_tool(const Options& o, cli::Run& run) {
-  if ((o.regions != "molecule") != !o.hier.empty())
-    fail(Status::usage, "--regions: found " + o.regions + (o.hier.empty() ? " without --hier" : " with --hier") +
-                            ", expected a level and --hier, or neither");
-  if (o.regions != "molecule" && o.region == "exterior")
-    fail(Status::usage, "--regions: found --region exterior, expected interior or both");
+  check_regions(o.regions, o.hier, o.region);
   contour::Options options;
   options.meshed = o.region == "interior"   ? contour::Options::interior
                    : o.region == "exterior" ? contour::Options::exterior
@@ -93,9 +78,6 @@ Status run_tool(const Options& o, cli::Run& run) {
   options.threads = o.resolved_threads();
 
   run.phase("read");
-  std::optional<cli::InputFile> structure;
-  if (!o.hier.empty())
-    structure.emplace(o.hier);
   cli::InputFile input(o.input);
   std::optional<cli::OutputFile> output;
   if (!o.plan)
@@ -104,11 +86,9 @@ Status run_tool(const Options& o, cli::Run& run) {
   const BlockGrid grid = plans::planned_grid(o, o, options, input, run);
   if (o.plan)
     return Status::good;
-  std::unique_ptr<Domains> domains;
-  if (structure) {
-    domains = read_domains(o, grid, *structure);
+  const std::unique_ptr<Domains> domains = read_domains(o.regions, o.hier, grid, options.threads);
+  if (domains)
     options.owners = domains->owners();
-  }
   contour::Summary summary;
   TetMesh mesh;
   try {

@@ -1,7 +1,9 @@
 // domains.hpp — regions that are groups of one level of a hierarchy: their shares, numbers and names.
 #pragma once
 #include "base/error.hpp"
+#include "cli/file.hpp"
 #include "contour/octree/border_nodes.hpp"
+#include "formats/hier/hier.hpp"
 #include "formats/vtu/names.hpp"
 #include "label/divide.hpp"
 #include "label/equal_shares.hpp"
@@ -90,5 +92,27 @@ private:
   int threads_;
   std::vector<std::string> name_;
 };
+
+/// Of density2tet's options.
+inline void check_regions(const std::string& regions, const std::string& hier, const std::string& region) {
+  if ((regions != "molecule") != !hier.empty())
+    fail(Status::usage, "--regions: found " + regions + (hier.empty() ? " without --hier" : " with --hier") +
+                            ", expected a level and --hier, or neither");
+  if (regions != "molecule" && region == "exterior")
+    fail(Status::usage, "--regions: found --region exterior, expected interior or both");
+}
+
+/// The groups of that level of a file, which is of the grid's structure; null where none is named.
+inline std::unique_ptr<Domains> read_domains(const std::string& level, const std::string& file,
+                                             const BlockGrid& grid, int threads) {
+  if (file.empty())
+    return nullptr;
+  cli::InputFile input(file);
+  const Hierarchy h = formats::read_hier(input.stream(), input.name());
+  if (other_structure(h.source, grid.info.source) || static_cast<int64_t>(h.atom.size()) != grid.info.atoms)
+    fail_input(file + ": " + std::to_string(h.atom.size()) + " atoms of " + h.source + ", expected the " +
+               std::to_string(grid.info.atoms) + " atoms of the density's " + grid.info.source);
+  return std::make_unique<Domains>(h, file, level, label::Options{grid.info.decay, grid.info.isovalue, threads});
+}
 
 } // namespace molmesh

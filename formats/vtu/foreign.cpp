@@ -162,7 +162,7 @@ void relabel(TetMesh& m, const Label& label) {
       continue;
     m.boundary[t] = l;
     m.tri[t] = face_points(m, face);
-    if (!triangle_looks_out(region, other, l))
+    if (!triangle_looks_out(RegionOrder(), region, other, l))
       std::swap(m.tri[t][1], m.tri[t][2]);
   }
 }
