@@ -349,7 +349,9 @@ void complete_mesh(TetMesh& m, const std::string& file, const MeshReading& as, M
   }
   if (as.arrays == CellArrays::drop) {
     m.cell_array.clear();
-    m.named_text.clear();
+    std::erase_if(m.named_text, [](const NamedText& t) { // what regions are is no further text
+      return t.name != region_names_text && t.name != region_level_text && t.name != "boundary_names";
+    });
   }
 }
 
