@@ -20,11 +20,13 @@ namespace molmesh {
 
 class Domains {
 public:
-  /// file: the hierarchy's, for messages. Throws Error(bad_input) where h has no level of that name or a group has
-  /// a name that meshes have themselves.
+  /// file: the hierarchy's, for messages. Throws Error(bad_input) where h has no level of that name, or one group
+  /// of it alone, or a group has a name that meshes have themselves.
   Domains(const Hierarchy& h, const std::string& file, const std::string& level, label::Options options)
-      : level_(level), level_index_(index_of(h, file, level)), shares_(h, level_index_, options),
+      : file_(file), level_(level), level_index_(index_of(h, file, level)), shares_(h, level_index_, options),
         threads_(options.threads) {
+    if (h.level[level_index_].group.size() < 2)
+      fail_input(file + ": one " + level + ", expected two or more: nothing is to be divided");
     std::set<std::string> taken;
     for (const Group& g : h.level[level_index_].group) {
       if (formats::is_own_name(g.name))
@@ -47,9 +49,15 @@ public:
     };
   }
 
-  /// Divides region 1 and names what comes of it. The regions' names.
+  /// Divides region 1 and names what comes of it. The regions' names. Throws Error(bad_input) for more interfaces
+  /// than the optimizer has labels.
   std::vector<std::string> divide(TetMesh& m) const {
+    constexpr size_t most_interfaces = 240;
     const label::Division d = label::divide(m, shares_, threads_);
+    if (d.between.size() > most_interfaces)
+      fail_input(file_ + ": " + std::to_string(d.group.size()) + " groups of level " + level_ + " meet in " +
+                 std::to_string(d.between.size()) + " interfaces, expected at most " +
+                 std::to_string(most_interfaces));
     std::map<int32_t, std::string> region, boundary;
     std::vector<std::string> names;
     for (const int32_t g : d.group) {
@@ -86,7 +94,7 @@ private:
     fail_input(file + ": no level '" + level + "', expected one of " +
                (known.empty() ? "its levels: it has none" : known));
   }
-  std::string level_;
+  std::string file_, level_;
   size_t level_index_;
   label::ShareFinder shares_;
   int threads_;
@@ -104,15 +112,16 @@ inline void check_regions(const std::string& regions, const std::string& hier, c
 
 /// The groups of that level of a file, which is of the grid's structure; null where none is named.
 inline std::unique_ptr<Domains> read_domains(const std::string& level, const std::string& file,
-                                             const BlockGrid& grid, int threads) {
+                                             const FieldInfo& field, int threads) {
   if (file.empty())
     return nullptr;
   cli::InputFile input(file);
   const Hierarchy h = formats::read_hier(input.stream(), input.name());
-  if (other_structure(h.source, grid.info.source) || static_cast<int64_t>(h.atom.size()) != grid.info.atoms)
-    fail_input(file + ": " + std::to_string(h.atom.size()) + " atoms of " + h.source + ", expected the " +
-               std::to_string(grid.info.atoms) + " atoms of the density's " + grid.info.source);
-  return std::make_unique<Domains>(h, file, level, label::Options{grid.info.decay, grid.info.isovalue, threads});
+  const int64_t atoms = std::count_if(h.atom.begin(), h.atom.end(), [](const Atom& a) { return a.radius > 0; });
+  if (other_structure(h.source, field.source) || atoms != field.atoms)
+    fail_input(file + ": " + std::to_string(atoms) + " atoms of " + h.source + ", expected the " +
+               std::to_string(field.atoms) + " atoms of the density's " + field.source);
+  return std::make_unique<Domains>(h, file, level, label::Options{field.decay, field.isovalue, threads});
 }
 
 } // namespace molmesh

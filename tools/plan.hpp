@@ -7,6 +7,7 @@
 #include "optimize/plan.hpp"
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -107,7 +108,7 @@ bool mesh_is_planned(const cli::Common& o, const cli::PlanOptions& p, const cont
         p, chain.mesh(options.meshed).memory, "a mesh at " + cli::length_text(size.spacing),
         fitting_spacing(size.spacing, limit, [&](double s) { return chain.at(s).memory(options.meshed); }));
   };
-  const bool usual = !options.adapt && options.box.kind == contour::BoxRequest::automatic;
+  const bool usual = !options.adapt && options.box.kind == contour::BoxRequest::automatic && !options.owners;
   Chain chain{size, contour::expected_leaves(size.spacing, size.active_points)};
   if (!p.plan) {
     const int64_t expected = chain.mesh(options.meshed).memory;
@@ -135,12 +136,11 @@ bool mesh_is_planned(const cli::Common& o, const cli::PlanOptions& p, const cont
 
 /// The grid that density2tet reads, after its plan; with --plan any grid.
 inline BlockGrid planned_grid(const cli::Common& o, const cli::PlanOptions& p, const contour::Options& options,
-                              cli::InputFile& input, const cli::Run& run) {
-  const formats::PackedVdb packed(input.stream(), input.name());
-  const density::GridSize size{packed.spacing(), {}, packed.active_points(), packed.blocks(), 0};
+                              std::unique_ptr<const formats::PackedVdb> packed, const cli::Run& run) {
+  const density::GridSize size{packed->spacing(), {}, packed->active_points(), packed->blocks(), 0};
   std::optional<BlockGrid> grid;
   const auto unpack = [&]() -> const BlockGrid& {
-    return grid ? *grid : grid.emplace(packed.unpack(options.threads));
+    return grid ? *grid : grid.emplace(packed->unpack(options.threads));
   };
   if (!mesh_is_planned(o, p, options, size, run, unpack))
     unpack();

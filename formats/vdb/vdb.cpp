@@ -32,6 +32,10 @@ public:
   Reader(const vdb::FloatGrid& in, const std::string& file, int threads)
       : in_(in), file_(file), threads_(threads) {}
   BlockGrid read();
+  FieldInfo info() {
+    read_info();
+    return grid_.info;
+  }
   VdbExtras extras;
 
 private:
@@ -263,6 +267,10 @@ int64_t PackedVdb::active_points() const {
       n += std::popcount(word);
     }
   return n;
+}
+
+FieldInfo PackedVdb::info() const {
+  return Reader(content_->grid, content_->file, 1).info();
 }
 
 BlockGrid PackedVdb::unpack(int threads, VdbExtras* extras) const {

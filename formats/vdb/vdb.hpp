@@ -22,6 +22,7 @@ public:
   double spacing() const; ///< Å
   int64_t blocks() const;
   int64_t active_points() const;
+  FieldInfo info() const;
   BlockGrid unpack(int threads, VdbExtras* extras = nullptr) const;
 
 private:

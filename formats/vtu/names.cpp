@@ -12,7 +12,6 @@
 namespace molmesh::formats {
 namespace {
 
-const char* const own_region[] = {"molecule", "outside", "cavity"};
 const char* const own_boundary[] = {"surface", "box_x0", "box_x1", "box_y0", "box_y1", "box_z0", "box_z1"};
 
 void set_text(TetMesh& m, const std::string& name, std::string text) {

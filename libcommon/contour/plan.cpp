@@ -46,6 +46,8 @@ Leaves count_leaves(const BlockGrid& grid, const Options& options) {
   refine.adapt = options.adapt.value_or(default_adapt(grid.frame.spacing)) * (1 << finer.halvings);
   refine.inside = options.meshed != Options::exterior;
   refine.outside = options.meshed != Options::interior;
+  if (options.owners)
+    refine.divided = border_nodes(lattice, options.owners);
   stages.select_leaves(refine);
   const OctreeView& tree = stages.tree().view();
   std::atomic<int64_t> corners{0};

@@ -313,11 +313,16 @@ Labels find_labels(const Hierarchy& h, const std::vector<Vec3d>& place, const Op
 
 struct ShareFinder::Impl {
   Evaluator field;
-  size_t level; ///< as in the field
+  size_t level;               ///< as in the field
+  std::vector<int64_t> group; ///< [group of the field] that group's index; empty: the same
+
+  Impl(const Hierarchy& h, size_t l, const Options& o) : field(h, o), level(h.level.size() - 1 - l) {}
+  Impl(const Bodies& b, size_t l, const Options& o) : Impl(b.hierarchy, l, o) { group = b.index[l]; }
 };
 
 ShareFinder::ShareFinder(const Hierarchy& h, size_t level, const Options& options)
-    : options_(options), impl_(new Impl{Evaluator(h, options), h.level.size() - 1 - level}) {}
+    : options_(options),
+      impl_(all_have_bodies(h) ? new Impl(h, level, options) : new Impl(bodies_of(h), level, options)) {}
 ShareFinder::~ShareFinder() = default;
 
 std::vector<Shares> ShareFinder::at(const std::vector<Vec3d>& place) const {
@@ -327,7 +332,8 @@ std::vector<Shares> ShareFinder::at(const std::vector<Vec3d>& place) const {
     s.ln_field = ln;
     if (!(ln > -infinity))
       return;
-    at.shares(impl_->level, [&](int64_t group, double share) {
+    at.shares(impl_->level, [&](int64_t g, double share) {
+      const int64_t group = impl_->group.empty() ? g : impl_->group[g];
       for (size_t k = 0; k < Shares::most; ++k)
         if (share > s.ln[k]) {
           for (size_t i = Shares::most - 1; i > k; --i)

@@ -1,6 +1,7 @@
 // overview.cpp — one pass over elements and triangles; sums are added up chunk by chunk, in order.
 #include "mesh/overview.hpp"
 #include "geom/tet_measures.hpp"
+#include "mesh/region_order.hpp"
 #include "par/par.hpp"
 #include <cmath>
 
@@ -32,6 +33,7 @@ double degrees(double signed_square) {
 } // namespace
 
 Overview overview(const TetMesh& m, int threads) {
+  const RegionOrder order(m);
   const auto elements =
       sums_of_chunks<Elements>(static_cast<int64_t>(m.tet.size()), threads, [&](int64_t i, Elements& sum) {
         const Tet& t = m.tet[i];
@@ -45,7 +47,7 @@ Overview overview(const TetMesh& m, int threads) {
             sum.least = std::min(sum.least, signed_square);
             sum.most = std::max(sum.most, signed_square);
           }
-        if (m.region[i] == Region::molecule)
+        if (order.is_inside(m.region[i]))
           sum.volume -= dot(n[3], ad) / 6;
       });
   const auto areas =

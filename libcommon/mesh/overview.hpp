@@ -6,7 +6,7 @@ namespace molmesh {
 
 struct Overview {
   double least_angle = 180, largest_angle = 0; ///< degrees, over all elements; 180 and 0 where there are none
-  double volume = 0;                           ///< Å³ of region 1
+  double volume = 0;                           ///< Å³ of the molecule: region 1 and domains
   double area = 0;                             ///< Å² of the triangles with boundary 1
 };
 

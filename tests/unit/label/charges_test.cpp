@@ -69,4 +69,15 @@ TEST_CASE("a charge without a body changes no density and owns no place") {
   for (size_t i = 0; i < place.size(); ++i)
     REQUIRE(c.atom[labels.index[2][i]].center == h.atom[plain.index[2][i]].center);
   CHECK(c.atom[nearest_atom(c, {50, 60, 70})].radius > 0);
+
+  for (const size_t level : {size_t{0}, size_t{1}}) {
+    const auto shares = label::ShareFinder(c, level, {}).at(place);
+    const auto plain_shares = label::ShareFinder(h, level, {}).at(place);
+    for (size_t i = 0; i < place.size(); ++i) {
+      REQUIRE(shares[i].ln == plain_shares[i].ln);
+      for (size_t k = 0; k < label::Shares::most; ++k)
+        REQUIRE(shares[i].group[k] ==
+                (plain_shares[i].group[k] < 0 ? -1 : bodies.index[level][plain_shares[i].group[k]]));
+    }
+  }
 }

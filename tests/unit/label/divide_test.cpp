@@ -148,6 +148,70 @@ TEST_CASE("Shares of a level are parts of the whole, the largest first, as label
   }
 }
 
+TEST_CASE("The owner of a place has the largest share by direct sums, bodies without atoms among them") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> at(0, 9);
+  const auto somewhere = [&] { return Vec3d{at(random), at(random), at(random)}; };
+  Hierarchy h; // domains: two of residues of three atoms, a ball, and a cylinder along z
+  h.level = {{"domain", {}}, {"residue", {}}};
+  const std::vector<double> exponent{0.8, 1.3, 1, 0.6};
+  const Body ball{Body::Shape::sphere, {3, 4, 5}, {}, {}, 2.4, 1.1, 24};
+  const Body rod{Body::Shape::cylinder, {6, 5, 4}, {0, 0, 2.5}, {}, 1.9, 0.9, 25};
+  for (int i = 0; i < 24; ++i)
+    h.atom.push_back({somewhere(), 1.4});
+  h.atom.push_back({ball.center, ball.skin});
+  h.atom.push_back({rod.center, rod.skin});
+  h.body = {ball, rod};
+  for (int64_t a = 0; a < 24; a += 3)
+    h.level[1].group.push_back({"r", 0.5, a, a + 3});
+  h.level[1].group.push_back({"ball", 1, 24, 25});
+  h.level[1].group.push_back({"rod", 0.7, 25, 26});
+  const std::vector<int64_t> first{0, 4, 8, 9, 10}; // residues of the domains
+  for (size_t d = 0; d < 4; ++d)
+    h.level[0].group.push_back({"d" + std::to_string(d), exponent[d], first[d], first[d + 1]});
+  check(h, "h");
+
+  const double decay = 0.9;
+  const auto square = [](double x) { return x > 0 ? x * x : 0; };
+  const auto term = [&](int64_t a, Vec3d p) {
+    const Vec3d v = p - h.atom[a].center;
+    double d2 = norm2(v);
+    if (a == 24)
+      d2 = square(norm(v) - (ball.size - ball.skin));
+    if (a == 25)
+      d2 = square(std::hypot(v.x, v.y) - (rod.size - rod.skin)) + square(std::abs(v.z) - (2.5 - rod.skin));
+    return std::exp(decay * (h.atom[a].radius * h.atom[a].radius - d2));
+  };
+  std::vector<Vec3d> place;
+  for (int i = 0; i < 3000; ++i)
+    place.push_back(somewhere());
+  const auto shares = label::ShareFinder(h, 0, {decay, 1, 2}).at(place);
+  std::vector<int> owned(4);
+  for (size_t i = 0; i < place.size(); ++i) {
+    std::vector<double> f(4);
+    for (size_t d = 0; d < 4; ++d) {
+      double sum = 0;
+      for (int64_t r = first[d]; r < first[d + 1]; ++r) {
+        const Group& residue = h.level[1].group[r];
+        double atoms = 0;
+        for (int64_t a = residue.begin; a < residue.end; ++a)
+          atoms += term(a, place[i]);
+        sum += std::pow(atoms, residue.exponent);
+      }
+      f[d] = std::pow(sum, exponent[d]);
+    }
+    const double all = std::accumulate(f.begin(), f.end(), 0.);
+    const auto best = static_cast<int32_t>(std::max_element(f.begin(), f.end()) - f.begin());
+    REQUIRE(shares[i].owner() == best);
+    for (int32_t d = 0; d < 4; ++d)
+      if (f[d] > 1e-6 * all)
+        REQUIRE(shares[i].ln_of(d) == Approx(std::log(f[d] / all)).margin(1e-6));
+    ++owned[static_cast<size_t>(best)];
+  }
+  for (const int n : owned)
+    CHECK(n > 50);
+}
+
 TEST_CASE("The ratio of two shares is 1 where they are equal, and known near the places asked for") {
   const Vec3d a{0, 0, 0}, b{4, 0, 0};
   const label::ShareFinder shares(domains_of({{a}, {b}}, 2), 0, {0.7, 1, 1});
