@@ -90,7 +90,7 @@ Status run_tool(const Options& o, cli::Run& run) {
                   {"moves", c.moves},
                   {"edge_removals", c.edge_removals},
                   {"surface_flips", c.surface_flips},
-                  {"face_swaps", 0}, // these and hand-overs are no more; version 1 of the report keeps its keys
+                  {"face_swaps", 0}, // these and hand_overs are no more; version 1 of the report keeps its keys
                   {"contractions", c.contractions},
                   {"splits", c.splits},
                   {"hand_overs", 0},
