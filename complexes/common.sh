@@ -33,7 +33,7 @@ mesh() {
   shift 2
   density2tet "${common[@]}" "$@" "$name.vdb" -o "$mesh.tet.vtu" --report "$mesh.tet.vtu.json"
   tetsmooth "${common[@]}" --density "$name.vdb" "$mesh.tet.vtu" -o "$mesh.vtu" --report "$mesh.vtu.json"
-  tetlabel -q "$mesh.vtu" "$name.hier" -o "$mesh.labels.vtu"
+  tetlabel -q ${labels:-} "$mesh.vtu" "$name.hier" -o "$mesh.labels.vtu"
   check "$mesh"
 }
 

@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# lattice.sh — a piece of muscle's lattice, six thin filaments and four thick ones, in a box that cuts all (figure 10 d to f of the paper):
+# lattice.sh DATA OUT.
+#
+# Stand-ins: a thin filament is F-actin (34 copies of a subunit of the 28-mer, without hydrogens), tropomyosin as in filament.sh, and six
+# copies of PDB 1SU4 in place of myosin heads. Thick filaments are cylinders without atoms, as in the paper. Exponents are the paper's:
+# P_R 0.5 and P_C 0.3; heads have 0.7 and 0.4. The filaments lie on the trigonal points between the cylinders, 256 Å away.
+#
+# Makes the lattice by both routes. Exactly: lattice.hier, of all atoms, lattice.vdb, lattice.exterior.vtu, lattice.both.vtu. Assembled from the
+# densities of one filament and one cylinder: lattice_assembled.vdb, lattice_assembled.both.vtu. Beside each .vtu: .labels.vtu (the
+# domain names the filament or cylinder), .txt, .json.
+. "$(dirname "$0")/common.sh"
+needs paper/actin_filament_28mer_for_2w4u_derived.pdb.gz paper/1su4.pdb.gz
+
+pdb2hier -q --hydrogens drop --select '//A' "$data/paper/actin_filament_28mer_for_2w4u_derived.pdb.gz" -o actin_1.hier
+pdb2hier -q --select '//A/740-778' "$data/paper/1su4.pdb.gz" -o helix.hier
+pdb2hier -q "$data/paper/1su4.pdb.gz" -o head.hier
+
+cat >strand.join <<'END'
+join 1
+piece helix.hier chains=A:Tm matrix=-0.98448,0,-0.17551,54.693,0.09038,0.8572,-0.50699,-7.174,0.15044,-0.51498,-0.8439,15.333 lattice=1,2,1,0,-9.8,0
+END
+hierjoin -q strand.join -o strand.hier
+
+cat >lattice_filament.join <<'END'
+join 1
+piece actin_1.hier P_R=0.5 P_C=0.3 chains=A:actin translate=0,0,-55 rotate=0,0,1,-27.2 helix=34,27.5,-166.4
+piece strand.hier  P_R=0.5 P_C=0.3 rotate=1,0,0,-19 translate=40,0,-27.5 rotate=0,0,1,70.8 helix=17,55,27.2 helix=2,27.5,-166.4
+piece head.hier    P_R=0.7 P_C=0.4 chains=A:head matrix=0.92989,0,0.36784,-65.613,0.11395,0.95081,-0.28806,-29.342,-0.34975,0.30978,0.88415,-16.161 rotate=0,1,0,50 translate=92,0,68 rotate=0,0,1,30 helix=6,136.5,60
+END
+cat >lattice_cylinder.join <<'END'
+join 1
+body cylinder cylinder from=0,0,-80 to=0,0,900 radius=80 P_R=0.5 P_C=0.3
+END
+spacing=$(spacing 819.2)
+for part in filament cylinder; do
+  hierjoin -q lattice_$part.join -o lattice_$part.hier
+  density lattice_$part --spacing "$spacing"
+done
+
+# Places are whole spacings apart, so that filaments are copied bit for bit; cylinders lie on a grid of their own and are resampled.
+filaments=(224,-128 672,128 224,128 448,256 0,256 448,512)
+cylinders=(0,0 448,0 224,384 672,384)
+# plan ENDING: a plan of the pieces lattice_filament.ENDING and lattice_cylinder.ENDING; names for what has atoms
+plan() {
+  local i names
+  echo 'join 1'
+  for i in "${!filaments[@]}"; do
+    [ "$1" = hier ] && names="domain=filament_$((i + 1)) prefix=${i}_" || names=
+    echo "piece lattice_filament.$1 translate=${filaments[i]},0 $names"
+  done
+  for i in "${!cylinders[@]}"; do
+    [ "$1" = hier ] && names="domain=cylinder_$((i + 1)) prefix=${i}_" || names=
+    echo "piece lattice_cylinder.$1 translate=${cylinders[i]},0 $names"
+  done
+}
+plan hier >lattice.join
+plan vdb >lattice_assembled.join
+box=-60,-190,0,732,574,819.2
+
+hierjoin lattice.join -o lattice.hier
+density lattice --spacing "$spacing"
+mesh lattice lattice.exterior --region exterior --box $box
+mesh lattice lattice.both --region both --box $box
+
+# The parts are over 20 Å apart, where the union is the sum.
+densityjoin "${common[@]}" --combine max lattice_assembled.join -o lattice_assembled.vdb --report lattice_assembled.vdb.json
+ln -sf lattice.hier lattice_assembled.hier
+labels=--other-structure mesh lattice_assembled lattice_assembled.both --region both --box $box
