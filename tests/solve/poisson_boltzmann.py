@@ -1,10 +1,12 @@
 """poisson_boltzmann.py — solvation energy and surface potential by DOLFINx:
 
-    poisson_boltzmann.py X.xdmf X.charges X.vtu [--eps REGION=ε …] [--salt mol/l] [--equation linear|nonlinear]
+    poisson_boltzmann.py X.xdmf X.charges X.vtu [--eps REGION=ε …] [--salt mol/l] [--salt-regions REGION …]
+                         [--equation linear|nonlinear]
 
 X.xdmf has the molecule (region 1) and its surroundings, by `tetconvert X.vtu -o X.xdmf`. X.charges: the number of charges, then X Y Z
 CHARGE RADIUS of each (`make -f Makefile.pipeline X.charges`). --eps: the relative permittivity of a region, by default 2 in region 1 and 78.54 in all
-others: a membrane that is a region of its own has its own. Regions with the permittivity of region 2 hold the salt, 1:1, at 298.15 K. All charges must lie in
+others: a membrane that is a region of its own has its own. --salt-regions hold the salt, 1:1, at 298.15 K: without it
+those with the permittivity of region 2. All charges must lie in
 regions of one permittivity. X.vtu receives the potential on the molecular surface, in kT/e. Prints what poisson_boltzmann.edp prints.
 
 Regularised: the potential is φ = c + u, c the Coulomb potential of the charges with the permittivity ε₁ that they lie in. c solves the equation
@@ -75,6 +77,7 @@ def main():
     parser.add_argument("potential")
     parser.add_argument("--eps", nargs="+", default=[], metavar="REGION=ε")
     parser.add_argument("--salt", type=float, default=0)
+    parser.add_argument("--salt-regions", type=int, nargs="+", metavar="REGION")
     parser.add_argument("--equation", choices=["linear", "nonlinear"], default="linear")
     o = parser.parse_args()
 
@@ -102,7 +105,8 @@ def main():
     if np.ptp(around) > 0:
         sys.exit(f"{o.charges}: found charges in permittivities {around.min():g} and {around.max():g}, expected one")
     eps_in = around[0]
-    salt.x.array[:] = np.where(eps.x.array == eps_out, eps_out * kappa2, 0)
+    salty = o.salt_regions if o.salt_regions is not None else [r for r in permittivity if permittivity[r] == eps_out]
+    salt.x.array[regions.indices] = np.where(np.isin(regions.values, salty), eps_out * kappa2, 0)
 
     # c where its permittivity is not, and φ on the box.
     other = fem.locate_dofs_topological(P2, 3, np.flatnonzero(eps.x.array != eps_in).astype(np.int32))

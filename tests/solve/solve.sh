@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# solve.sh BIN SOURCE ion|harmonic|diffusion|kirkwood|dolfinx — structure to solution: the whole chain, judged by FreeFEM. Status 77: skipped.
+# solve.sh BIN SOURCE ion|harmonic|diffusion|kirkwood|dolfinx|binding — structure to solution: the whole chain, judged by FreeFEM. Status 77: skipped.
 set -eu
 bin=$(realpath "$1") SOURCE=$(realpath "$2") what=$3
 export PATH="$bin:$PATH" OMP_NUM_THREADS=2
@@ -75,6 +75,15 @@ apart = [numpy.abs(x[order[0]] - y[order[1]]).max() for x, y in ((a.points, b.po
 print(f"{len(a.points)} points of the surface, apart by {apart[0]:.1g} Å and {apart[1]:.1g} kT/e")
 assert apart[0] < 1e-6 and apart[1] < 1e-3
 PY
+  ;;
+binding) # two ions 12 Å apart: the charges in water, and what each polarizes in the other's sphere (n = 1)
+  printf '%s\n' 'hier 1' 'levels domain' 'domain one 1' 'atom NA Na 0 0 0 2 1' 'domain other 1' 'atom CL Cl 12 0 0 2 -1' >ions.hier
+  status=0
+  "$SOURCE/tests/solve/binding.sh" "$bin" ions.hier 0.7 3x >energies || status=$?
+  cat energies
+  [ $status = 0 ] || exit $status
+  awk '/^binding/ { exact = -1389.35458 / 78.54 * (1 / 12 - 76.54 / (2 * 78.54 + 2) * 2^3 / 12^4)
+      printf "exact to n = 1: %.4f\n", exact; off = $2 / exact - 1 } END { exit !(exact < 0 && off < 0.01 && off > -0.01) }' energies
   ;;
 diffusion) # a rate that converges with the mesh
   structure=${MOLMESH_TEST_DATA:-}/pqr/misc__mache.pqr.gz
