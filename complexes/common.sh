@@ -27,12 +27,12 @@ density() {
 }
 
 # mesh NAME MESH OPTION…: MESH.tet.vtu of NAME.vdb with these options of density2tet; MESH.vtu, improved; MESH.labels.vtu, which
-# names the structures of NAME.hier; MESH.txt, what tetstat says of MESH.vtu.
+# names the structures of NAME.hier; MESH.txt, what tetstat says of MESH.vtu. `improve` and `labels`: more for tetsmooth and tetlabel.
 mesh() {
   local name=$1 mesh=$2
   shift 2
   density2tet "${common[@]}" "$@" "$name.vdb" -o "$mesh.tet.vtu" --report "$mesh.tet.vtu.json"
-  tetsmooth "${common[@]}" --density "$name.vdb" "$mesh.tet.vtu" -o "$mesh.vtu" --report "$mesh.vtu.json"
+  tetsmooth "${common[@]}" --density "$name.vdb" ${improve:-} "$mesh.tet.vtu" -o "$mesh.vtu" --report "$mesh.vtu.json"
   tetlabel -q ${labels:-} "$mesh.vtu" "$name.hier" -o "$mesh.labels.vtu"
   check "$mesh"
 }

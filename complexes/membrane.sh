@@ -6,7 +6,8 @@
 # 0.7: at 1 these lipids have pores.
 #
 # Makes membrane.hier; membrane.exterior.vtu, the surroundings, which the membrane divides into two parts, and
-# membrane.both.vtu, the box with pump and lipids. Beside each: .labels.vtu (domain, chain, residue), .txt, .json.
+# membrane.both.vtu, the box with pump and lipids; membrane.regions.vtu, the same with pump and membrane as regions of their own. Beside
+# each: .labels.vtu (domain, chain, residue), .txt, .json.
 . "$(dirname "$0")/common.sh"
 needs paper/1su4.pdb.gz large/popc_bilayer.pdb.gz
 
@@ -21,6 +22,8 @@ piece popc.hier domain=membrane chains=_:POPC carve=0.4 lattice=2,2,1,81.395,81.
 END
 hierjoin membrane.join -o membrane.hier
 density membrane --isovalue 0.7 --spacing "$(spacing 180)"
+box=-52,-50,-60,68,70,120
 for region in exterior both; do
-  mesh membrane membrane.$region --region $region --cavities fill --box -52,-50,-60,68,70,120
+  mesh membrane membrane.$region --region $region --cavities fill --box $box
 done
+improve='--hier membrane.hier' mesh membrane membrane.regions --region both --regions domain --hier membrane.hier --cavities fill --box $box

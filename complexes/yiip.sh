@@ -5,7 +5,8 @@
 # lipids around it close the membrane up to the walls. Exponents as in membrane.sh; the isovalue is 1.
 #
 # Makes yiip.hier; yiip.exterior.vtu, the surroundings, which the membrane divides into two parts, and yiip.both.vtu, the box with
-# protein and lipids. Beside each: .labels.vtu (domain, chain, residue), .txt, .json.
+# protein and lipids; yiip.regions.vtu, the same with both as regions of their own. Beside each: .labels.vtu (domain, chain, residue),
+# .txt, .json.
 . "$(dirname "$0")/common.sh"
 needs large/yiip_in_membrane.pdb.gz
 
@@ -19,6 +20,8 @@ piece lipids.hier      domain=membrane    chains=_:lipid lattice=3,3,1,102.845,0
 END
 hierjoin yiip.join -o yiip.hier
 density yiip --spacing "$(spacing 155)"
+box=-15,-3,-5,75,92,150
 for region in exterior both; do
-  mesh yiip yiip.$region --region $region --cavities fill --box -15,-3,-5,75,92,150
+  mesh yiip yiip.$region --region $region --cavities fill --box $box
 done
+improve='--hier yiip.hier' mesh yiip yiip.regions --region both --regions domain --hier yiip.hier --cavities fill --box $box

@@ -34,6 +34,7 @@ density membrane --spacing 2.5
 for region in exterior both; do
   mesh membrane membrane.$region --region $region --cavities fill --box -40,-40,-45,40,40,45
 done
+improve='--hier membrane.hier' mesh membrane membrane.regions --region both --regions domain --hier membrane.hier --cavities fill --box -40,-40,-45,40,40,45
 
 cat >rod.join <<'E'
 join 1
@@ -73,12 +74,14 @@ planes() {
       for (k = 1; k < 4; ++k) if (x[$k, int(($4 - 12) / 2)] != w[$4]) { print "a point off wall", $4; exit 1 } } } }
     END { for (k = 12; k < 18; ++k) if (!on[k]) { print "no wall", k; exit 1 } }' "$mesh.mesh" || failed "$mesh: walls"
 }
-for mesh in membrane.exterior membrane.both lattice assembled; do
+for mesh in membrane.exterior membrane.both membrane.regions lattice assembled; do
   grep -qx valid "$mesh.txt" || failed "$mesh is not valid"
 done
 planes membrane.both -40 -40 -45 40 40 45
 planes lattice -65 -30 -10 65 30 60
 [ "$(awk '$2 == "outside" { print $6 }' membrane.exterior.txt)" = 2 ] || failed "the membrane does not divide the exterior into two"
+
+grep -q '^ *4 *protein ' membrane.regions.txt && grep -q '^ *5 *membrane ' membrane.regions.txt || failed "no regions of protein and membrane"
 
 # Labels: the membrane's triangles are on its faces, those of a cylinder around its axis.
 tetlabel -q membrane.both.vtu membrane.hier --boundary membrane=//leaflets -o named.vtu
