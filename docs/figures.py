@@ -7,7 +7,7 @@ MESH: a .vtu as tetlabel writes it (or a map of density2map). CAPTION: lines are
   exterior  the surroundings cut open, with the molecule's place left out
   embedded  the surroundings cut open, and the molecule whole
   both      molecule and surroundings cut open, in the molecule's colours
-  section   the molecule cut open
+  section   the molecule cut open; section:A,B shows chains A and B in blue
   parts     the molecule's tetrahedra in the colours of their parts
   angles    the quarter of the molecule that faces the viewer taken away, tetrahedra coloured by their smallest dihedral angle, behind
             it the surroundings where the mesh has them
@@ -25,7 +25,7 @@ import panels
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
-SOLVENT, SECTION, GREEN, PAPER, HIDDEN = (214, 222, 230), (238, 170, 180), (74, 156, 84), (238, 240, 242), (208, 214, 220)
+BLUE, SOLVENT, SECTION, GREEN, PAPER, HIDDEN = (70, 100, 216), (214, 222, 230), (238, 170, 180), (74, 156, 84), (238, 240, 242), (208, 214, 220)
 
 
 def rgb(text):
@@ -94,7 +94,8 @@ def mesh_panel(path, what, rules, rest, view, clip, lowest):
     mesh = panels.Mesh(path)
     if what == "angles":
         return angles_panel(mesh, view, lowest)
-    shades = colours(mesh, mesh.of_triangles, rules, rest)
+    what, _, chains = what.partition(":")
+    shades = colours(mesh, mesh.of_triangles, rules + [("chain", name, BLUE) for name in chains.split(",") if name], rest)
     if what == "surface":
         return panels.actors(panels.surface(mesh, shades))
     region = mesh.of_tets("region")
@@ -104,15 +105,15 @@ def mesh_panel(path, what, rules, rest, view, clip, lowest):
     behind = (mesh.middles[:, axis] - centre[axis]) * away(view)[axis] < 0
     plain = np.tile(np.array(SOLVENT, float), (mesh.count, 1))
     if what == "exterior":
-        return panels.actors(panels.opened(mesh, behind & (region != 1), plain, shades), edges=0.35, ambient=0.25)
+        return panels.actors(panels.opened(mesh, behind & (region != 1), plain, shades), edges=0.35, ambient=0.35)
     if what == "embedded":
-        return (panels.actors(panels.opened(mesh, behind & (region != 1), plain, shades), edges=0.35, ambient=0.25)
+        return (panels.actors(panels.opened(mesh, behind & (region != 1), plain, shades), edges=0.35, ambient=0.35)
                 + panels.actors(panels.polygons(mesh.points, mesh.triangles[mesh.molecule()], shades[mesh.molecule()]), edges=0.2))
     of_tets = np.where((region == 1)[:, None], colours(mesh, mesh.of_tets, rules, rest), SOLVENT)
     if what == "body":
         return panels.actors(panels.opened(mesh, region == 1, of_tets, shades), edges=0.15)
     if what == "both":
-        return panels.actors(panels.opened(mesh, behind, of_tets, shades), edges=0.35, ambient=0.25)
+        return panels.actors(panels.opened(mesh, behind, of_tets, shades), edges=0.35, ambient=0.35)
     if what == "section":
         cut = np.tile(np.array(SECTION, float), (mesh.count, 1))
         return panels.actors(panels.opened(mesh, behind & (region == 1), cut, shades), edges=0.3)

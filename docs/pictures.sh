@@ -51,10 +51,31 @@ picture() {
   rm -rf "${work:?}"/*
 }
 
-# recipe NAME POINTS: what complexes/NAME.sh makes, in the folder NAME, on that many grid points along the longest edge. Meshes so coarse may
-# miss angles, which the recipe then says and its status tells; a mesh that is not made fails where it is drawn.
-recipe() {
-  GRID=$2 bash "$docs/../complexes/$1.sh" "$data" "$1" || true
+# hierarchies NAME: the .hier that complexes/NAME.sh makes; its densities and meshes are left empty
+hierarchies() {
+  local program
+  mkdir -p stubs
+  for program in hier2density density2tet densityjoin tetsmooth tetlabel tetstat; do
+    printf '#!/bin/sh\nwhile [ $# -gt 1 ]; do [ "$1" = -o ] && : >"$2"; shift; done\n' >"stubs/$program"
+    chmod +x "stubs/$program"
+  done
+  PATH=$PWD/stubs:$PATH bash "$docs/../complexes/$1.sh" "$data" .
+  rm -f ./*.vdb ./*.vtu
+}
+# part NAME MESH DENSITY2TET-OPTION…: MESH.vtu with labels, of NAME.vdb and NAME.hier
+part() {
+  local name=$1 mesh=$2
+  shift 2
+  density2tet -q "$@" "$name.vdb" -o "$mesh.tet.vtu"
+  tetsmooth -q --density "$name.vdb" "$mesh.tet.vtu" | tetlabel -q - "$name.hier" -o "$mesh.vtu"
+}
+# emphasized NAME STRUCTURE POINTS LOW SELECTION HIGH [PDB2HIER-OPTION…]: NAME.vtu, the molecule with exponents LOW, and HIGH where selected
+emphasized() {
+  local name=$1 structure=$2 points=$3 low=$4 selection=$5 high=$6
+  shift 6
+  pdb2hier -q "$@" -r "* $low" -r "$selection $high" "$structure" -o "$name.hier"
+  hier2density -q --grid "$points" "$name.hier" -o "$name.vdb"
+  part "$name" "$name"
 }
 
 tii=$docs/../tests/data/1tii.pdb
@@ -105,17 +126,24 @@ domains() {
 
 filament=(--columns 1 --size 1150,250 --view=-80,12,90 --clip y)
 figure1() {
-  recipe filament 257
-  draw figures.py figure1.png filament/filament.both.labels.vtu surface 'surface' \
-    filament/filament.exterior.labels.vtu exterior 'exterior' filament/filament.both.labels.vtu embedded 'exterior, and the filament in it' \
-    "${filament[@]}" --colour domain:actin=4CC8D8 --colour domain:tropomyosin=F2A8B8 --colour domain:troponin=F08C28 \
-    --colour chain:K=D040B8 --legend actin=4CC8D8 --legend 'chain K=D040B8' --legend troponin=F08C28 --legend tropomyosin=F2A8B8
+  hierarchies filament
+  hier2density -q --grid 257 filament.hier -o filament.vdb
+  part filament exterior --region exterior --box +40
+  draw figures.py figure1.png exterior.vtu surface 'surface' exterior.vtu exterior 'exterior' \
+    exterior.vtu embedded 'exterior, and the filament in it' "${filament[@]}" \
+    --colour domain:actin=4CC8D8 --colour domain:tropomyosin=F2A8B8 --colour domain:troponin=F08C28 --colour chain:K=D040B8 \
+    --legend actin=4CC8D8 --legend 'chain K=D040B8' --legend troponin=F08C28 --legend tropomyosin=F2A8B8
 }
 figure4() {
-  recipe filament 257
-  draw figures.py figure4.png filament/filament_blurred.labels.vtu surface 'P_D 0.25' \
-    filament/filament_kept.labels.vtu surface 'P_D 0.8 for actin and tropomyosin' "${filament[@]}" --same \
-    --colour domain:actin=$green --colour domain:tropomyosin=$red --legend actin=$green --legend tropomyosin=$red --legend troponin=BAC0C6
+  local name
+  hierarchies filament
+  for name in filament_blurred filament_kept; do
+    hier2density -q --grid 257 "$name.hier" -o "$name.vdb"
+    density2tet -q "$name.vdb" | tetlabel -q - "$name.hier" -o "$name.vtu"
+  done
+  draw figures.py figure4.png filament_blurred.vtu surface 'P_D 0.25' filament_kept.vtu surface 'P_D 0.8 for actin and tropomyosin' \
+    "${filament[@]}" --same --colour domain:actin=$green --colour domain:tropomyosin=$red \
+    --legend actin=$green --legend tropomyosin=$red --legend troponin=BAC0C6
 }
 figure3() {
   local structure=$data/paper/4v5a_30s_for_1j5e.pdb.gz
@@ -151,11 +179,33 @@ END
     --view=-60,25,0 --view=-60,25,0 --view=-60,25,0 --view=-60,25,0 --view=-60,85,0 --view=-60,25,0
 }
 figure10() {
-  recipe membrane 129
-  draw figures.py figure10.png membrane/membrane.both.labels.vtu body 'pump in its membrane' \
-    membrane/membrane.exterior.labels.vtu exterior 'exterior' membrane/membrane.both.labels.vtu both 'exterior, pump and membrane in it' \
-    --columns 3 --size 400,420 --view=-75,18,0 --clip y --colour domain:pump=4664D8 --colour domain:membrane=F2A8B8 \
-    --legend pump=4664D8 --legend membrane=F2A8B8
+  local blue=4664D8 pink=F2A8B8 i heads=()
+  hierarchies membrane
+  hier2density -q --isovalue 0.7 --spacing 2.25 membrane.hier -o membrane.vdb
+  part membrane pump_exterior --region exterior --cavities fill --box -52,-50,-60,68,70,120
+  part membrane pump_both --region both --cavities fill --box -52,-50,-60,68,70,120
+  hierarchies lattice
+  hier2density -q --spacing 6.4 lattice.hier -o lattice.vdb
+  density2tet -q --region exterior --box -60,-190,0,732,574,819.2 lattice.vdb | tetlabel -q - lattice.hier -o lattice_exterior.vtu
+  for i in 0 1 2 3 4 5; do heads+=(--colour "chain:${i}_head=$blue"); done
+  draw figures.py figure10.png pump_both.vtu body 'pump in its membrane' pump_exterior.vtu exterior 'exterior' \
+    pump_both.vtu both 'exterior, pump and membrane in it' lattice_exterior.vtu surface 'lattice' \
+    lattice_exterior.vtu exterior 'exterior' lattice_exterior.vtu embedded 'exterior, and the filaments in it' \
+    --columns 3 --size 400,420 --view=-75,18,0 --clip y "${heads[@]}" --colour domain:pump=$blue --rest $pink \
+    --legend "pump, heads=$blue" --legend "membrane, filaments=$pink"
+}
+figure11() {
+  local name groups panels=() copy=()
+  for name in A B C D E F G H I J P Q R S T; do copy+=("${name}_1"); done
+  emphasized 4V6X "$data/large/4v6x.cif.gz" 97 'P_R=0.2 P_C=0.8' //B2 'P_R=0.4 P_C=1.2'
+  emphasized 1HTQ "$data/paper/1htq_24chains_model1_derived.pdb.gz" 97 'P_R=0.3 P_C=0.8' //A,B,C 'P_R=1 P_C=1.5'
+  emphasized 2BTV "$data/large/2btv.pdb.gz" 97 'P_R=0.5 P_C=1' "//$(IFS=, && echo "${copy[*]}")" 'P_R=1.6 P_C=2' --assembly 1
+  for name in 4V6X 1HTQ 2BTV; do
+    case $name in 4V6X) groups=B2 ;; 1HTQ) groups=A,B,C ;; *) groups=$(IFS=, && echo "${copy[*]}") ;; esac
+    panels+=("$name.vtu" "section:$groups" "$name" "$name.vtu" parts 'eight parts')
+  done
+  draw figures.py figure11.png "${panels[@]}" --columns 2 --size 400,360 --view=-70,20,0 --rest A8C8A8 \
+    --legend 'in detail=4664D8' --legend 'the rest=A8C8A8' --legend 'cut=EEAAB4'
 }
 
 picture 1tii 160
@@ -171,6 +221,7 @@ if [ -n "$data" ]; then
   picture figure6 16
   picture figure8 96
   picture figure10 96
+  picture figure11 96
 else
   echo "MOLMESH_TEST_DATA names no folder: the paper's figures stay as they are"
 fi
