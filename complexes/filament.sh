@@ -36,7 +36,7 @@ mesh filament filament.exterior --region exterior --box +40
 mesh filament filament.both --region both --box +40
 
 hierjoin -q -r '* P_R=0.7 P_C=0.4 P_D=0.25' filament.join -o filament_blurred.hier
-hierjoin -q -r '* P_R=0.7 P_C=0.4 P_D=0.25' -r '//K P_D=0.8' -r '//Tm P_D=0.8' filament.join -o filament_kept.hier
+hierjoin -q -r '* P_R=0.7 P_C=0.4 P_D=0.25' -r '//K P_D=0.8' -r '//Tm_1,Tm_2 P_D=0.8' filament.join -o filament_kept.hier
 for name in filament_blurred filament_kept; do
   density $name --grid "$GRID"
   mesh $name $name
