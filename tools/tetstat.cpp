@@ -1,5 +1,6 @@
 // tetstat.cpp — validity and quality of a tetrahedral mesh (.vtu), for people or as JSON.
 #include "tools/options/tetstat.hpp"
+#include "formats/tetstat/bodies.hpp"
 #include "formats/tetstat/tetstat.hpp"
 #include <optional>
 #include <ostream>
@@ -8,12 +9,15 @@ using namespace molmesh;
 
 namespace {
 
-formats::MeshReport report(const std::string& path, const Options& o, cli::Run& run) {
+/// bodies: where it is given and the mesh is valid, the list in place of distributions.
+formats::MeshReport report(const std::string& path, const Options& o, cli::Run& run,
+                           std::optional<formats::BodyList>* bodies = nullptr) {
   const int threads = o.resolved_threads();
   run.phase("read");
   cli::InputFile input(path);
   formats::MeshNotes notes;
-  const TetMesh mesh = read_mesh(run, input, o.mesh, formats::CellArrays::drop, notes);
+  const TetMesh mesh =
+      read_mesh(run, input, o.mesh, bodies ? formats::CellArrays::keep : formats::CellArrays::drop, notes);
   run.phase("validity");
   Validity validity = check_validity(mesh, threads);
   if (o.crossings) {
@@ -21,6 +25,8 @@ formats::MeshReport report(const std::string& path, const Options& o, cli::Run& 
     add_crossings(validity, mesh, threads);
   }
   run.phase("quality");
+  if (bodies && validity.valid())
+    *bodies = formats::list_bodies(mesh, input.name(), threads);
   return formats::report_mesh(mesh, input.name(), notes, std::move(validity), {o.min_dihedral, o.max_dihedral},
                               threads);
 }
@@ -28,13 +34,18 @@ formats::MeshReport report(const std::string& path, const Options& o, cli::Run& 
 Status run_tool(const Options& o, cli::Run& run) {
   if (o.compare == "-" && o.input == "-")
     fail(Status::usage, "--compare: standard input can be one of the two meshes, not both");
+  if (o.bodies && !o.compare.empty())
+    fail(Status::usage, "--bodies excludes --compare");
   cli::OutputFile output(o.output);
+  std::optional<formats::BodyList> bodies;
   std::optional<formats::MeshReport> before;
   if (!o.compare.empty())
     before = report(o.compare, o, run);
-  const formats::MeshReport mesh = report(o.input, o, run);
+  const formats::MeshReport mesh = report(o.input, o, run, o.bodies ? &bodies : nullptr);
   run.phase("write");
-  if (o.json) {
+  if (bodies) {
+    output.stream() << (o.json ? formats::bodies_json(*bodies) : formats::bodies_text(*bodies));
+  } else if (o.json) {
     output.stream() << (before ? formats::compare_json(*before, mesh) : formats::tetstat_json(mesh));
   } else {
     output.stream() << (before ? formats::compare_text(*before, mesh) : formats::tetstat_text(mesh));

@@ -6,7 +6,7 @@
 namespace molmesh {
 
 struct Options : cli::Common {
-  bool json = false, crossings = false;
+  bool json = false, crossings = false, bodies = false;
   std::string compare;
   double min_dihedral = 0, max_dihedral = 180; // degrees
   MeshInput mesh;
@@ -16,6 +16,9 @@ inline void describe(cli::Table& t, Options& o) {
   t.group("report");
   t.add("--json", o.json, "one JSON object instead of text (formats/tetstat/TETSTATv1.md)");
   t.add("--crossings", o.crossings, "also look for surface triangles that cross (exact)");
+  t.add("--bodies", o.bodies,
+        "list the bodies, cavities and boundaries of a valid mesh with volume, area and centre, in place of the "
+        "report");
   t.add("--compare", o.compare, "a mesh to compare with: --compare BEFORE AFTER; the status is AFTER's")
       .unit("FILE");
   t.group("quality");
@@ -29,6 +32,7 @@ inline void describe(cli::Table& t, Options& o) {
       "outside those asked for.";
   t.page.examples = {{"tetstat 1tii.vtu", "the report on one screen"},
                      {"tetstat --min-dihedral 20 --json 1tii.vtu -o 1tii.json", "for programs; status 5 below 20°"},
+                     {"tetstat --bodies 1tii.labels.vtu", "volume of each cavity, area of each named boundary"},
                      {"tetstat --compare 1tii.tet.vtu 1tii.vtu", "two meshes side by side"}};
   t.page.files = {{".vtu, .msh, .mesh, .vtk", "mesh, read: formats/mesh/MESH.md"},
                   {".json", "the report for programs, written: formats/tetstat/TETSTATv1.md"}};

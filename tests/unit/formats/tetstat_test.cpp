@@ -1,4 +1,5 @@
 // tetstat_test.cpp — the report's keys and figures, in JSON and in text.
+#include "formats/tetstat/bodies.hpp"
 #include "formats/tetstat/tetstat.hpp"
 #include "unit/mesh/meshes.hpp"
 #include <algorithm>
@@ -139,4 +140,37 @@ TEST_CASE("two meshes side by side") {
   const auto j = nlohmann::ordered_json::parse(formats::compare_json(a, b));
   CHECK(j["a"] == json_of(a));
   CHECK(j["b"]["valid"] == false);
+}
+
+TEST_CASE("bodies and boundaries are listed, the largest first, and sum to the mesh") {
+  TetMesh m = cubes(7, [](Vec3i c) -> int32_t {
+    const auto within = [&](int low, int high) {
+      return std::min({c.x, c.y, c.z}) >= low && std::max({c.x, c.y, c.z}) <= high;
+    };
+    return within(2, 2) || within(4, 4) ? Region::cavity : within(1, 5) ? Region::molecule : Region::outside;
+  });
+  CellArray patch{"patch", std::vector<int32_t>(m.tet.size() + m.tri.size(), 0), {}};
+  int found = 0;
+  for (size_t i = 0; i < m.tri.size() && found < 3; ++i)
+    if (m.boundary[i] == Boundary::surface) {
+      patch.integer[m.tet.size() + i] = 8;
+      ++found;
+    }
+  m.cell_array.push_back(patch);
+  m.named_text.push_back({"patch_names", "8 site\n"});
+  const formats::BodyList list = formats::list_bodies(m, "x.vtu", 1);
+  REQUIRE(list.body.size() == 4); // body, outside, two cavities
+  CHECK(list.body[0].volume == Approx(123));
+  CHECK(list.body[0].area == Approx(150 + 12));
+  CHECK(list.body[1].region == Region::outside);
+  CHECK(list.body[3].region == Region::cavity);
+  CHECK(list.body[3].volume == Approx(1));
+  REQUIRE(list.boundary.size() == 8); // the surface, six walls, the site
+  CHECK(list.boundary[0].triangles == 2 * 162 - 3);
+  CHECK(list.boundary[7].name == "site");
+  CHECK(list.boundary[7].area == Approx(1.5));
+  CHECK(has(formats::bodies_text(list), "1 body, 2 cavities"));
+  const auto j = nlohmann::ordered_json::parse(formats::bodies_json(list));
+  CHECK(j["bodies"].size() == 4);
+  CHECK(j["boundaries"][7]["label"] == 8);
 }

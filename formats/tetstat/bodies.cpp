@@ -1,0 +1,71 @@
+// bodies.cpp — finds bodies and boundaries, measures and prints them.
+#include "formats/tetstat/bodies.hpp"
+#include "formats/tetstat/layout.hpp"
+#include "formats/vtu/names.hpp"
+#include <map>
+#include <nlohmann/json.hpp>
+
+namespace molmesh::formats {
+namespace {
+
+/// What one piece of a region is called.
+std::string kind(int32_t region) {
+  return region == Region::molecule ? "body" : region_name(region);
+}
+
+std::string counted(int64_t n, const char* one, const char* more) {
+  return grouped(n) + ' ' + (n == 1 ? one : more);
+}
+
+} // namespace
+
+BodyList list_bodies(const TetMesh& m, const std::string& file, int threads) {
+  BodyList list{file, find_bodies(m, face_neighbors(m, threads)).body, {}};
+  const std::vector<int32_t> label = patches(m);
+  std::map<int32_t, BoundarySummary> boundary;
+  for (const auto& [number, name] : boundary_names(m, label))
+    boundary[number] = {number, name, 0, 0};
+  for (size_t i = 0; i < m.tri.size(); ++i) {
+    BoundarySummary& b = boundary[label[i]];
+    ++b.triangles;
+    b.area += tri_area(m.point[m.tri[i][0]], m.point[m.tri[i][1]], m.point[m.tri[i][2]]);
+  }
+  for (const auto& [number, b] : boundary)
+    list.boundary.push_back(b);
+  return list;
+}
+
+std::string bodies_text(const BodyList& list) {
+  int64_t bodies = 0, cavities = 0;
+  for (const MeshBody& b : list.body)
+    bodies += b.region == Region::molecule, cavities += b.region == Region::cavity;
+  std::string s = list.file + ": " + counted(bodies, "body", "bodies") + ", " +
+                  counted(cavities, "cavity", "cavities") + "\n\n" +
+                  print("%-16s %16s %14s %12s   centre/Å\n", "", "volume/Å³", "area/Å²", "tetrahedra");
+  std::map<int32_t, int> number;
+  for (const MeshBody& b : list.body)
+    s += print("%-14s %16s %13s %12s   %.2f %.2f %.2f\n",
+               (kind(b.region) + ' ' + std::to_string(++number[b.region])).c_str(), amount(b.volume).c_str(),
+               amount(b.area).c_str(), grouped(b.tets).c_str(), b.centre.x, b.centre.y, b.centre.z);
+  s += print("\n%-14s %16s %13s %12s\n", "boundary", "label", "area/Å²", "triangles");
+  for (const BoundarySummary& b : list.boundary)
+    s += print("%-14s %16d %12s %12s\n", plain(b.name).c_str(), b.label, amount(b.area).c_str(),
+               grouped(b.triangles).c_str());
+  return s;
+}
+
+std::string bodies_json(const BodyList& list) {
+  using json = nlohmann::ordered_json;
+  json j = {{"tetstat_bodies", 1}, {"file", list.file}, {"bodies", json::array()}, {"boundaries", json::array()}};
+  for (const MeshBody& b : list.body)
+    j["bodies"].push_back({{"region", b.region},
+                           {"tets", b.tets},
+                           {"volume", b.volume},
+                           {"area", b.area},
+                           {"centre", {b.centre.x, b.centre.y, b.centre.z}}});
+  for (const BoundarySummary& b : list.boundary)
+    j["boundaries"].push_back({{"label", b.label}, {"name", b.name}, {"triangles", b.triangles}, {"area", b.area}});
+  return j.dump(2, ' ', false, json::error_handler_t::replace) + '\n';
+}
+
+} // namespace molmesh::formats
