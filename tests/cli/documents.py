@@ -98,11 +98,11 @@ def write_part_of_1tii(path):
 
 
 def write_slab(path):
-    """A slab of carbon atoms, 90 Å wide and 30 Å thick, in the place of the bilayer of simulations."""
+    """A slab of carbon atoms, 45 Å wide and 30 Å thick, in the place of the bilayer of simulations."""
     with open(path, "w") as out:
         n = 0
-        for x in range(-5, 86, 5):
-            for y in range(-5, 86, 5):
+        for x in range(40, 86, 5):
+            for y in range(40, 86, 5):
                 for z in range(40, 71, 5):
                     n += 1
                     out.write(f"ATOM  {n % 100000:5d}  C1  POP L{n // 50:4d}    {x:8.3f}{y:8.3f}{z:8.3f}  1.00  0.00           C\n")
