@@ -39,9 +39,12 @@ std::string bodies_text(const BodyList& list) {
   int64_t bodies = 0, cavities = 0;
   for (const MeshBody& b : list.body)
     bodies += b.region == Region::molecule, cavities += b.region == Region::cavity;
-  std::string s = list.file + ": " + counted(bodies, "body", "bodies") + ", " +
-                  counted(cavities, "cavity", "cavities") + "\n\n" +
-                  print("%-16s %16s %14s %12s   centre/Å\n", "", "volume/Å³", "area/Å²", "tetrahedra");
+  std::string s = list.file + ": " + counted(bodies, "body", "bodies");
+  if (bodies == static_cast<int64_t>(list.body.size()))
+    s += " and nothing else: cavities are holes in it";
+  else
+    s += ", " + counted(cavities, "cavity", "cavities");
+  s += "\n\n" + print("%-16s %16s %14s %12s   centre/Å\n", "", "volume/Å³", "area/Å²", "tetrahedra");
   std::map<int32_t, int> number;
   for (const MeshBody& b : list.body)
     s += print("%-14s %16s %13s %12s   %.2f %.2f %.2f\n",

@@ -34,6 +34,7 @@ NOT_RUN = {
     ("README.md", "make -f Makefile.pipeline demo"): "installs packages and builds; `check` is how CI tests",
     (GUIDE, "make -f Makefile.pipeline deb"): "builds; the tests `install: Debian packages` and `install: Debian chroot`",
     (GUIDE, "make -f Makefile.pipeline demo"): "installs packages and builds",
+    (GUIDE, "make -f Makefile.pipeline deb"): "builds and installs; the tests `install: Debian …` run it",
     (GUIDE, "cmake -S . -B build"): "builds; the test `install: example` runs the installation",
     (GUIDE, "molmesh-array -o meshes structures"): "needs Slurm: the test `cluster: job arrays on Slurm`",
     (GUIDE, 'name=$(sed -n "${PBS_ARRAY_INDEX}p"'): "needs PBS or Grid Engine",
@@ -183,6 +184,7 @@ def prepare(page, folder):
         return
     shell("""pdb2hier -q 1tii.pdb -o 1tii.hier && hier2density -q --spacing 2 1tii.hier -o 1tii.vdb
         density2tet -q 1tii.vdb -o 1tii.tet.vtu && tetsmooth -q --density 1tii.vdb 1tii.tet.vtu -o 1tii.vtu
+        tetlabel -q 1tii.vtu 1tii.hier -o 1tii.labels.vtu
         mkdir FOLDER && cp 1tii.vtu FOLDER/a.vtu && cp 1tii.vtu FOLDER/b.vtu
         for name in FILAMENT MEMBRANE PAIR; do printf 'join 1\\npiece MODEL.hier\\npiece OTHER.hier\\n' >$name.join; done
         printf 'join 1\\npiece MODEL.vdb\\npiece MODEL.vdb translate=60,0,0\\n' >LATTICE.join
@@ -263,7 +265,7 @@ def record(path, recorded):
     """Into a page: what these commands print."""
     text = path.read_text()
     for command, printed in recorded.items():
-        old = re.search(r"^( +)" + re.escape("$ " + command.replace("\n", "\n    ")) + r"\n(?:\1(?!\$ |\? ).*\n)*", text, re.M)
+        old = re.search(r"^( +)" + re.escape("$ " + command.replace("\n", "\n    ")) + r"\n(?:\n*\1(?!\$ |\? ).*\n)*", text, re.M)
         text = text[:old.start()] + "".join(f"{old[1]}{s}".rstrip() + "\n" for s in ["$ " + command] + printed) + text[old.end():]
     path.write_text(text)
 
