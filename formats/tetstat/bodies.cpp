@@ -2,15 +2,17 @@
 #include "formats/tetstat/bodies.hpp"
 #include "formats/tetstat/layout.hpp"
 #include "formats/vtu/names.hpp"
-#include <map>
 #include <nlohmann/json.hpp>
 
 namespace molmesh::formats {
 namespace {
 
 /// What one piece of a region is called.
-std::string kind(int32_t region) {
-  return region == Region::molecule ? "body" : region_name(region);
+std::string kind(const BodyList& list, int32_t region) {
+  const auto own = list.region_name.find(region);
+  return own != list.region_name.end() ? plain(own->second)
+         : region == Region::molecule  ? "body"
+                                       : region_name(region);
 }
 
 std::string counted(int64_t n, const char* one, const char* more) {
@@ -20,7 +22,7 @@ std::string counted(int64_t n, const char* one, const char* more) {
 } // namespace
 
 BodyList list_bodies(const TetMesh& m, const std::string& file, int threads) {
-  BodyList list{file, find_bodies(m, face_neighbors(m, threads)).body, {}};
+  BodyList list{file, find_bodies(m, face_neighbors(m, threads)).body, {}, names_of(m, "region_names")};
   const std::vector<int32_t> label = patches(m);
   std::map<int32_t, BoundarySummary> boundary;
   for (const auto& [number, name] : boundary_names(m, label))
@@ -38,7 +40,7 @@ BodyList list_bodies(const TetMesh& m, const std::string& file, int threads) {
 std::string bodies_text(const BodyList& list) {
   int64_t bodies = 0, cavities = 0;
   for (const MeshBody& b : list.body)
-    bodies += b.region == Region::molecule, cavities += b.region == Region::cavity;
+    bodies += b.region == Region::molecule || b.region > Region::cavity, cavities += b.region == Region::cavity;
   std::string s = list.file + ": " + counted(bodies, "body", "bodies");
   if (bodies == static_cast<int64_t>(list.body.size()))
     s += " and nothing else: cavities are holes in it";
@@ -48,7 +50,7 @@ std::string bodies_text(const BodyList& list) {
   std::map<int32_t, int> number;
   for (const MeshBody& b : list.body)
     s += print("%-14s %16s %13s %12s   %.2f %.2f %.2f\n",
-               (kind(b.region) + ' ' + std::to_string(++number[b.region])).c_str(), amount(b.volume).c_str(),
+               (kind(list, b.region) + ' ' + std::to_string(++number[b.region])).c_str(), amount(b.volume).c_str(),
                amount(b.area).c_str(), grouped(b.tets).c_str(), b.centre.x, b.centre.y, b.centre.z);
   s += print("\n%-14s %16s %13s %12s\n", "boundary", "label", "area/Å²", "triangles");
   for (const BoundarySummary& b : list.boundary)
@@ -62,6 +64,7 @@ std::string bodies_json(const BodyList& list) {
   json j = {{"tetstat_bodies", 1}, {"file", list.file}, {"bodies", json::array()}, {"boundaries", json::array()}};
   for (const MeshBody& b : list.body)
     j["bodies"].push_back({{"region", b.region},
+                           {"name", kind(list, b.region)},
                            {"tets", b.tets},
                            {"volume", b.volume},
                            {"area", b.area},

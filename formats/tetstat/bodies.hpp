@@ -2,6 +2,7 @@
 #pragma once
 #include "formats/vtu/vtu.hpp"
 #include "mesh/mesh_bodies.hpp"
+#include <map>
 
 namespace molmesh::formats {
 
@@ -15,8 +16,9 @@ struct BoundarySummary {
 
 struct BodyList {
   std::string file;
-  std::vector<MeshBody> body;            ///< by region, then largest volume first
-  std::vector<BoundarySummary> boundary; ///< by label, ascending
+  std::vector<MeshBody> body;                 ///< by region, then largest volume first
+  std::vector<BoundarySummary> boundary;      ///< by label, ascending
+  std::map<int32_t, std::string> region_name; ///< of the regions that the mesh itself names
 };
 
 /// m is valid (validity.hpp). Same result at any number of threads.
