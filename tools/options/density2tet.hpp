@@ -53,7 +53,7 @@ inline void describe(cli::Table& t, Options& o) {
       {"density2tet 1tii.vdb -o 1tii.tet.vtu", "the molecule alone"},
       {"density2tet --region both --box 3x 1tii.vdb -o 1tii.tet.vtu",
        "the molecule and its surroundings, in a box three times its extents"},
-      {"density2tet --regions domain --hier 1tii.hier 1tii.vdb -o 1tii.tet.vtu", "each domain a volume of its own"},
+      {"density2tet --regions chain --hier 1tii.hier 1tii.vdb -o 1tii.tet.vtu", "each chain a volume of its own"},
       {"density2tet --region exterior --cavities fill --drop-below 50 1tii.vdb -o 1tii.tet.vtu",
        "the surroundings alone, without closed cavities and bodies of less than 50 Å³"}};
   t.page.files = {{".vdb", "density grid (OpenVDB), read: formats/vdb/VDBv1.md"},
