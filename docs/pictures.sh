@@ -220,7 +220,7 @@ if [ -n "$data" ]; then
   picture figure4 64
   picture figure6 16
   picture figure8 96
-  picture figure10 96
+  picture figure10 40
   picture figure11 96
 else
   echo "MOLMESH_TEST_DATA names no folder: the paper's figures stay as they are"

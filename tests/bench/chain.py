@@ -1,12 +1,9 @@
 """chain.py: the programs run one after the other, and what is measured of them. A module of the scripts beside it."""
-import glob
 import json
-import os
 import pathlib
 import random
 import resource
 import subprocess
-import threading
 import time
 
 
@@ -14,31 +11,9 @@ class ToolError(Exception):
     """A program ended with another status than 0: its name and what it wrote to standard error."""
 
 
-class Waits(threading.Thread):
-    """Looks after a process until that ends: `longest` are the seconds for which the thread that waited longest waited for a
-    processor (Linux)."""
-
-    def __init__(self, process):
-        super().__init__()
-        self.process, self.longest = process, 0
-        self.start()
-
-    def run(self):
-        waited = {}
-        while self.process.returncode is None:
-            for task in glob.glob(f"/proc/{self.process.pid}/task/*/schedstat"):
-                try:
-                    waited[task] = int(pathlib.Path(task).read_text().split()[1]) / 1e9
-                except (OSError, IndexError):
-                    pass  # the thread has ended
-            time.sleep(0.05)
-        self.longest = max(waited.values(), default=0)
-
-
 class Chain:
     """The programs in one folder, their files in another. threads: of those that have a choice. shared: other work goes on
-    beside this one; one thread where a run does not name its threads, and seconds count as if it did not: of one thread the
-    share of a processor that the run had, of several without the time that the thread which waited longest waited for one."""
+    beside this one; one thread, and every second counts as the share of a processor that the run had."""
 
     def __init__(self, programs, folder, threads, shared=False):
         self.programs, self.folder, self.shared = pathlib.Path(programs), pathlib.Path(folder), shared
@@ -52,23 +27,15 @@ class Chain:
         system."""
         report = self.path(f"{program}.json")
         before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
-        threads = threads or self.threads
-        process = subprocess.Popen([self.programs / program, "-q", "--mode", mode, "-t", str(threads), "--report", report,
-                                    *map(str, options)], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
-                                   env={"OMP_WAIT_POLICY": "passive", **os.environ})
-        waits = Waits(process) if self.shared and int(threads) > 1 else None
-        error = process.communicate()[1]
+        threads = 1 if self.shared else threads or self.threads
+        done = subprocess.run([self.programs / program, "-q", "--mode", mode, "-t", str(threads), "--report", report,
+                               *map(str, options)], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
         after, elapsed = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic() - start
-        if process.returncode not in good:
-            raise ToolError(f"{program}: status {process.returncode}: {error.strip()}")
+        if done.returncode not in good:
+            raise ToolError(f"{program}: status {done.returncode}: {done.stderr.strip()}")
         text = json.loads(report.read_text())
         text["processor"] = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        share = 1
-        if waits:
-            waits.join()
-            share = max(0, 1 - waits.longest / elapsed)
-        elif self.shared:
-            share = min(1, text["processor"] / elapsed)
+        share = min(1, text["processor"] / elapsed) if self.shared else 1
         text["seconds"] = {p["name"]: p["seconds"] * share for p in text["phases"]}
         text["wall"] = sum(text["seconds"].values())
         text["work"] = sum(s for name, s in text["seconds"].items() if name not in ("read", "write"))
