@@ -102,10 +102,23 @@ int64_t granted_memory(const char* slurm_mem_per_node, const SystemFiles& system
   return least == none ? -1 : least;
 }
 
+int64_t machine_memory(const SystemFiles& system) {
+  std::ifstream in(system.proc / "meminfo");
+  int64_t sum = 0, kibibytes = 0;
+  std::string name, rest;
+  for (; in >> name >> kibibytes; std::getline(in, rest))
+    if ((name == "MemTotal:" || name == "SwapTotal:") && kibibytes > 0 && kibibytes < int64_t{1} << 50)
+      sum += kibibytes << 10;
+  return sum > 0 ? sum : -1;
+}
+
 int64_t PlanOptions::memory_limit() const {
   if (max_mem == "none")
     return -1;
-  return max_mem == "auto" ? granted_memory(std::getenv("SLURM_MEM_PER_NODE")) : bytes_of(max_mem);
+  if (max_mem != "auto")
+    return bytes_of(max_mem);
+  const int64_t granted = granted_memory(std::getenv("SLURM_MEM_PER_NODE"));
+  return granted >= 0 || !machine_limits ? granted : machine_memory();
 }
 
 void add_plan_options(Table& table, PlanOptions& o) {
@@ -113,7 +126,11 @@ void add_plan_options(Table& table, PlanOptions& o) {
   table.add("--plan", o.plan, "tell what the run will take, and do not run");
   table.add("--json", o.json, "the plan as one JSON object (formats/report/REPORTv1.md)");
   table.add("--speed", o.speed, "speed of a core, for seconds; docs/benchmarks.md: 1").positive();
-  table.add("--max-mem", o.max_mem, "memory at most: 2G, none; auto: what is granted").unit("SIZE");
+  table
+      .add("--max-mem", o.max_mem,
+           std::string("memory at most: 2G, none; auto: what is granted") +
+               (o.machine_limits ? ", else the machine's" : ""))
+      .unit("SIZE");
 }
 
 void write_plan(const Common& o, const PlanOptions& p, const Run& run, const Value& plan) {
@@ -136,9 +153,13 @@ void require_memory(const PlanOptions& p, int64_t needed, const std::string& wha
   const int64_t limit = p.memory_limit();
   if (limit < 0 || needed <= limit)
     return;
-  fail(Status::failed,
-       what + " takes about " + size_text(needed) + " of memory, expected at most " + size_text(limit) +
-           (p.max_mem == "auto" ? " (the batch system's limit; --max-mem)" : " (--max-mem)") + ": " + instead);
+  const bool granted = granted_memory(std::getenv("SLURM_MEM_PER_NODE")) >= 0;
+  fail(Status::failed, what + " takes about " + size_text(needed) + " of memory, expected at most " +
+                           size_text(limit) +
+                           (p.max_mem != "auto" ? " (--max-mem)"
+                            : granted           ? " (the batch system's limit; --max-mem)"
+                                                : " (the machine's memory and swap; --max-mem)") +
+                           ": " + instead);
 }
 
 } // namespace molmesh::cli

@@ -14,8 +14,10 @@ struct PlanOptions {
   bool plan = false, json = false;
   double speed = 1; ///< of a core, where the docs' machine has 1
   std::string max_mem = "auto";
+  bool machine_limits = false; ///< where nothing is granted
 
-  /// Bytes that the run may take; -1: no limit is known. auto: what the batch system grants.
+  /// Bytes that the run may take; -1: no limit is known. auto: what the batch system grants, else, with
+  /// machine_limits, what the machine has.
   int64_t memory_limit() const;
 };
 
@@ -31,6 +33,9 @@ std::string length_text(double angstroms);
 
 /// The least that control groups around this process grant, and SLURM_MEM_PER_NODE, which is in MiB. -1: neither.
 int64_t granted_memory(const char* slurm_mem_per_node, const SystemFiles& system = {});
+
+/// Memory and swap of the machine; -1: not known.
+int64_t machine_memory(const SystemFiles& system = {});
 
 /// Writes a plan to the program's output, as text or JSON: fields in order, whose values are numbers, words or such
 /// fields again. Names that end in _bytes are sizes.

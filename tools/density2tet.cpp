@@ -66,6 +66,8 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.counts["cavity_volumes"] = summary.cavity_volumes;
   run.counts["dropped_parts"] = summary.dropped_parts;
   run.counts["filled_cavities"] = summary.filled_cavities;
+  if (mesh.sphere)
+    run.counts["sphere"] = sphere_value(*mesh.sphere);
 
   if (summary.dropped_parts > 0)
     run.note("dropped parts of the molecule: " + std::to_string(summary.dropped_parts) +
@@ -85,7 +87,7 @@ Status run_tool(const Options& o, cli::Run& run) {
                     ? ""
                     : cli::counted(std::ssize(summary.molecule_volumes), "body", "bodies") + ", ") +
                cli::counted(std::ssize(summary.cavity_volumes), "closed cavity", "closed cavities") + ", " +
-               mesh_line(mesh, options.threads);
+               mesh_line(mesh, options.threads) + (mesh.sphere ? ", within " + sphere_text(*mesh.sphere) : "");
   return Status::good;
 }
 

@@ -32,10 +32,11 @@ struct Chain {
   }
 };
 
-/// "--spacing 0.62 fits": the finest from h on, in steps of 3 %, whose need leaves a tenth of the limit.
+/// "--spacing 0.62 fits": the finest from h on, in steps of 3 %, whose need leaves a tenth of the limit, up to 20
+/// Å.
 template <class Need>
 std::string fitting_spacing(double h, int64_t limit, Need need) {
-  for (double s = h; s < 100 * h; s *= 1.03)
+  for (double s = h; s < std::max(2 * h, 20.); s *= 1.03)
     if (10 * need(s) <= 9 * limit) {
       char text[64];
       std::snprintf(text, sizeof text, "hier2density --spacing %.2g fits", std::max(s, 0.01) + 0.005 * s);

@@ -103,6 +103,7 @@ struct WantsToMove {
       bad = bad || q[m.elements.item[i]] < m.goal;
     const optimize::Kind kind = m.vertex[v].kind;
     wanted[n] = bad && kind != optimize::Kind::fixed && kind != optimize::Kind::trace &&
+                kind != optimize::Kind::round &&
                 (kind != optimize::Kind::surface || (m.has_surface && !m.is_watched(v)));
   }
 };

@@ -66,6 +66,11 @@ json mesh_json(const MeshReport& r, const char* place) {
   j["box"] = {{"low", {v.low.x, v.low.y, v.low.z}}, {"high", {v.high.x, v.high.y, v.high.z}}};
   j["volume"] = v.volume;
   j["surface"] = surface_json(v.surface);
+  if (r.sphere && v.outer_sphere) {
+    j["outer_sphere"] = surface_json(*v.outer_sphere);
+    j["outer_sphere"]["center"] = {r.sphere->center.x, r.sphere->center.y, r.sphere->center.z};
+    j["outer_sphere"]["radius"] = r.sphere->radius;
+  }
   j["quality"] = quality_json(r.quality->all);
   j["regions"] = place;
   return j;
@@ -110,6 +115,7 @@ MeshReport report_mesh(const TetMesh& m, const std::string& file, const MeshNote
   r.source = m.source;
   r.creator = m.creator;
   r.isovalue = m.isovalue;
+  r.sphere = m.sphere;
   r.points = static_cast<int64_t>(m.point.size());
   r.tets = static_cast<int64_t>(m.tet.size());
   r.triangles = static_cast<int64_t>(m.tri.size());

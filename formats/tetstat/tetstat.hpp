@@ -20,6 +20,7 @@ struct MeshReport {
   std::map<int32_t, std::string> label_name;  ///< above 7, where there are domains
   std::optional<MeshQuality> quality;         ///< none where an index is out of range
   AngleLimits asked;
+  std::optional<Sphere> sphere; ///< the outer boundary
 
   /// Angles within what was asked for.
   bool good() const { return quality && quality->all.outside == 0; }

@@ -20,6 +20,8 @@ std::string region_name(const MeshReport& r, int32_t region) {
 }
 
 std::string label_name(const MeshReport& r, int32_t label) {
+  if (r.sphere && label == Boundary::outer_sphere)
+    return "sphere";
   static const char* names[] = {"", "surface", "-x", "+x", "-y", "+y", "-z", "+z"};
   return label >= 1 && label <= 7 ? names[label] : name_in(r.label_name, label);
 }
@@ -69,10 +71,15 @@ std::string regions_table(const MeshReport& r) {
                amount(b.area).c_str(), static_cast<long long>(b.components), static_cast<long long>(b.euler),
                angle.min, angle.max);
   }
-  if (const SurfaceSummary& b = r.validity.surface; b.triangles > 0)
-    s += print("  surface %9s triangles %14s %14s %7lld %7lld\n", grouped(b.triangles).c_str(),
-               amount(b.volume).c_str(), amount(b.area).c_str(), static_cast<long long>(b.components),
-               static_cast<long long>(b.euler));
+  const auto add_boundary = [&](const char* name, const SurfaceSummary& b) {
+    if (b.triangles > 0)
+      s += print("  %-7s %9s triangles %14s %14s %7lld %7lld\n", name, grouped(b.triangles).c_str(),
+                 amount(b.volume).c_str(), amount(b.area).c_str(), static_cast<long long>(b.components),
+                 static_cast<long long>(b.euler));
+  };
+  add_boundary("surface", r.validity.surface);
+  if (r.validity.outer_sphere)
+    add_boundary("sphere", *r.validity.outer_sphere);
   return s;
 }
 
@@ -99,6 +106,9 @@ std::string tetstat_text(const MeshReport& r) {
     return s;
   s +=
       print("box  %.3f %.3f %.3f  to  %.3f %.3f %.3f Å\n", v.low.x, v.low.y, v.low.z, v.high.x, v.high.y, v.high.z);
+  if (r.sphere)
+    s += print("outer sphere  %.3f Å about  %.3f %.3f %.3f Å\n", r.sphere->radius, r.sphere->center.x,
+               r.sphere->center.y, r.sphere->center.z);
   const Quality& q = r.quality->all;
   s += '\n' + regions_table(r);
   s += "\nquality                      min        mean         max   where\n";

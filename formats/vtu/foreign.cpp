@@ -4,11 +4,13 @@
 #include "formats/vtu/names.hpp"
 #include "geom/tet_measures.hpp"
 #include "mesh/adjacency.hpp"
+#include "mesh/fitted_sphere.hpp"
 #include "mesh/sorted_triangle.hpp"
 #include "mesh/validity_duplicates.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -214,6 +216,22 @@ std::vector<uint8_t> tag_triangles(TetMesh& m, const std::vector<int32_t>& same)
   return tagged;
 }
 
+/// The sphere through the points of a patch, by least squares: true and the mesh's if they are on it.
+bool take_sphere(TetMesh& m, int32_t number) {
+  const std::vector<int32_t>& patch = m.cell_array.back().integer;
+  std::vector<int32_t> on;
+  for (size_t t = 0; t < m.tri.size(); ++t)
+    if (patch[m.tet.size() + t] == number)
+      on.insert(on.end(), m.tri[t].begin(), m.tri[t].end());
+  std::sort(on.begin(), on.end());
+  on.erase(std::unique(on.begin(), on.end()), on.end());
+  const std::optional<Sphere> sphere = sphere_through(m.point, on);
+  if (!sphere)
+    return false;
+  m.sphere = sphere;
+  return true;
+}
+
 /// Labels of the file that have names of ours are ours, whatever their numbers were made in that format. Where
 /// nothing else is left, the array goes. Returns whether it stays.
 bool take_own_labels(TetMesh& m, std::vector<uint8_t>& tagged) {
@@ -222,7 +240,7 @@ bool take_own_labels(TetMesh& m, std::vector<uint8_t>& tagged) {
   const std::map<int32_t, std::string> names = names_of(m, "patch_names");
   std::map<int32_t, int32_t> own; // number in the file → label
   for (const auto& [number, name] : names)
-    if (const int32_t label = own_boundary_label(name))
+    if (const int32_t label = own_boundary_label(name); label != 0 && (name != "sphere" || take_sphere(m, number)))
       own[number] = label;
   if (own.empty())
     return true;
@@ -278,7 +296,7 @@ void part_labels(TetMesh& m, const std::vector<uint8_t>& tagged) {
   for (size_t t = 0; t < tagged.size(); ++t)
     if (!tagged[t]) {
       patch[tets + t] += most;
-      name[patch[tets + t]] = own_boundary_name(m.boundary[t]);
+      name[patch[tets + t]] = own_boundary_name(m, m.boundary[t]);
     }
   add_names(m, "patch_names", name);
 }
@@ -346,6 +364,8 @@ void complete_mesh(TetMesh& m, const std::string& file, const MeshReading& as, M
     for (Vec3d& p : m.point)
       p = as.scale * p;
     m.decay /= as.scale * as.scale; // per unit squared
+    if (m.sphere)
+      m.sphere = Sphere{as.scale * m.sphere->center, as.scale * m.sphere->radius};
   }
   if (as.arrays == CellArrays::drop) {
     m.cell_array.clear();

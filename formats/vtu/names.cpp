@@ -13,6 +13,7 @@ namespace molmesh::formats {
 namespace {
 
 const char* const own_boundary[] = {"surface", "box_x0", "box_x1", "box_y0", "box_y1", "box_z0", "box_z1"};
+const char* const sphere_name = "sphere"; // of label outer_sphere, where the outer boundary is one
 
 void set_text(TetMesh& m, const std::string& name, std::string text) {
   for (NamedText& t : m.named_text)
@@ -96,11 +97,15 @@ std::string region_level(const TetMesh& m) {
   return {};
 }
 
-std::string own_boundary_name(int32_t label) {
+std::string own_boundary_name(const TetMesh& m, int32_t label) {
+  if (m.sphere && label == Boundary::outer_sphere)
+    return sphere_name;
   return label >= 1 && label <= 7 ? own_boundary[label - 1] : "";
 }
 
 int32_t own_boundary_label(const std::string& name) {
+  if (name == sphere_name)
+    return Boundary::outer_sphere;
   const auto at = std::find(std::begin(own_boundary), std::end(own_boundary), name);
   return at == std::end(own_boundary) ? 0 : static_cast<int32_t>(at - std::begin(own_boundary)) + 1;
 }
@@ -109,7 +114,7 @@ bool is_own_name(const std::string& name) {
   for (const int32_t region : {molecule, outside, cavity}) // groups of one name are one in some readers
     if (name == region_name(region))
       return true;
-  return std::find(std::begin(own_boundary), std::end(own_boundary), name) != std::end(own_boundary);
+  return own_boundary_label(name) != 0;
 }
 
 std::string region_name(int32_t region) {
@@ -121,7 +126,7 @@ std::map<int32_t, std::string> boundary_names(const TetMesh& m, const std::vecto
   std::map<int32_t, std::string> name;
   for (const int32_t l : label)
     if (auto [at, is_new] = name.try_emplace(l); is_new)
-      at->second = l >= 1 && l <= 7 ? own_boundary[l - 1] : "boundary_" + std::to_string(l);
+      at->second = l >= 1 && l <= 7 ? own_boundary_name(m, l) : "boundary_" + std::to_string(l);
   for (const char* text : {"boundary_names", "patch_names"})
     for (const auto& [id, given] : names_of(m, text))
       if (const auto at = name.find(id); at != name.end())
@@ -155,7 +160,7 @@ ExportLabels export_labels(const TetMesh& m) {
   }
   e.patch_name = boundary_names(m, e.patch);
   const bool own = std::any_of(e.patch_name.begin(), e.patch_name.end(),
-                               [](const auto& p) { return p.second == own_boundary_name(p.first); });
+                               [&](const auto& p) { return p.second == own_boundary_name(m, p.first); });
   const bool shared = std::any_of(e.patch_name.begin(), e.patch_name.end(),
                                   [&](const auto& p) { return e.region_name.contains(p.first); });
   if (!own && !shared)

@@ -24,15 +24,16 @@ void add_names(TetMesh& m, const std::string& text_name, const std::map<int32_t,
 /// The lines "ID NAME" of a text: patch_names, region_names. Others name nothing.
 std::map<int32_t, std::string> names_of(const TetMesh& m, const std::string& text_name);
 
-/// Is it a name that meshes have themselves: of a region, or surface, box_x0 … box_z1?
+/// Is it a name that meshes have themselves: of a region, or surface, box_x0 … box_z1, sphere?
 bool is_own_name(const std::string& name);
 /// Names of regions: molecule, outside, cavity, else region_N.
 std::string region_name(int32_t region);
-/// surface, box_x0 … box_z1 of labels 1 to 7, else empty; and back: 0 of other names.
-std::string own_boundary_name(int32_t label);
+/// surface, box_x0 … box_z1 of labels 1 to 7, sphere of the outer boundary if that is one, else empty; and back: 0
+/// of other names.
+std::string own_boundary_name(const TetMesh& m, int32_t label);
 int32_t own_boundary_label(const std::string& name);
-/// Names of the boundary labels that occur in `label`: surface, box_x0 … box_z1, then what boundary_names or
-/// patch_names has, else boundary_N. Lines that are not "ID NAME" name nothing.
+/// Names of the boundary labels that occur in `label`: surface, box_x0 … box_z1 or sphere, then what boundary_names
+/// or patch_names has, else boundary_N. Lines that are not "ID NAME" name nothing.
 std::map<int32_t, std::string> boundary_names(const TetMesh& m, const std::vector<int32_t>& label);
 /// The label of each triangle for boundary conditions: `patch` where the mesh has a positive one, else `boundary`.
 std::vector<int32_t> patches(const TetMesh& m);

@@ -256,6 +256,12 @@ private:
     if (const ArrayTag* a = find(d_.field, "decay")) // another program's may be anything
       if (const Column c = decoder_.decode(*a); c.size() == 1 && c.real(0) > 0 && std::isfinite(c.real(0)))
         m_.decay = c.real(0);
+    if (const ArrayTag* a = find(d_.field, "sphere"); a && a->type != ValueType::uint8)
+      if (const Column c = decoder_.decode(*a); c.size() == 4) {
+        const Sphere s{{c.real(0), c.real(1), c.real(2)}, c.real(3)};
+        if (s.radius > 0 && std::isfinite(s.rounding()))
+          m_.sphere = s;
+      }
     m_.source = text("source");
     m_.creator = text("creator");
     const Index fields = index_of(d_.field);

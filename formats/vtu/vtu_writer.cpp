@@ -49,6 +49,12 @@ Array number_array(const char* name, const double& value) {
           [&value](std::ostream& out) { write_bytes(out, &value, sizeof value); }};
 }
 
+Array sphere_array(const Sphere& s) {
+  const std::array<double, 4> value{s.center.x, s.center.y, s.center.z, s.radius};
+  return {"Float64", "sphere", " NumberOfTuples=\"4\"", sizeof value,
+          [value](std::ostream& out) { write_bytes(out, value.data(), sizeof value); }};
+}
+
 /// Labels of the tetrahedra, then of the triangles; null: 0.
 Array label_array(const char* name, const TetMesh& m, const std::vector<int32_t>* tet,
                   const std::vector<int32_t>* tri) {
@@ -101,6 +107,8 @@ void write_vtu(std::ostream& out, const TetMesh& m) {
                               bytes_array("creator", m.creator)};
   if (m.decay > 0)
     field.push_back(number_array("decay", m.decay));
+  if (m.sphere)
+    field.push_back(sphere_array(*m.sphere));
   for (const NamedText& t : m.named_text)
     field.push_back(bytes_array(escaped(t.name), t.text));
   std::vector<Array> label = {label_array("region", m, &m.region, nullptr),

@@ -1,12 +1,16 @@
 // contour.cpp — the stages of contour() in order.
 #include "contour/contour.hpp"
 #include "base/error.hpp"
+#include "contour/outer_sphere/cut_to_sphere.hpp"
+#include "contour/outer_sphere/outer_sphere.hpp"
 #include "contour/small_bodies/finer_grid.hpp"
 
 namespace molmesh::contour {
 
-TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
+TetMesh contour(const BlockGrid& grid, const Options& asked, Summary& summary,
                 const std::function<void(const std::string&)>& on_phase, Stages& stages) {
+  Options options = asked;
+  options.box = with_sphere(grid, asked.box, asked.threads);
   const bool with_outside = options.meshed != Options::interior;
   on_phase("surface cells");
   const FinerGrid finer = finer_grid(grid, options);
@@ -39,6 +43,10 @@ TetMesh contour(const BlockGrid& grid, const Options& options, Summary& summary,
              std::string(options.drop_below > 0 ? ", or all of it is smaller than drop-below" : "") +
              ": nothing to mesh",
          options.drop_below > 0 ? std::vector<std::string>{"drop-below"} : std::vector<std::string>{});
+  if (options.box.is_sphere()) {
+    on_phase("sphere");
+    cut_to_sphere(mesh, options.box.outer, options.threads);
+  }
   mesh.isovalue = grid.info.isovalue;
   mesh.decay = grid.info.decay;
   mesh.source = grid.info.source;

@@ -1,5 +1,6 @@
 // plan.cpp — counts leaves; elements, memory and time for each leaf are measured (docs/benchmarks.md, Plans).
 #include "contour/plan.hpp"
+#include "contour/outer_sphere/outer_sphere.hpp"
 #include "contour/small_bodies/finer_grid.hpp"
 #include "contour/stages.hpp"
 #include "par/par.hpp"
@@ -34,7 +35,9 @@ double interpolated(double Measured::*x, double spacing) {
 
 } // namespace
 
-Leaves count_leaves(const BlockGrid& grid, const Options& options) {
+Leaves count_leaves(const BlockGrid& grid, const Options& asked) {
+  Options options = asked;
+  options.box = with_sphere(grid, asked.box, asked.threads);
   Leaves leaves;
   const FinerGrid finer = finer_grid(grid, options);
   leaves.halvings = finer.halvings;
@@ -50,21 +53,23 @@ Leaves count_leaves(const BlockGrid& grid, const Options& options) {
     refine.divided = border_nodes(lattice, options.owners);
   stages.select_leaves(refine);
   const OctreeView& tree = stages.tree().view();
-  std::atomic<int64_t> corners{0};
+  std::atomic<int64_t> corners{0}, beyond{0}; // inside the surface; beyond an outer sphere
   par::for_n(tree.size(), options.threads, 4096, [&](int64_t i) {
     const auto leaf = static_cast<int32_t>(i);
     const Vec3i p = tree.corner(leaf);
     const int32_t edge = tree.extent(leaf);
-    int64_t n = 0;
+    int64_t n = 0, far = 0;
     for (int c = 0; c < 8; ++c) {
       Vec3i q = p + edge * Vec3i{c & 1, c >> 1 & 1, c >> 2};
       for (int a = 0; a < 3; ++a)
         q[a] = std::min(q[a], lattice.cells[a]);
       n += lattice.value(q) > lattice.isovalue;
+      far += options.box.is_sphere() && options.box.outer.height(lattice.position(q)) > 0;
     }
+    beyond.fetch_add(far, std::memory_order_relaxed);
     corners.fetch_add(n, std::memory_order_relaxed);
   });
-  leaves.all = tree.size();
+  leaves.all = tree.size() - static_cast<double>(beyond) / 8;
   leaves.inside = static_cast<double>(corners) / 8;
   return leaves;
 }

@@ -1,9 +1,11 @@
 // tet_mesh.hpp — tetrahedra with regions and boundary triangles: what the .vtu file holds.
 #pragma once
 #include "base/large_array.hpp"
+#include "geom/sphere.hpp"
 #include "geom/vec.hpp"
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +15,7 @@ using Tet = std::array<int32_t, 4>; ///< dot(cross(p1 - p0, p2 - p0), p3 - p0) >
 using Tri = std::array<int32_t, 3>; ///< counter-clockwise seen from outside
 
 enum Region : int32_t { molecule = 1, outside = 2, cavity = 3 };
-enum Boundary : int32_t { surface = 1, box_x0 = 2, box_x1, box_y0, box_y1, box_z0, box_z1 };
+enum Boundary : int32_t { surface = 1, box_x0 = 2, box_x1, box_y0, box_y1, box_z0, box_z1, outer_sphere = box_x0 };
 
 /// Further values of every cell, tetrahedra first: integers or reals, the other vector is empty.
 struct CellArray {
@@ -28,7 +30,7 @@ struct NamedText {
 };
 
 /// Triangles are exactly the faces between regions and the faces with one tetrahedron. Molecular-surface triangles
-/// point out of region 1, box triangles out of the box. No duplicate or unused point (I6).
+/// point out of region 1, triangles of the box or sphere out of it. No duplicate or unused point (I6).
 struct TetMesh {
   std::vector<Vec3d> point; ///< Å
   LargeArray<Tet> tet;
@@ -40,6 +42,8 @@ struct TetMesh {
   std::string source, creator;
   std::vector<CellArray> cell_array; ///< labels of tetlabel, or of a foreign mesh
   std::vector<NamedText> named_text;
+  std::optional<Sphere>
+      sphere; ///< the outer boundary, with the label outer_sphere; none: a box, or no outer boundary
 };
 
 /// Centroid (Å) of a cell as cell arrays count them: tetrahedra first, then triangles.

@@ -161,11 +161,17 @@ private:
     fault("open_edge", all.open_edges, open);
     fault("crowded_edge", all.crowded_edges, crowded_edge);
     fault("pinched_point", all.pinched_points, pinched);
-    std::vector<Tri> surface;
+    v_.surface = summary_of(Boundary::surface);
+    if (m_.sphere)
+      v_.outer_sphere = summary_of(Boundary::outer_sphere);
+  }
+
+  SurfaceSummary summary_of(int32_t label) const {
+    std::vector<Tri> tri;
     for (size_t t = 0; t < m_.tri.size(); ++t)
-      if (m_.boundary[t] == Boundary::surface)
-        surface.push_back(m_.tri[t]);
-    v_.surface = summarize_surface(m_.point, surface, threads_);
+      if (m_.boundary[t] == label)
+        tri.push_back(m_.tri[t]);
+    return summarize_surface(m_.point, tri, threads_);
   }
 
   void check_box() {
@@ -184,6 +190,10 @@ private:
     const bool has_domains = order.last_domain > Region::cavity;
     if (!within(m_.region, order.last_domain) || !within(m_.boundary, has_domains ? INT32_MAX : Boundary::box_z1))
       return;
+    if (m_.sphere) {
+      check_sphere();
+      return;
+    }
     const auto side = [&](int64_t t) {
       return m_.boundary[t] > Boundary::box_z1 ? -1 : m_.boundary[t] - Boundary::box_x0;
     };
@@ -221,6 +231,23 @@ private:
     if (!(std::fabs(v_.volume - box) <= tolerance * box))
       fault("box_volume", 1,
             "volumes add up to " + std::to_string(v_.volume) + " Å³, the box has " + std::to_string(box) + " Å³");
+  }
+
+  // The outer boundary is a sphere.
+  void check_sphere() {
+    const auto wrong_label = [&](int64_t t) {
+      const int32_t label = m_.boundary[t];
+      return (label > Boundary::outer_sphere && label <= Boundary::box_z1) ||
+             (label == Boundary::outer_sphere && !one_sided_[t]);
+    };
+    fault("sphere_label", tally(tris(), threads_, wrong_label), [&](int64_t t) { return tri(t); });
+    const auto off = [&](int64_t t) {
+      return m_.boundary[t] == Boundary::outer_sphere &&
+             std::any_of(m_.tri[t].begin(), m_.tri[t].end(), [&](int32_t v) {
+               return !(std::fabs(m_.sphere->height(point(v))) <= m_.sphere->rounding());
+             });
+    };
+    fault("sphere_point", tally(tris(), threads_, off), [&](int64_t t) { return tri(t); });
   }
 
   void check_skin() {

@@ -1,6 +1,7 @@
 // validity.hpp — checks every point of I6: a conforming mesh whose regions are bounded by closed 2-manifolds.
 #pragma once
 #include "mesh/region_summary.hpp"
+#include <optional>
 
 namespace molmesh {
 
@@ -22,6 +23,8 @@ namespace molmesh {
 ///   box_label            a box triangle between two tetrahedra, or a surface triangle in the plane of a box side
 ///   box_plane            box triangles of one side not in one plane, to the last bit, or points beyond it
 ///   box_volume           volumes that do not add up to the box
+///   sphere_label         of a mesh with an outer sphere: a triangle of it between two tetrahedra, or of a box
+///   sphere_point         a triangle of the outer sphere with a point that is not on it, to rounding
 ///   overlap              a piece of the faces with one tetrahedron that has tetrahedra on its outer side too, or
 ///                        several over each other on its inner side: a hanging node, a body within another
 /// The box rules apply where regions are 1 to 3 or domains and labels 1 to 7 or interfaces of these; box_volume,
@@ -34,11 +37,12 @@ struct Fault {
 };
 
 struct Validity {
-  std::vector<Fault> faults;         ///< none: valid
-  std::vector<RegionSummary> region; ///< ascending
-  SurfaceSummary surface;            ///< triangles with label 1
-  double volume = 0;                 ///< Å³
-  Vec3d low, high;                   ///< bounding box, Å
+  std::vector<Fault> faults;                  ///< none: valid
+  std::vector<RegionSummary> region;          ///< ascending
+  SurfaceSummary surface;                     ///< triangles with label 1
+  std::optional<SurfaceSummary> outer_sphere; ///< its triangles, where the mesh has one
+  double volume = 0;                          ///< Å³
+  Vec3d low, high;                            ///< bounding box, Å
   bool valid() const { return faults.empty(); }
 };
 

@@ -14,12 +14,13 @@ struct Options : cli::Common, cli::PlanOptions {
 
 inline void describe(cli::Table& t, Options& o) {
   t.group("mesh");
-  t.add("--region", o.region, "what to mesh: interior (the molecule), exterior (up to the box), both")
+  t.add("--region", o.region, "what to mesh: interior (the molecule), exterior (up to the box or sphere), both")
       .one_of({"interior", "exterior", "both"});
   t.add("--box", o.box,
         "outer box: auto (interior: the grid; else at least twice the surface's extents), tight (the grid), a "
         "factor of the surface's extents (2x; up to 10 without the x), a distance round the surface in Å (+30), or "
-        "x0,y0,z0,x1,y1,z1 in Å, which may cut the molecule")
+        "x0,y0,z0,x1,y1,z1 in Å, which may cut the molecule; or a sphere: sphere:2x (of the radius of the surface "
+        "about the middle of its extents), sphere:+30 (round that), sphere:X,Y,Z,RADIUS in Å")
       .unit("BOX");
   t.add("--adapt", o.adapt,
         "auto or 0 to 100: how far the surface may lie from a coarser cell's mean plane, in grid spacings, and "
@@ -43,16 +44,20 @@ inline void describe(cli::Table& t, Options& o) {
   t.quantity("margin", "hier2density --margin");
   t.page.about =
       "Meshes the isosurface of a density grid by dual contouring on an octree: the inside of the molecule, its "
-      "surroundings up to a box, or both in one conforming mesh. The mesh is valid by construction: positive "
+      "surroundings up to a box or a sphere, or both in one conforming mesh. The mesh is valid by construction: "
+      "positive "
       "volumes, every face in one or two tetrahedra, every region's boundary a closed manifold. Cells are "
       "larger where the surface is flat. Regions of tetrahedra are 1 the molecule, 2 outside and 3 closed "
-      "cavities; boundaries of triangles are 1 the molecular surface and 2 to 7 the walls of the box. With "
+      "cavities; boundaries of triangles are 1 the molecular surface and 2 to 7 the walls of the box, or 2 the "
+      "outer sphere. With "
       "--regions the groups of a level are regions 4, 5, … in the order of the .hier, and the faces between two of "
       "them have boundaries 8, 9, …; the file has the names of all.";
   t.page.examples = {
       {"density2tet 1tii.vdb -o 1tii.tet.vtu", "the molecule alone"},
       {"density2tet --region both --box 3x 1tii.vdb -o 1tii.tet.vtu",
        "the molecule and its surroundings, in a box three times its extents"},
+      {"density2tet --region exterior --box sphere:3x 1tii.vdb -o 1tii.tet.vtu",
+       "the surroundings, up to a sphere of three times the molecule's radius"},
       {"density2tet --regions chain --hier 1tii.hier 1tii.vdb -o 1tii.tet.vtu", "each chain a volume of its own"},
       {"density2tet --region exterior --cavities fill --drop-below 50 1tii.vdb -o 1tii.tet.vtu",
        "the surroundings alone, without closed cavities and bodies of less than 50 Å³"}};

@@ -7,7 +7,10 @@
 namespace molmesh {
 
 struct Options : cli::Common, cli::PlanOptions {
-  Options() { require_device = cuda::require_device; }
+  Options() {
+    require_device = cuda::require_device;
+    machine_limits = true;
+  }
   std::optional<double> spacing;
   int64_t grid = 0;
   std::string margin = "auto";

@@ -32,6 +32,10 @@ int level_for(double extent) {
   return level;
 }
 
+/// Cells beside an outer sphere are at most this part of its radius: the volume between it and the mesh's triangles
+/// is then some 0.6 % of its own.
+constexpr double largest_of_radius = 1. / 8;
+
 struct IndexBox {
   static constexpr int32_t none = 1 << 30; // beyond any index of a grid
   Vec3i lower{none, none, none}, upper{-none, -none, -none};
@@ -98,7 +102,13 @@ Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls, i
   const bool by_extents = request.kind == BoxRequest::factor || request.kind == BoxRequest::padding;
 
   Vec3d lower = frame.position(frame.lower), upper = frame.position(grid_last);
-  if (request.kind == BoxRequest::corners) {
+  if (request.kind == BoxRequest::sphere) {
+    const double reach = (1 + 2 * largest_of_radius) * request.outer.radius; // two of the largest cells beyond it
+    for (int a = 0; a < 3; ++a) {
+      lower[a] = std::min(lower[a], request.outer.center[a] - reach);
+      upper[a] = std::max(upper[a], request.outer.center[a] + reach);
+    }
+  } else if (request.kind == BoxRequest::corners) {
     lower = request.lower;
     upper = request.upper;
   } else if (!to_grid) {
@@ -132,11 +142,14 @@ Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls, i
            {"box"});
     least = std::min(least, extent);
   }
-  const bool exact = request.kind != BoxRequest::automatic;
-  for (top_level = level_for(least);; --top_level) {
+  top_level = level_for(least);
+  while (request.kind == BoxRequest::sphere && top_level > 0 &&
+         (1 << top_level) * h > largest_of_radius * request.outer.radius)
+    --top_level;
+  for (;; --top_level) {
     bool whole = true;
     for (int a = 0; a < 3; ++a)
-      whole = plan_axis(a, lower[a], upper[a], frame.lower[a], grid_last[a], exact) && whole;
+      whole = plan_axis(a, lower[a], upper[a], frame.lower[a], grid_last[a], request.kind) && whole;
     if (whole || top_level == 0)
       break;
   }
@@ -160,7 +173,8 @@ Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls, i
   }
 }
 
-bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_t last, bool exact) {
+bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_t last, BoxRequest::Kind kind) {
+  const bool round = kind == BoxRequest::sphere, exact = kind != BoxRequest::automatic && !round;
   const double h = grid_.frame.spacing, origin = grid_.frame.origin[a];
   const auto index = [&](double x) { // a wall on a grid plane is on it, whatever rounding makes of its place
     const double i = (x - origin) / h, whole = std::floor(i + 0.5);
@@ -193,14 +207,15 @@ bool Lattice::plan_axis(int a, double lower, double upper, int32_t first, int32_
     begin -= low_change;
     end += change - low_change;
   }
-  if (exact && whole && top_level > 0 && begin < first && end > last) {
+  if ((exact || round) && whole && top_level > 0 && begin < first && end > last) {
     const int32_t middle = (first + last) / 2 - begin;
     constexpr int32_t largest_surface_cell = 1 << most_merges; // in steps of these all surface cells stay the same
     const int32_t shift = (off_centre(middle, unit / 2) - middle) / largest_surface_cell * largest_surface_cell;
     const auto gives_way = [](int32_t spacings, double meshed) {
       return std::abs(spacings - meshed) <= most_change * meshed;
     };
-    if (gives_way(first - begin + shift, first - low) && gives_way(end - last - shift, high - last)) {
+    if (round ? begin - shift <= first && end - shift >= last
+              : gives_way(first - begin + shift, first - low) && gives_way(end - last - shift, high - last)) {
       begin -= shift;
       end -= shift;
     }

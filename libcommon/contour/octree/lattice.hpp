@@ -1,6 +1,6 @@
 // lattice.hpp — the grid points that the octree divides: their values, and their positions up to the outer box.
 #pragma once
-#include "geom/vec.hpp"
+#include "geom/sphere.hpp"
 #include "grid/block_grid.hpp"
 #include <array>
 #include <vector>
@@ -10,12 +10,14 @@ namespace molmesh::contour {
 /// Levels that surface cells may merge over: 32 fine spacings at most.
 inline constexpr int most_merges = 5;
 
-/// The outer box to mesh in.
+/// The outer boundary to mesh in: a box, or a sphere.
 struct BoxRequest {
-  enum Kind { automatic, tight, factor, padding, corners } kind = automatic;
-  double scale = 0;    ///< factor: times the surface's own extents, about its centre
+  enum Kind { automatic, tight, factor, padding, corners, sphere_factor, sphere_padding, sphere } kind = automatic;
+  double scale = 0; ///< factor: times the surface's own extents, about its centre; sphere_factor: times its radius
   Vec3d lower, upper;  ///< corners: Å; met to the last bit
-  double distance = 0; ///< padding: Å from the surface's own extents to every wall
+  double distance = 0; ///< padding, sphere_padding: Å from the surface's own extents, or its radius
+  Sphere outer;        ///< sphere: to mesh in; the box of the lattice holds it
+  bool is_sphere() const { return kind >= sphere_factor; }
 };
 
 /// A lattice as plain arrays. Host and device.
@@ -124,9 +126,10 @@ struct SetInsideWords {
 /// cuts through the grid lies between grid planes: its points take the density interpolated there.
 class Lattice {
 public:
-  /// request.kind automatic: with `walls` at least twice the surface's extents, else at least the grid; the other
-  /// kinds are met exactly. Throws Error(failed) when the grid has no surface, Error(usage) when the box is empty
-  /// or not larger than a few cells.
+  /// request.kind automatic: with `walls` at least twice the surface's extents, else at least the grid; sphere: the
+  /// walls hold grid and sphere, cells are at most an eighth of its radius; the other kinds are met exactly. A
+  /// sphere that depends on the surface is found before (outer_sphere.hpp). Throws Error(failed) when the grid has
+  /// no surface, Error(usage) when the box is empty or not larger than a few cells.
   Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls, int threads);
   Lattice(const Lattice&) = delete;
   Lattice& operator=(const Lattice&) = delete;
@@ -148,7 +151,7 @@ public:
 private:
   using Cut = LatticeView::Cut;
   /// False when the axis does not divide into cells of top_level.
-  bool plan_axis(int axis, double lower, double upper, int32_t first, int32_t last, bool exact);
+  bool plan_axis(int axis, double lower, double upper, int32_t first, int32_t last, BoxRequest::Kind kind);
 
   const BlockGrid& grid_;
   BlockIndex index_;

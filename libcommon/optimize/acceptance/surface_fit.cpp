@@ -221,6 +221,9 @@ bool Bound::operator()(Vec3d& x) const {
       if (vertex.frozen >> a & 1)
         x[a] = from[a];
     return true;
+  case Kind::round:
+    x = r.mesh.sphere.nearest(x);
+    return true;
   case Kind::fixed:
     break;
   }

@@ -26,6 +26,7 @@ enum class Kind : uint8_t {
   sliding,  ///< on axis planes alone (box walls): keeps the frozen coordinates
   trace,    ///< where one curved label meets one wall: stays on the target and in the wall
   line,     ///< where three triangles of curved labels meet, between domains: stays on the targets of two of these
+  round,    ///< on the outer sphere alone: stays on it
   fixed,    ///< where other labels or sharp edges meet: never moves, is never removed
 };
 /// On a curved label, and free to move on it.
@@ -83,12 +84,13 @@ namespace molmesh::optimize {
 
 struct Label {
   int32_t name = 0;  ///< TetMesh::boundary
-  int axis = -1;     ///< all its triangles lie in one plane normal to this axis; -1: curved
+  int axis = -1;     ///< all its triangles lie in one plane normal to this axis; -1: curved or round
   bool wall = false; ///< and the mesh ends there
   /// What its triangles are kept on, between domains; null: the mesh's target.
   const Target* target = nullptr;
   bool reversed = false; ///< its triangles point into the first of the two regions, or into the mesh
-  bool curved() const { return axis < 0; }
+  bool round = false;    ///< all its points lie on the mesh's outer sphere
+  bool curved() const { return axis < 0 && !round; } ///< it is on a target
 };
 
 struct DynamicMesh {
@@ -101,6 +103,7 @@ struct DynamicMesh {
   Array<Label> labels; ///< [0] is no label
   Walls walls;
   RegionOrder order;
+  Sphere sphere; ///< of round labels
   /// [chunks] 1 if an element of this chunk changed since its worst quality was computed.
   Array<uint8_t> dirty;
   Array<float> worst; ///< [chunks] lowest quality where not dirty; 2 where nothing is alive

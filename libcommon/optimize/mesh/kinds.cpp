@@ -63,6 +63,21 @@ void find_flat_labels(DynamicMesh& m, const TetMesh& mesh, const std::vector<uin
     }
 }
 
+// A label is round when all its points lie on the mesh's sphere, up to what single precision leaves of them.
+void find_round_labels(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label) {
+  if (!mesh.sphere)
+    return;
+  m.sphere = *mesh.sphere;
+  const double most = 0x1p-20 * (norm(m.sphere.center) + m.sphere.radius);
+  for (size_t l = 1; l < m.labels.size(); ++l)
+    m.labels[l].round = m.labels[l].name == Boundary::outer_sphere && m.labels[l].axis < 0;
+  for (size_t t = 0; t < mesh.tri.size(); ++t)
+    if (m.labels[label[t]].round)
+      for (const int32_t v : mesh.tri[t])
+        if (!(std::abs(m.sphere.height(mesh.point[v])) <= most))
+          m.labels[label[t]].round = false;
+}
+
 /// Corners of triangles at one vertex, joined across the edges there: one set for each fan.
 class Fans {
 public:
@@ -183,19 +198,22 @@ private:
   }
 };
 
-// On one curved label: of the surface; on flat labels of different axes, two at most: sliding; else fixed.
+// On one curved label: of the surface; on a round one: round; on flat labels of different axes, two at most:
+// sliding; else fixed.
 Vertex vertex_of(const DynamicMesh& m, const std::array<uint8_t, 3>& labels, bool many) {
   Vertex x{Kind::fixed, 0, labels[0]};
   if (many)
     return x;
   if (labels[1] == 0 && m.labels[labels[0]].curved())
     x.kind = Kind::surface;
+  if (labels[1] == 0 && m.labels[labels[0]].round)
+    x.kind = Kind::round;
   bool flat = true;
   int frozen = 0, planes = 0;
   for (const uint8_t l : labels) {
     if (l == 0)
       continue;
-    flat = flat && !m.labels[l].curved();
+    flat = flat && m.labels[l].axis >= 0;
     if (flat)
       frozen |= 1 << m.labels[l].axis, ++planes;
   }
@@ -306,6 +324,7 @@ Vertex line_vertex(const DynamicMesh& m, std::vector<uint8_t> labels) {
 void set_kinds(DynamicMesh& m, const TetMesh& mesh, const std::vector<uint8_t>& label,
                const std::vector<uint8_t>& way, double sharp, int threads) {
   find_flat_labels(m, mesh, label);
+  find_round_labels(m, mesh, label);
   const VertexLabels labels(mesh, label);
   Traces traces(m.point.size());
   Lines lines(m.point.size());

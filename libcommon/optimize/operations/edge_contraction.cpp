@@ -1,4 +1,5 @@
 // edge_contraction.cpp — an edge shrinks to one of its ends; surfaces and walls keep their shape and topology.
+#include "optimize/acceptance/sag.hpp"
 #include "optimize/operations/moving_vertex.hpp"
 #include "par/par.hpp"
 #include <algorithm>
@@ -218,7 +219,7 @@ bool merge(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
     q.push_back(c.q);
     sum += accept.deficit_of(c.q), allowed += accept.deficit_of(el.q);
   }
-  if (!good || sum > allowed) {
+  if (!good || sum > allowed || (kb.kind == Kind::round && largest_sag(r.mesh, other_star, b) > most_sag)) {
     r.mesh.point[b] = pb;
     return false;
   }

@@ -35,10 +35,10 @@ bool split(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
       if (ring.border.size() != 2 || ring.label[0] != ring.label[1])
         return false;
       kind.label = ring.label[0];
-      kind.kind = label.curved() ? Kind::surface : Kind::sliding;
+      kind.kind = label.curved() ? Kind::surface : label.round ? Kind::round : Kind::sliding;
     }
     kind.watched = r.mesh.vertex[a].watched || r.mesh.vertex[b].watched;
-    if (!label.curved())
+    if (kind.kind == Kind::sliding)
       kind.frozen = static_cast<uint8_t>(1 << label.axis);
     if (label.curved() && !r.target)
       return false;

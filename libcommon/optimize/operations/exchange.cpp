@@ -1,4 +1,5 @@
 // exchange.cpp — the exchange of a cavity's elements: faces are matched before anything changes.
+#include "optimize/acceptance/sag.hpp"
 #include "optimize/operations/region.hpp"
 #include <algorithm>
 
@@ -104,6 +105,27 @@ bool Region::any_in_wall(const std::vector<Candidate>& now) const {
   });
 }
 
+// Whether a triangle that comes to lie on the outer sphere sags more than it may, and than those that go.
+bool Region::any_sags(const std::vector<Candidate>& now) const {
+  const uint8_t lost = lost_label();
+  if (!mesh.labels[lost].round)
+    return false;
+  double before = most_sag, after = 0;
+  const auto sag_of = [&](const std::array<int32_t, 3>& v) {
+    return sag(mesh.sphere, mesh.point[v[0]], mesh.point[v[1]], mesh.point[v[2]]);
+  };
+  for (const int32_t i : used_) {
+    const Face& x = table_[i];
+    if (x.is_lost())
+      before = std::max(before, sag_of(outward_triangle(mesh.element[x.old / 4].v, size_t(x.old & 3))));
+    else if (x.is_new())
+      after = std::max(after, sag_of(outward_triangle(now[x.first / 4].v, size_t(x.first & 3))));
+    else if (x.is_bared())
+      after = std::max(after, sag_of(outward_triangle(mesh.element[x.element].v, x.face)));
+  }
+  return after > before;
+}
+
 // Of a new face: its first element's own, where that has one.
 uint8_t Region::label_of(const Face& x, const std::vector<Candidate>& now, uint8_t otherwise) {
   const uint8_t own = now[x.first / 4].label[x.first & 3];
@@ -157,7 +179,7 @@ bool Region::exchange(const std::vector<int32_t>& old, const std::vector<Candida
                       bool moved) {
   if (!moved)
     crossings.clear();
-  if (!match(old, now, surface) || (surface && any_in_wall(now)))
+  if (!match(old, now, surface) || (surface && (any_in_wall(now) || any_sags(now))))
     return false;
   if ((surface || moved) && crossings.on()) {
     list_free_triangles(now);

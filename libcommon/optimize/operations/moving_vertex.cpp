@@ -1,6 +1,7 @@
 // moving_vertex.cpp — pattern search along what the vertex is bound to, and the test of its star at the new place.
 #include "optimize/operations/moving_vertex.hpp"
 #include "geom/tet_quality_simd.hpp"
+#include "optimize/acceptance/sag.hpp"
 #include <algorithm>
 
 namespace molmesh::optimize {
@@ -29,11 +30,28 @@ double mean_edge(const Region& r, const std::vector<int32_t>& star, int32_t v) {
   return length / (3. * double(star.size()));
 }
 
+namespace {
+
+/// The plane across the normal, as an orthonormal basis.
+int plane_across(Vec3d normal, Vec3d basis[3]) {
+  Vec3d other{1, 0, 0};
+  if (std::abs(normal.x) > 0.6)
+    other = {0, 1, 0};
+  basis[0] = cross(normal, other);
+  basis[0] = basis[0] / norm(basis[0]);
+  basis[1] = cross(normal, basis[0]);
+  return 2;
+}
+
+} // namespace
+
 int directions_of(const Region& r, const Vertex& vertex, bool leaves_target, Vec3d x, Vec3d basis[3]) {
   const Target* target = r.target_of(vertex.label);
   int n = 0;
   if (vertex.kind == Kind::fixed)
     return 0;
+  if (vertex.kind == Kind::round)
+    return plane_across((x - r.mesh.sphere.center) / norm(x - r.mesh.sphere.center), basis);
   if (!follows_target(vertex.kind) || (leaves_target && target)) {
     for (int a = 0; a < 3; ++a)
       if (!(vertex.frozen >> a & 1))
@@ -57,13 +75,7 @@ int directions_of(const Region& r, const Vertex& vertex, bool leaves_target, Vec
     basis[0] = basis[0] / length;
     return 1;
   }
-  Vec3d other{1, 0, 0};
-  if (std::abs(normal.x) > 0.6)
-    other = {0, 1, 0};
-  basis[0] = cross(normal, other);
-  basis[0] = basis[0] / norm(basis[0]);
-  basis[1] = cross(normal, basis[0]);
-  return 2;
+  return plane_across(normal, basis);
 }
 
 float worth_at(Region& r, const Acceptance& accept, Vec3d x, float above) {
@@ -92,6 +104,21 @@ bool search_place(Region& r, const Acceptance& accept, const Vertex& vertex, Vec
       [&](Vec3d y) { return fits_at(r, accept, y, before); }, accept.least_step);
 }
 
+namespace {
+
+/// Whether the triangles on the sphere at v sag more than they may, and than with v at `from`.
+bool sags_more(DynamicMesh& m, const std::vector<int32_t>& star, int32_t v, Vec3d from) {
+  const double now = largest_sag(m, star, v);
+  if (now <= most_sag)
+    return false;
+  const Vec3d to = std::exchange(m.point[v], from);
+  const double before = largest_sag(m, star, v);
+  m.point[v] = to;
+  return now > before;
+}
+
+} // namespace
+
 bool accept_move(Region& r, const Acceptance& accept, const std::vector<int32_t>& star, int32_t v, Vec3d from,
                  float above, float allowed, Moves* later) {
   DynamicMesh& m = r.mesh;
@@ -102,6 +129,8 @@ bool accept_move(Region& r, const Acceptance& accept, const std::vector<int32_t>
   };
   const bool on_surface = follows_target(m.vertex[v].kind);
   if (on_surface && !r.inside_walls(from, m.point[v]))
+    return refuse();
+  if (m.vertex[v].kind == Kind::round && sags_more(m, star, v, from))
     return refuse();
   now.clear();
   const auto corner = [&](size_t k, size_t i) { return m.point[m.element[star[k]].v[i]]; };

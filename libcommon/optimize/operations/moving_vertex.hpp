@@ -14,8 +14,8 @@ float deficit_of(const Acceptance& accept, const std::vector<Candidate>& element
 double mean_edge(const Region& r, const std::vector<int32_t>& star, int32_t v); ///< of those at v (Å)
 
 /// Directions that a vertex at x may take, an orthonormal basis of them; how many: all three, the free axes, the
-/// plane across the target's normal, or that plane's line in a wall or in another target's plane. leaves_target: it
-/// is not kept on the target.
+/// plane across the normal of target or sphere, or the former's line in a wall or in another target's plane.
+/// leaves_target: it is not kept on the target.
 int directions_of(const Region& r, const Vertex& vertex, bool leaves_target, Vec3d x, Vec3d basis[3]);
 
 /// Whether the moving triangles fit with the vertex at x.

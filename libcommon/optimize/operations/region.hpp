@@ -157,6 +157,7 @@ private:
   uint8_t lost_label() const;
   static uint8_t label_of(const Face& x, const std::vector<Candidate>& now, uint8_t otherwise);
   bool any_in_wall(const std::vector<Candidate>& now) const;
+  bool any_sags(const std::vector<Candidate>& now) const;
   void list_free_triangles(const std::vector<Candidate>& now);
   bool face_is_taken(const std::vector<int32_t>& old);
   void commit(const std::vector<int32_t>& old, const std::vector<Candidate>& now);

@@ -41,4 +41,8 @@ TEST_CASE("the memory that is granted is the least of the control groups' and Sl
   says("groups/job/memory.max", "1000000000\n");
   CHECK(cli::granted_memory("2000", system) == 1000000000);
   CHECK(cli::granted_memory("500", system) == int64_t{500} << 20);
+  CHECK(cli::machine_memory(system) == -1);
+  says("proc/meminfo",
+       "MemTotal:       16000 kB\nMemFree:         1000 kB\nSwapTotal:       3000 kB\nHugePages_Total:       0\n");
+  CHECK(cli::machine_memory(system) == 19000 * 1024);
 }
