@@ -21,24 +21,29 @@ mesh() {
 }
 
 case $what in
-ion) # Born's energy within 1 %
+ion) # Born's energy within 1 %, in a box and in a sphere
   pdb2hier -q --levels none "$SOURCE/tests/data/ion.pqr" -o ion.hier
-  mesh ion both 0.25 "--box 10"
-  tetconvert -q ion.vtu -o ion.mesh
-  solve born ion.mesh 1 3
+  for box in 10 sphere:10x; do
+    mesh ion both 0.25 "--box $box"
+    tetconvert -q ion.vtu -o ion.mesh
+    echo -n "--box $box: "
+    solve born ion.mesh 1 3
+  done
   ;;
 harmonic) # a harmonic polynomial to 1e-10; with one tetrahedron missing it must not be found
   pdb2hier -q "$SOURCE/tests/data/1tii.pdb" -o 1tii.hier
   printf 'pentamer //D,E,F,G,H\nA //A,C\n' >domains.txt
-  for region in interior exterior both domains; do
+  for region in interior exterior both sphere domains; do
     inner=0
     case $region in
-    both) inner=1 ;;
+    both | sphere) inner=1 ;;
     domains) inner=3 ;; # across their interface, too
     esac
     if [ $region = domains ]; then
       pdb2hier -q --levels domain,chain,residue --domains domains.txt "$SOURCE/tests/data/1tii.pdb" -o 1tii.hier
       mesh 1tii both 5 "--regions domain --hier 1tii.hier" "--hier 1tii.hier"
+    elif [ $region = sphere ]; then
+      mesh 1tii both 5 "--box sphere:1.5x"
     else
       mesh 1tii $region 5
     fi

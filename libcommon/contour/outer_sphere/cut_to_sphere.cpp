@@ -242,6 +242,8 @@ private:
         m_.region[kept++] = m_.region[i];
       }
     }
+    if (!std::all_of(cut.begin(), cut.end(), [&](const Tet& t) { return is_positive(t); }))
+      fail(Status::failed, "an element that the sphere cuts has no volume left, expected another radius", {"box"});
     m_.tet.resize(kept);
     m_.region.resize(kept);
     m_.tet.insert(m_.tet.end(), cut.begin(), cut.end());

@@ -78,6 +78,11 @@ void check_same(const TetMesh& a, const TetMesh& b) {
   CHECK(a.decay == b.decay);
   CHECK(a.source == b.source);
   CHECK(a.creator == b.creator);
+  REQUIRE(a.sphere.has_value() == b.sphere.has_value());
+  if (a.sphere) {
+    CHECK(a.sphere->center == b.sphere->center);
+    CHECK(a.sphere->radius == b.sphere->radius);
+  }
 }
 
 /// Triangles as sets of rotations.
@@ -95,6 +100,8 @@ TEST_CASE("what is written is read back exactly, and written again as the same b
   m.point[4] = {0x1.fffffffffffffp+3, -0.0, 1e-17};
   m.isovalue = 0.1;
   m.decay = GENERATE(0., 0.7);
+  if (GENERATE(false, true))
+    m.sphere = Sphere{{0.1, -2e-300, 3}, 0x1.fffffffffffffp+3};
   m.source = "caf\xc3\xa9 & <1tii>.pdb </AppendedData> _";
   for (bool parts : {false, true}) {
     m.part = parts ? std::vector<int32_t>{7, 0} : std::vector<int32_t>{};
