@@ -128,8 +128,8 @@ void add_plan_options(Table& table, PlanOptions& o) {
   table.add("--speed", o.speed, "speed of a core, for seconds; docs/benchmarks.md: 1").positive();
   table
       .add("--max-mem", o.max_mem,
-           std::string("memory at most: 2G, none; auto: what is granted") +
-               (o.machine_limits ? ", else the machine's" : ""))
+           o.machine_limits ? "memory at most: 2G, none; auto: granted, or all"
+                            : "memory at most: 2G, none; auto: what is granted")
       .unit("SIZE");
 }
 
