@@ -99,30 +99,30 @@ int64_t euler_of_sphere(const TetMesh& m) {
 } // namespace
 
 TEST_CASE(
-    "a ball within a sphere: valid, its points on the sphere, volume and area those of the sphere's triangles") {
-  for (const double h : {0.5, 0.25})
-    for (const Sphere& sphere : {Sphere{{0, 0, 0}, 6}, Sphere{{0.7, -1.3, 0.4}, 9}, Sphere{{2, 3, -1}, 60}})
-      for (const auto meshed : {Options::exterior, Options::both}) {
-        CAPTURE(h, sphere.radius, int(meshed));
-        const BlockGrid grid = cube_grid(6, h, atom);
-        const TetMesh mesh = mesh_of(grid, in_sphere(meshed, sphere));
-        const Validity v = checked(mesh);
-        check_sphere(mesh, sphere);
-        CHECK(euler_of_sphere(mesh) == 2);
-        CHECK(v.surface.components == 1);
-        // With triangles of at most a seventh of the radius or so: 0.6 % and 0.3 %.
-        const double whole = 4 * pi / 3 * std::pow(sphere.radius, 3), ball = 36 * pi;
-        const double volume = meshed == Options::both ? v.volume : v.volume + ball;
-        CHECK(volume < whole * (meshed == Options::both ? 1 : 1 + 3e-3)); // of the ball at this spacing
-        CHECK(volume > 0.985 * whole);
-        const double area = area_of_sphere(mesh);
-        CHECK(area < 4 * pi * sphere.radius * sphere.radius);
-        CHECK(area > 0.985 * 4 * pi * sphere.radius * sphere.radius);
-        CHECK(deepest(mesh) < 0.1);
-        const Distribution angle = measure_quality(mesh, 1).all.dihedral;
-        CHECK(angle.min > 5);
-        CHECK(angle.max < 170);
-      }
+    "a ball within a sphere: valid, its points on the sphere, volume and area those of the sphere's triangles",
+    "[slow]") {
+  for (const Sphere& sphere : {Sphere{{0, 0, 0}, 6}, Sphere{{0.7, -1.3, 0.4}, 9}, Sphere{{2, 3, -1}, 60}})
+    for (const auto meshed : {Options::exterior, Options::both}) {
+      const double h = sphere.radius == 9 ? 0.25 : 0.5;
+      CAPTURE(h, sphere.radius, int(meshed));
+      const BlockGrid grid = cube_grid(6, h, atom);
+      const TetMesh mesh = mesh_of(grid, in_sphere(meshed, sphere));
+      const Validity v = checked(mesh);
+      check_sphere(mesh, sphere);
+      CHECK(euler_of_sphere(mesh) == 2);
+      CHECK(v.surface.components == 1);
+      const double whole = 4 * pi / 3 * std::pow(sphere.radius, 3), ball = 36 * pi;
+      const double volume = meshed == Options::both ? v.volume : v.volume + ball;
+      CHECK(volume < whole * (meshed == Options::both ? 1 : 1 + 3e-3)); // of the ball at this spacing
+      CHECK(volume > 0.985 * whole);
+      const double area = area_of_sphere(mesh);
+      CHECK(area < 4 * pi * sphere.radius * sphere.radius);
+      CHECK(area > 0.985 * 4 * pi * sphere.radius * sphere.radius);
+      CHECK(deepest(mesh) < 0.1);
+      const Distribution angle = measure_quality(mesh, 1).all.dihedral;
+      CHECK(angle.min > 8);
+      CHECK(angle.max < 165);
+    }
 }
 
 TEST_CASE("cells beside a large sphere are as coarse as far cells are") {
@@ -162,10 +162,10 @@ TEST_CASE("the sphere round the surface is that of a ball, and its factor and pa
   CHECK(contour::with_sphere(grid, padded, 1).outer.radius == padded.outer.radius);
 }
 
-TEST_CASE("a sphere that meets the surface is refused with a radius that works") {
+TEST_CASE("a sphere that meets the surface is refused with a radius that works", "[slow]") {
   const BlockGrid grid = cube_grid(6, 0.5, atom);
   for (const Vec3d center : {Vec3d{0, 0, 0}, Vec3d{1.1, 0.3, -0.2}, Vec3d{9, 4, 2}})
-    for (const double radius : {0.4, 3.0, norm(center) + 3.2}) {
+    for (const double radius : {center.x > 0 && center.x < 5 ? 0.4 : norm(center) + 3.2}) {
       CAPTURE(center.x, radius);
       std::string line;
       try {
@@ -187,7 +187,7 @@ TEST_CASE("a sphere that meets the surface is refused with a radius that works")
     }
 }
 
-TEST_CASE("the same mesh within a sphere on any number of threads") {
+TEST_CASE("the same mesh within a sphere on any number of threads", "[slow]") {
   const BlockGrid grid = creased_grid(3);
   Options options;
   options.meshed = Options::both;
@@ -195,7 +195,7 @@ TEST_CASE("the same mesh within a sphere on any number of threads") {
   options.box.scale = 1.7;
   const TetMesh one = mesh_of(grid, options);
   checked(one);
-  for (const int threads : {2, 3}) {
+  for (const int threads : {3}) {
     options.threads = threads;
     const TetMesh mesh = mesh_of(grid, options);
     REQUIRE(mesh.point.size() == one.point.size());

@@ -66,7 +66,7 @@ TEST_CASE("points of the outer sphere are on it, its triangles are the only oute
   CHECK(v.outer_sphere->euler == 2);
 
   SECTION("a point off the sphere by more than rounding") {
-    m.point[2].y += 1e-10;
+    m.point[2].x += 1e-10;
     CHECK(broken(m) == std::vector<std::string>{"sphere_point"});
   }
   SECTION("a triangle of a box") {

@@ -37,7 +37,7 @@ double largest_sag_of(const TetMesh& m) {
 
 } // namespace
 
-TEST_CASE("points of the outer sphere stay on it while elements get good") {
+TEST_CASE("points of the outer sphere stay on it while elements get good", "[slow]") {
   Hierarchy h;
   h.atom = {{{0.1, 0.2, 0.3}, 1.7}, {{1.3, 0.9, -0.4}, 1.5}, {{-0.6, 1.1, 1.2}, 1.8}};
   const BlockGrid grid = density_of(h, 0.5);
