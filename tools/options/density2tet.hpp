@@ -43,15 +43,14 @@ inline void describe(cli::Table& t, Options& o) {
   cli::add_plan_options(t, o);
   t.quantity("margin", "hier2density --margin");
   t.page.about =
-      "Meshes the isosurface of a density grid by dual contouring on an octree: the inside of the molecule, its "
-      "surroundings up to a box or a sphere, or both in one conforming mesh. The mesh is valid by construction: "
-      "positive "
-      "volumes, every face in one or two tetrahedra, every region's boundary a closed manifold. Cells are "
-      "larger where the surface is flat. Regions of tetrahedra are 1 the molecule, 2 outside and 3 closed "
-      "cavities; boundaries of triangles are 1 the molecular surface and 2 to 7 the walls of the box, or 2 the "
-      "outer sphere. With "
-      "--regions the groups of a level are regions 4, 5, … in the order of the .hier, and the faces between two of "
-      "them have boundaries 8, 9, …; the file has the names of all.";
+      "Meshes the isosurface of a density grid by dual contouring on an octree: the inside of the molecule, "
+      "its surroundings up to a box or a sphere, or both in one conforming mesh. The mesh is valid by "
+      "construction: positive volumes, every face in one or two tetrahedra, every region's boundary a "
+      "closed manifold. Cells are larger where the surface is flat. Regions of tetrahedra are 1 the "
+      "molecule, 2 outside and 3 closed cavities; boundaries of triangles are 1 the molecular surface and 2 "
+      "to 7 the walls of the box, or 2 the outer sphere. With --regions the groups of a level are regions "
+      "4, 5, … in the order of the .hier, and the faces between two of them have boundaries 8, 9, …; the "
+      "file has the names of all.";
   t.page.examples = {
       {"density2tet 1tii.vdb -o 1tii.tet.vtu", "the molecule alone"},
       {"density2tet --region both --box 3x 1tii.vdb -o 1tii.tet.vtu",
