@@ -25,7 +25,7 @@ inline void describe(cli::Table& t, Options& o) {
   t.add("--adapt", o.adapt,
         "auto or 0 to 100: how far the surface may lie from a coarser cell's mean plane, in grid spacings, and "
         "less where the chords of a small body would cost it volume; 0: uniform cells; auto: 0.1, or as many as "
-        "0.2 Å are, at most 0.85; cells are the grid's own and larger, bodies of few spacings get halves or "
+        "0.2 Å are, at most 0.4; cells are the grid's own and larger, bodies of few spacings get halves or "
         "quarters")
       .unit("ERROR");
   t.add(
