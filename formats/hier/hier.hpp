@@ -20,11 +20,12 @@ void write_hier(std::ostream& out, const Hierarchy& h);
 class HierWriter {
 public:
   enum class Version { v1, v2 };
-  /// levels: words of letters, digits, '_' and '-', outermost first. Atoms of radius 0 and bodies need version 2.
+  /// levels: words of letters, digits, '_' and '-', outermost first. Atoms of radius 0, bodies and weights other
+  /// than 1 need version 2.
   HierWriter(std::ostream& out, std::string_view source, const std::vector<std::string>& levels,
              Version version = Version::v1);
   /// level: index into `levels`. Closes every open group of this level and below.
-  void group(size_t level, std::string_view name, double exponent);
+  void group(size_t level, std::string_view name, double exponent, double weight = 1);
   /// center, radius in Å; charge in elementary charges, NaN: none.
   void atom(std::string_view name, std::string_view element, Vec3d center, double radius, double charge);
   void body(std::string_view name, const Body& body);

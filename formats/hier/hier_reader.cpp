@@ -221,6 +221,14 @@ private:
     return positive("the radius", largest_radius, "10000 Å");
   }
 
+  double weight() {
+    const char* begin = at_;
+    const double v = number("the weight");
+    if (!(v >= least_weight && v <= largest_weight))
+      refuse("R9: found " + text_from(begin) + ", expected the weight, from 0.001 to 1000");
+    return v;
+  }
+
   /// most: the largest that is allowed, in words too.
   double positive(const char* what, double most, const char* in_words) {
     const char* begin = at_;
@@ -314,7 +322,9 @@ private:
     const std::string_view text = name("a name");
     Group g{std::string(text), 1, children(l), 0};
     g.exponent = positive("the exponent P", largest_exponent, "1000");
-    expect_end("'LEVEL NAME P'");
+    if (version_ == 2 && at_ != stop_)
+      g.weight = weight();
+    expect_end(version_ == 1 ? "'LEVEL NAME P'" : "'LEVEL NAME P [WEIGHT]'");
     h_.level[l].group.push_back(std::move(g));
     open_ = l + 1;
   }

@@ -39,10 +39,12 @@ HierWriter::HierWriter(std::ostream& out, std::string_view source, const std::ve
   end_record();
 }
 
-void HierWriter::group(size_t level, std::string_view name, double exponent) {
+void HierWriter::group(size_t level, std::string_view name, double exponent, double weight) {
   put(levels_[level]);
   put_name(name);
   put_number(exponent);
+  if (weight != 1)
+    put_number(weight);
   end_record();
 }
 
@@ -136,8 +138,12 @@ void write_hier(std::ostream& out, const Hierarchy& h) {
   std::vector<std::string> levels;
   for (const Level& level : h.level)
     levels.push_back(level.name);
-  const bool needs_version_2 = !h.body.empty() || std::any_of(h.atom.begin(), h.atom.end(),
-                                                              [](const Atom& atom) { return atom.radius == 0; });
+  const bool weights = std::any_of(h.level.begin(), h.level.end(), [](const Level& level) {
+    return std::any_of(level.group.begin(), level.group.end(), [](const Group& g) { return g.weight != 1; });
+  });
+  const bool charges_alone =
+      std::any_of(h.atom.begin(), h.atom.end(), [](const Atom& atom) { return atom.radius == 0; });
+  const bool needs_version_2 = !h.body.empty() || charges_alone || weights;
   HierWriter writer(out, h.source, levels, needs_version_2 ? HierWriter::Version::v2 : HierWriter::Version::v1);
   auto body = h.body.begin();
   // next[l]: the group of level l that opens at its first child.
@@ -150,7 +156,7 @@ void write_hier(std::ostream& out, const Hierarchy& h) {
     if (n == groups.size() || groups[n].begin != child)
       return;
     self(self, l - 1, static_cast<int64_t>(n));
-    writer.group(l - 1, groups[n].name, groups[n].exponent);
+    writer.group(l - 1, groups[n].name, groups[n].exponent, groups[n].weight);
     ++n;
   };
   for (size_t a = 0; a < h.atom.size(); ++a) {

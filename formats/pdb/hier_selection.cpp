@@ -4,7 +4,9 @@
 #include "formats/pdb/selection.hpp"
 #include "geom/near_points.hpp"
 #include "molecule/grouping.hpp"
+#include "molecule/molecular_body.hpp"
 #include "molecule/words.hpp"
+#include <algorithm>
 #include <charconv>
 #include <set>
 
@@ -111,6 +113,10 @@ std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& text, c
 }
 
 void apply_rules(Hierarchy& h, const std::vector<Rule>& rules) {
+  const auto bodies = [&](const Group& residue) {
+    return std::count_if(h.atom.begin() + residue.begin, h.atom.begin() + residue.end,
+                         [](const Atom& a) { return a.radius > 0; });
+  };
   for (const Rule& rule : rules) {
     // [entry of the level] selected; from atoms outwards
     std::vector<uint8_t> chosen = select_atoms(h, rule.selection, rule.where);
@@ -125,6 +131,8 @@ void apply_rules(Hierarchy& h, const std::vector<Rule>& rules) {
         groups.push_back(std::find(chosen.begin() + g.begin, chosen.begin() + g.end, 1) != chosen.begin() + g.end);
         if (groups.back() && exponent)
           g.exponent = *exponent;
+        if (groups.back() && level == "residue" && (rule.residue || rule.weight))
+          g.weight = residue_weight(rule.weight.value_or(1), bodies(g));
       }
       chosen = std::move(groups);
     }
@@ -134,6 +142,7 @@ void apply_rules(Hierarchy& h, const std::vector<Rule>& rules) {
                    ", expected exponents of levels that there are: there is no level " + level);
     };
     needs(rule.residue, "P_R", "residue");
+    needs(rule.weight, "W_R", "residue");
     needs(rule.chain, "P_C", "chain");
     needs(rule.domain, "P_D", "domain");
   }

@@ -27,16 +27,24 @@ public:
   Tail run();
 
 private:
-  /// Where the atom by itself reaches the isovalue; exponent: the product of those around it. Negative: nowhere.
-  double ball(const Atom& a, double exponent) const {
-    const double rho2 = a.radius * a.radius - ln_isovalue_ / (kappa_ * exponent);
+  /// What the groups around an atom do to its term: the product of their exponents, and ln of the factor that does
+  /// what their weights do (theory/field.md, its beginning).
+  struct Path {
+    double exponent = 1, ln_weight = 0;
+    Path into(const Group& g) const { return {exponent * g.exponent, ln_weight / g.exponent + std::log(g.weight)}; }
+  };
+  /// κ times this less the squared distance is ln of the atom's term, weights included.
+  double radius2(const Atom& a, const Path& path) const { return a.radius * a.radius + path.ln_weight / kappa_; }
+  /// Where the atom by itself reaches the isovalue. Negative: nowhere.
+  double ball(const Atom& a, const Path& path) const {
+    const double rho2 = radius2(a, path) - ln_isovalue_ / (kappa_ * path.exponent);
     return rho2 > 0 ? std::sqrt(rho2) : -1;
   }
   bool seen(double ball) const { return ball > half_diagonal * frame_.spacing * (1 + 1e-9); }
   template <class Use>
-  void for_atoms(size_t level, int64_t begin, int64_t end, double exponent, const Use& use) const;
-  Bound sum(size_t level, int64_t begin, int64_t end, double exponent) const;
-  double nearest_inside(int64_t atom, int64_t begin, int64_t end, double exponent) const;
+  void for_atoms(size_t level, int64_t begin, int64_t end, const Path& path, const Use& use) const;
+  Bound sum(size_t level, int64_t begin, int64_t end, const Path& path) const;
+  double nearest_inside(int64_t atom, int64_t begin, int64_t end, const Path& path) const;
   int64_t outermost() const {
     return static_cast<int64_t>(h_.level.empty() ? h_.atom.size() : h_.level[0].group.size());
   }
@@ -47,31 +55,31 @@ private:
   double radius_ = infinity;
 };
 
-/// use(begin, end, exponent) for each innermost group.
+/// use(begin, end, path) for each innermost group.
 template <class Use>
-void Climber::for_atoms(size_t level, int64_t begin, int64_t end, double exponent, const Use& use) const {
+void Climber::for_atoms(size_t level, int64_t begin, int64_t end, const Path& path, const Use& use) const {
   if (level == h_.level.size())
-    return use(begin, end, exponent);
+    return use(begin, end, path);
   for (int64_t i = begin; i < end; ++i) {
     const Group& g = h_.level[level].group[i];
-    for_atoms(level + 1, g.begin, g.end, exponent * g.exponent, use);
+    for_atoms(level + 1, g.begin, g.end, path.into(g), use);
   }
 }
 
-Bound Climber::sum(size_t level, int64_t begin, int64_t end, double exponent) const {
+/// The weights are in the terms of the atoms.
+Bound Climber::sum(size_t level, int64_t begin, int64_t end, const Path& path) const {
   Bound all;
   for (int64_t i = begin; i < end; ++i) {
     if (level == h_.level.size()) {
       const Atom& a = h_.atom[i];
       if (!(a.radius > 0))
         continue;
-      all.add(
-          {seen(ball(a, exponent)) ? ln_isovalue_ / exponent : kappa_ * (a.radius * a.radius - radius_ * radius_),
-           kappa_});
+      all.add({seen(ball(a, path)) ? ln_isovalue_ / path.exponent : kappa_ * (radius2(a, path) - radius_ * radius_),
+               kappa_});
       continue;
     }
     const Group& g = h_.level[level].group[i];
-    Bound b = sum(level + 1, g.begin, g.end, exponent * g.exponent);
+    Bound b = sum(level + 1, g.begin, g.end, path.into(g));
     b.log *= g.exponent;
     b.decay *= g.exponent;
     all.add(b);
@@ -80,7 +88,7 @@ Bound Climber::sum(size_t level, int64_t begin, int64_t end, double exponent) co
 }
 
 /// Distance from the atom's center to the nearest corner of its cell that is inside by its innermost group alone.
-double Climber::nearest_inside(int64_t atom, int64_t begin, int64_t end, double exponent) const {
+double Climber::nearest_inside(int64_t atom, int64_t begin, int64_t end, const Path& path) const {
   const Vec3d u = (h_.atom[atom].center - frame_.origin) / frame_.spacing;
   const Vec3d low{std::floor(u.x), std::floor(u.y), std::floor(u.z)};
   double nearest = infinity;
@@ -92,29 +100,29 @@ double Climber::nearest_inside(int64_t atom, int64_t begin, int64_t end, double 
       continue;
     double g = 0;
     for (int64_t a = begin; a < end; ++a)
-      if (const double r = h_.atom[a].radius; r > 0)
-        g += std::exp(kappa_ * (r * r - norm2(p - h_.atom[a].center)));
-    if (exponent * std::log(g) > ln_isovalue_ + 0.02) // more than any tolerance
+      if (h_.atom[a].radius > 0)
+        g += std::exp(kappa_ * (radius2(h_.atom[a], path) - norm2(p - h_.atom[a].center)));
+    if (path.exponent * std::log(g) > ln_isovalue_ + 0.02) // more than any tolerance
       nearest = far;
   }
   return nearest;
 }
 
 Tail Climber::run() {
-  for_atoms(0, 0, outermost(), 1, [&](int64_t begin, int64_t end, double exponent) {
+  for_atoms(0, 0, outermost(), {}, [&](int64_t begin, int64_t end, const Path& path) {
     for (int64_t a = begin; a < end; ++a)
-      if (const double rho = ball(h_.atom[a], exponent); h_.atom[a].radius > 0 && seen(rho))
+      if (const double rho = ball(h_.atom[a], path); h_.atom[a].radius > 0 && seen(rho))
         radius_ = std::min(radius_, rho);
   });
   if (!std::isfinite(radius_))
     radius_ = 0;
   double depth = 2 * half_diagonal * frame_.spacing;
-  for_atoms(0, 0, outermost(), 1, [&](int64_t begin, int64_t end, double exponent) {
+  for_atoms(0, 0, outermost(), {}, [&](int64_t begin, int64_t end, const Path& path) {
     for (int64_t a = begin; a < end && std::isfinite(depth); ++a)
-      if (h_.atom[a].radius > 0 && !seen(ball(h_.atom[a], exponent)))
-        depth = std::max(depth, radius_ + nearest_inside(a, begin, end, exponent));
+      if (h_.atom[a].radius > 0 && !seen(ball(h_.atom[a], path)))
+        depth = std::max(depth, radius_ + nearest_inside(a, begin, end, path));
   });
-  const Bound b = sum(0, 0, outermost(), 1);
+  const Bound b = sum(0, 0, outermost(), {});
   if (!std::isfinite(depth) || !std::isfinite(b.log))
     return {};
   return {b.log, b.decay, radius_, depth};

@@ -8,7 +8,7 @@
 
 namespace molmesh::label {
 
-/// The field is a tree of sums: G(x) = Σ_d F_d(x) over the outermost groups, F = S^P, S(x) = Σ F over a group's
+/// The field is a tree of sums: G(x) = Σ_d F_d(x) over the outermost groups, F = (W·S)^P, S(x) = Σ F over a group's
 /// children, g(x) = exp(κ(r² - |x - c|²)) for an atom (equations 1, 4 and 6 of Liao et al. 2013). The share of a
 /// group or atom is its part of G, handed down the tree in proportion to the terms of each sum:
 ///

@@ -1,6 +1,7 @@
 // exponents.cpp — parses rules and applies them to the groups.
 #include "molecule/exponents.hpp"
 #include "molecule/limits.hpp"
+#include "molecule/molecular_body.hpp"
 #include "molecule/words.hpp"
 
 namespace molmesh {
@@ -14,12 +15,13 @@ Rule parse_rule(const std::string& text, const std::string& where, Status status
   for (;;) {
     const size_t blank = rest.find_last_of(" \t");
     const std::string_view last = blank == std::string_view::npos ? rest : rest.substr(blank + 1);
-    if (last.substr(0, 2) != "P_")
+    if (last.substr(0, 2) != "P_" && last.substr(0, 4) != "W_R=")
       break;
     const std::string_view key = last.substr(0, 4);
     std::optional<double>* exponent = key == "P_R="   ? &rule.residue
                                       : key == "P_C=" ? &rule.chain
                                       : key == "P_D=" ? &rule.domain
+                                      : key == "W_R=" ? &rule.weight
                                                       : nullptr;
     const std::string found = where + ": found '" + std::string(last) + "', expected ";
     if (exponent == nullptr)
@@ -31,13 +33,15 @@ Rule parse_rule(const std::string& text, const std::string& where, Status status
       fail(status, found + "a number > 0");
     if (**exponent > largest_exponent)
       fail(status, found + "at most 1000");
+    if (exponent == &rule.weight && **exponent < least_weight)
+      fail(status, found + "at least 0.001");
     rest = blank == std::string_view::npos ? std::string_view{} : trimmed(rest.substr(0, blank));
   }
-  if (!rule.residue && !rule.chain && !rule.domain)
+  if (!rule.residue && !rule.chain && !rule.domain && !rule.weight)
     fail(status, where + ": found '" + text + "', expected SELECTION P_R=… P_C=… P_D=…, at least one exponent");
   if (rest.empty())
     fail(status, where + ": found no selection, expected SELECTION P_R=… P_C=… P_D=… ('*' is everything)");
-  for (const char* exponent : {"P_R=", "P_C=", "P_D="})
+  for (const char* exponent : {"P_R=", "P_C=", "P_D=", "W_R="})
     if (rest.find(exponent) != std::string_view::npos)
       fail(status, where + ": found '" + text + "', expected exponents at the end alone");
   rule.selection = rest;
@@ -54,6 +58,9 @@ std::vector<Rule> read_rules(std::istream& in, const std::string& file) {
 void set_exponents(Grouping& g, const Exponents& defaults, const std::vector<Rule>& rules, const Levels& levels,
                    const StructureSelections& structure, std::vector<std::string>& notes) {
   g.residue_exponent.assign(g.residue.size(), defaults.residue);
+  g.residue_weight.clear();
+  for (const Grouping::Residue& residue : g.residue)
+    g.residue_weight.push_back(residue_weight(defaults.weight, residue.bodies));
   g.chain_exponent.assign(g.chain.size(), defaults.chain);
   g.domain_exponent.assign(g.domain.size(), defaults.domain);
   for (const Rule& rule : rules) {
@@ -65,6 +72,8 @@ void set_exponents(Grouping& g, const Exponents& defaults, const std::vector<Rul
       any = true;
       if (rule.residue)
         g.residue_exponent[r] = *rule.residue;
+      if (rule.residue || rule.weight)
+        g.residue_weight[r] = residue_weight(rule.weight.value_or(1), g.residue[r].bodies);
       if (rule.chain)
         g.chain_exponent[g.residue[r].chain] = *rule.chain;
       if (rule.domain && !g.domain.empty())
@@ -73,7 +82,7 @@ void set_exponents(Grouping& g, const Exponents& defaults, const std::vector<Rul
     if (!any)
       fail_input(rule.where + ": found no atom in selection '" + rule.selection + "', expected some" +
                  chains_there(g.chain));
-    const bool has_effect = (rule.residue && has_level(levels, "residue")) ||
+    const bool has_effect = ((rule.residue || rule.weight) && has_level(levels, "residue")) ||
                             (rule.chain && has_level(levels, "chain")) ||
                             (rule.domain && has_level(levels, "domain"));
     if (!has_effect)
@@ -84,6 +93,7 @@ void set_exponents(Grouping& g, const Exponents& defaults, const std::vector<Rul
         notes.push_back(rule.where + ": " + name + " has no effect, the hierarchy has no level " + level);
     };
     note_idle(rule.residue, "P_R", "residue");
+    note_idle(rule.weight, "W_R", "residue");
     note_idle(rule.chain, "P_C", "chain");
     note_idle(rule.domain, "P_D", "domain");
   }

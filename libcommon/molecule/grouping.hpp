@@ -15,11 +15,13 @@ struct Grouping {
   struct Residue {
     int32_t chain;      ///< index into `chain`
     int32_t domain = 0; ///< index into `domain`
+    int32_t bodies = 1; ///< atoms of a radius > 0
   };
   std::vector<Residue> residue;    ///< in the order of the file, copy after copy
   std::vector<std::string> chain;  ///< unique names
   std::vector<std::string> domain; ///< unique names; empty without domains
   std::vector<double> residue_exponent, chain_exponent, domain_exponent; ///< P_R, P_C, P_D, one a group
+  std::vector<double> residue_weight;                                    ///< W_R
 };
 
 /// How many atoms of a residue a selection selects.

@@ -35,6 +35,8 @@ void check(const Hierarchy& h, const std::string& file) {
         refuse(level.name + " without a name");
       if (!(std::isfinite(g.exponent) && g.exponent > 0))
         bad("exponent " + std::to_string(g.exponent) + ", expected a finite number > 0");
+      if (!(std::isfinite(g.weight) && g.weight > 0))
+        bad("weight " + std::to_string(g.weight) + ", expected a finite number > 0");
       if (g.begin != next)
         bad("begins at child " + std::to_string(g.begin) + ", expected " + std::to_string(next));
       if (g.end <= g.begin)

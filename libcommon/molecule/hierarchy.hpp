@@ -38,8 +38,9 @@ struct Atom {
 /// [begin, end) indexes level[l + 1].group, or Hierarchy::atom.
 struct Group {
   std::string name;
-  double exponent = 1; ///< P > 0: F = (Σ children)^P
+  double exponent = 1; ///< P > 0: F = (W Σ children)^P
   int64_t begin = 0, end = 0;
+  double weight = 1; ///< W > 0, of the sum
 };
 
 struct Level {

@@ -40,7 +40,7 @@ struct Part {
 
 struct Domain {
   std::string name;
-  double exponent;
+  double exponent, weight;
   std::vector<Part> parts;
 };
 
@@ -63,7 +63,7 @@ public:
         for (int64_t g = part.begin; g < part.end; ++g)
           emit(part.copy, below_domains(*pieces_[copies_[part.copy].piece].hierarchy), g);
       if (domains_ && entries(1) > begin)
-        out_.level[0].group.push_back({d.name, d.exponent, begin, entries(1)});
+        out_.level[0].group.push_back({d.name, d.exponent, begin, entries(1), d.weight});
     }
     for (size_t p = 0; p < pieces_.size(); ++p)
       if (joined_[p].atoms == 0)
@@ -192,14 +192,15 @@ private:
       if (!domains_ || !p.domain.empty()) {
         const auto [found, is_new] = named.try_emplace(p.domain, domains.size());
         if (is_new)
-          domains.push_back({p.domain, 1, {}});
+          domains.push_back({p.domain, 1, 1, {}});
         Domain& d = domains[found->second];
         d.exponent = p.domain_exponent.value_or(d.exponent);
         d.parts.push_back({c, 0, all});
         continue;
       }
       for (const Group& g : h.level[0].group)
-        domains.push_back({copied(g.name, c), p.domain_exponent.value_or(g.exponent), {{c, g.begin, g.end}}});
+        domains.push_back(
+            {copied(g.name, c), p.domain_exponent.value_or(g.exponent), g.weight, {{c, g.begin, g.end}}});
     }
     std::map<std::string, size_t> count, number;
     for (const Domain& d : domains)
@@ -282,10 +283,12 @@ private:
     const double exponent = level.name == "residue" ? p.residue.value_or(g.exponent)
                             : level.name == "chain" ? p.chain.value_or(g.exponent)
                                                     : g.exponent;
+    const double weight = level.name == "residue" && p.residue ? 1 : g.weight;
     const bool outer = l == below_domains(h);
     if (outer)
       owner_.push_back(c.piece);
-    out_.level[to].group.push_back({outer ? new_name(g.name, copy) : g.name, exponent, begin, entries(to + 1)});
+    out_.level[to].group.push_back(
+        {outer ? new_name(g.name, copy) : g.name, exponent, begin, entries(to + 1), weight});
   }
 
   /// Makes the names of the level below the domains unique.

@@ -14,12 +14,13 @@ namespace molmesh {
 /// A hierarchy and where its copies go.
 struct Piece {
   std::shared_ptr<const Hierarchy> hierarchy;
-  std::string where;                                     ///< for messages: "FILE:LINE"
-  std::vector<Rigid> copies = {Rigid{}};                 ///< at least one
-  std::string domain;                                    ///< that holds all of it; empty: its own
-  std::map<std::string, std::string> rename;             ///< old name to new, of the level below the domains
-  std::string prefix, suffix;                            ///< of these names
-  std::optional<double> residue, chain, domain_exponent; ///< P of its groups, where not as they are
+  std::string where;                         ///< for messages: "FILE:LINE"
+  std::vector<Rigid> copies = {Rigid{}};     ///< at least one
+  std::string domain;                        ///< that holds all of it; empty: its own
+  std::map<std::string, std::string> rename; ///< old name to new, of the level below the domains
+  std::string prefix, suffix;                ///< of these names
+  /// P of its groups, where not as they are; residues whose P is set have the weight 1.
+  std::optional<double> residue, chain, domain_exponent;
   double carve = 0; ///< Å: its residues within this distance (between centers) of pieces before it are left out
 };
 

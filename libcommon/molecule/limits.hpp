@@ -1,4 +1,4 @@
-// limits.hpp — the largest coordinate, radius and exponent of a hierarchy.
+// limits.hpp — the largest coordinate, radius, exponent and weight of a hierarchy.
 #pragma once
 
 namespace molmesh {
@@ -7,5 +7,6 @@ namespace molmesh {
 inline constexpr double largest_coordinate = 1e7; ///< Å: a millimetre
 inline constexpr double largest_radius = 1e4;     ///< Å
 inline constexpr double largest_exponent = 1e3;
+inline constexpr double least_weight = 1e-3, largest_weight = 1e3;
 
 } // namespace molmesh

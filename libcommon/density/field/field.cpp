@@ -63,6 +63,37 @@ void add_levels(Field& f, const Hierarchy& h) {
   }
 }
 
+/// ln of the factor on the terms of each innermost group's atoms that does what the weights of its groups do:
+/// W (w S)^P = (W^(1/P) w S)^P. Empty without weights.
+std::vector<double> ln_weights(const Hierarchy& h) {
+  const auto weighted = [](const Level& l) {
+    return std::any_of(l.group.begin(), l.group.end(), [](const Group& g) { return g.weight != 1; });
+  };
+  std::vector<double> outer, ln;
+  if (std::none_of(h.level.begin(), h.level.end(), weighted))
+    return ln;
+  for (size_t l = 0; l < h.level.size(); ++l) {
+    const std::vector<Group>& group = h.level[l].group;
+    ln.assign(group.size(), 0);
+    for (size_t p = 0; p < outer.size(); ++p)
+      for (int64_t c = h.level[l - 1].group[p].begin; c < h.level[l - 1].group[p].end; ++c)
+        ln[c] = outer[p] / group[c].exponent;
+    for (size_t g = 0; g < group.size(); ++g) {
+      ln[g] += std::log(group[g].weight);
+      if (!(std::abs(ln[g]) < 1e8)) {
+        char text[160];
+        std::snprintf(text, sizeof text,
+                      "a group's weight counts e^%g for each of its atoms, expected less than e^1e8 and more than "
+                      "its inverse: a larger exponent",
+                      ln[g]);
+        fail(Status::usage, text);
+      }
+    }
+    outer = ln;
+  }
+  return ln;
+}
+
 /// exp() with a small cache: atoms have few radii, so the arguments repeat.
 class FewExponentials {
 public:
@@ -129,6 +160,7 @@ void add_clusters(Field& f, const Hierarchy& h, int threads) {
     std::vector<int64_t> cuts, group;
     std::vector<size_t> bodies; ///< positions in `cuts`
   };
+  const std::vector<double> ln_weight = ln_weights(h);
   constexpr int64_t grain = 256; // groups
   std::vector<Piece> piece(static_cast<size_t>((groups + grain - 1) / grain));
   par::for_n(static_cast<int64_t>(piece.size()), threads, 1, [&](int64_t p) {
@@ -144,12 +176,13 @@ void add_clusters(Field& f, const Hierarchy& h, int threads) {
         cuts.push_back(b);
       }
       group.resize(cuts.size(), g);
+      const double ln_factor = ln_weight.empty() ? 0 : ln_weight[g];
       for (auto a = static_cast<size_t>(begin); a < static_cast<size_t>(end); ++a) {
         const Atom& atom = h.atom[order[a]];
         f.x[a] = atom.center.x;
         f.y[a] = atom.center.y;
         f.z[a] = atom.center.z;
-        f.peak[a] = f.decay * atom.radius * atom.radius;
+        f.peak[a] = f.decay * atom.radius * atom.radius + ln_factor;
       }
     }
   });

@@ -40,7 +40,7 @@ struct FieldBody {
 struct Field {
   double decay = 1;     ///< κ, Å⁻²
   double far_error = 0; ///< what all clusters beyond their cutoff2 together add to G anywhere, at most
-  /// Atom a: position, and the logarithm of its term at its centre, κ·r². In clusters.
+  /// Atom a: position, and the logarithm of its term at its centre, κ·r² + ln of its group's weight. In clusters.
   LargeArray<double> x, y, z, peak;
   LargeArray<int64_t> source; ///< [atoms] index in Hierarchy::atom
   /// Clusters: at most `cluster_size` atoms of one innermost group, near each other (64 Å at most along an axis).

@@ -154,9 +154,11 @@ TEST_CASE("a piece by itself is copied bit for bit, wherever it is moved to") {
 }
 
 TEST_CASE("the sum of pieces far enough apart is the density of their atoms, and complete") {
-  for (const std::vector<double>& exponents : {std::vector<double>{0.5, 1}, {}, {1, 2}}) {
+  for (const std::vector<double>& exponents : {std::vector<double>{0.5, 1}, {}, {1, 2}, {0.4, 0.7}}) {
     const double h = 0.75;
-    const Hierarchy one = test::random_chains(2, 6, 5, exponents, 11);
+    Hierarchy one = test::random_chains(2, 6, 5, exponents, 11);
+    if (exponents == std::vector<double>{0.4, 0.7})
+      one = test::with_weights(one, 3);
     const Piece p = make(one, h);
     const Vec3i n = p.grid.frame.points;
     const Vec3i shift{n.x + 5, 2, -3};
@@ -167,6 +169,44 @@ TEST_CASE("the sum of pieces far enough apart is the density of their atoms, and
       return exact_density(two, k, x);
     });
   }
+}
+
+TEST_CASE("what a file says of a field far from its surface holds, with weights too") {
+  int known = 0;
+  for (const std::vector<double>& exponents : {std::vector<double>{0.38, 1}, {0.5, 0.5}, {1, 2}, {0.8, 0.5, 1}})
+    for (const unsigned seed : {3u, 4u, 5u, 6u}) {
+      const Hierarchy h = test::with_weights(test::random_chains(2, 6, 5, exponents, seed), seed);
+      const Piece p = make(h, 0.3 + 0.05 * seed);
+      if (!p.tail.known())
+        continue;
+      ++known;
+      const BlockIndex index(p.grid);
+      std::vector<Vec3d> body; // grid points that are inside or active
+      const Vec3i n = p.grid.frame.points;
+      for (int x = 0; x < n.x; ++x)
+        for (int y = 0; y < n.y; ++y)
+          for (int z = 0; z < n.z; ++z) {
+            const Vec3i q = p.grid.frame.lower + Vec3i{x, y, z};
+            if (is_active(p.grid, index, q) || value_at(p.grid, index, q) > 0)
+              body.push_back(p.grid.frame.position(q));
+          }
+      std::mt19937 random(seed);
+      std::normal_distribution<double> step(0, 5);
+      int beyond = 0;
+      for (int i = 0; i < 300; ++i) {
+        const Vec3d x = h.atom[random() % h.atom.size()].center + Vec3d{step(random), step(random), step(random)};
+        double nearest2 = 1e300;
+        for (const Vec3d& b : body)
+          nearest2 = std::min(nearest2, norm2(x - b));
+        const double distance = std::sqrt(nearest2);
+        if (distance < p.tail.depth)
+          continue;
+        CHECK(exact_density(h, p.grid.info.decay, x) <= p.tail.bound(distance) * (1 + 1e-9));
+        ++beyond;
+      }
+      CHECK(beyond > 10);
+    }
+  CHECK(known >= 8);
 }
 
 TEST_CASE("pieces that meet add up where their bands know low densities, else their sum is refused") {

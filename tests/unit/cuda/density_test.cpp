@@ -125,6 +125,17 @@ TEST_CASE("device density: no band cell is missed, no point is on the wrong side
   }
 }
 
+TEST_CASE("device density: weights count as on the host") {
+  for (const std::vector<double>& exponents : {std::vector<double>{0.38, 1}, {0.5, 2}, {0.8, 0.5, 1}}) {
+    density::Options o;
+    o.spacing = 1.1;
+    const Hierarchy h = test::with_weights(test::random_chains(2, 15, 6, exponents, 23), 3);
+    const BlockGrid g = on_backend(h, o).grid;
+    test::check_complete(h, g);
+    check_same(g, on_host(h, o));
+  }
+}
+
 TEST_CASE("device density: molecules far apart and a hollow ball are all found") {
   density::Options o;
   o.spacing = 1.3;

@@ -35,6 +35,69 @@ TEST_CASE("values are within the tolerance for exponents from 0.02 to 4 and any 
     }
 }
 
+TEST_CASE("with weights, values are within the tolerance, no band cell is missed, and sides are right") {
+  for (const std::vector<double>& exponents : {std::vector<double>{0.38, 1},
+                                               {0.3},
+                                               {0.5, 2},
+                                               {2, 0.7},
+                                               {0.8, 0.5, 1},
+                                               {0.5, 0.05},
+                                               {1, 1},
+                                               {0.02, 1},
+                                               {0.5, 1}})
+    for (const bool bodies : {false, true}) {
+      const Hierarchy chains = test::random_chains(3, 12, 6, exponents, 17),
+                      h = test::with_weights(bodies ? test::with_bodies(chains) : chains, 3);
+      check(h, "h");
+      std::string text;
+      for (const double p : exponents)
+        text += std::to_string(p) + " ";
+      INFO("exponents, innermost first: " << text << (bodies ? "with bodies" : ""));
+      density::Options o;
+      o.spacing = bodies ? 1.9 : 1;
+      const BlockGrid g = compute(h, o);
+      REQUIRE(!g.corner.empty());
+      for (const double tolerance : {1e-3, 1e-4, 1e-6}) {
+        o.tolerance = tolerance;
+        CHECK(test::worst_error(h, compute(h, o), 200) <= 1);
+      }
+      test::check_complete(h, g);
+      o.tolerance = g.info.tolerance;
+      o.threads = 3;
+      test::check_equal(g, compute(h, o));
+      o.atoms = density::AtomSearch::kdtree;
+      test::check_equal(g, compute(h, o));
+    }
+}
+
+TEST_CASE("a weight is a factor on the terms of its atoms, wherever it stands") {
+  const Hierarchy h = test::random_chains(2, 9, 6, {0.4, 2}, 5);
+  Hierarchy outer = h, inner = h, larger = h;
+  for (Group& chain : outer.level[0].group)
+    chain.weight = 0.7;
+  for (Group& residue : inner.level[1].group)
+    residue.weight = std::pow(0.7, 1 / 0.4);
+  for (Atom& a : larger.atom)
+    a.radius = std::sqrt(a.radius * a.radius + std::log(0.7) / 0.4);
+  density::Options o;
+  o.spacing = 0.9;
+  const BlockGrid g = compute(outer, o);
+  CHECK(g.corner.size() > 4);
+  for (const Hierarchy* same : {&inner, &larger}) {
+    const BlockGrid other = compute(*same, o);
+    CHECK(other.corner == g.corner);
+    CHECK(test::worst_error(*same, g, 200) <= 1);
+  }
+}
+
+TEST_CASE("weights whose logarithm is beyond use are refused") {
+  Hierarchy h = test::random_chains(2, 9, 6, {1e-9, 1}, 5);
+  h.level[0].group[0].weight = 0.5;
+  CHECK(test::refusal(Status::usage, [&] { compute(h, {}); }) ==
+        "a group's weight counts e^-6.93147e+08 for each of its atoms, expected less than e^1e8 and more than its "
+        "inverse: a larger exponent");
+}
+
 TEST_CASE("no band cell is missed and no point is on the wrong side") {
   for (const std::vector<double>& exponents : {std::vector<double>{0.3, 1}, {0.5, 1}, {0.1, 0.5}, {1, 2}, {}}) {
     density::Options o;

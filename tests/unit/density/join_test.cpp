@@ -126,6 +126,33 @@ TEST_CASE("copies are numbered, domains are shared, exponents are set") {
   CHECK(names(twice, 1).substr(0, 7) == "A_1 B_1");
 }
 
+TEST_CASE("weights go along, and residues whose exponent is set have none") {
+  const auto weighted = std::make_shared<const Hierarchy>(test::with_weights(*chains(1), 2));
+  std::vector<Piece> pieces = {piece(weighted, "P:1"), piece(weighted, "P:2")};
+  pieces[1].residue = 0.7;
+  pieces[1].prefix = "second";
+  std::vector<Joined> joined;
+  const Hierarchy h = join(pieces, Clash::refuse, joined);
+  for (size_t l = 0; l < 2; ++l) {
+    const std::vector<Group>&from = weighted->level[l].group, &to = h.level[l].group;
+    REQUIRE(to.size() == 2 * from.size());
+    for (size_t g = 0; g < from.size(); ++g) {
+      CHECK(to[g].weight == from[g].weight);
+      CHECK(to[from.size() + g].weight == (l == 0 ? from[g].weight : 1));
+    }
+  }
+  for (Piece& p : pieces)
+    p.domain = "all";
+  Hierarchy domains = join(pieces, Clash::refuse, joined);
+  CHECK(domains.level[0].group[0].weight == 1);
+  domains.level[0].group[0].weight = 0.8;
+  const Hierarchy again = join({piece(std::make_shared<const Hierarchy>(domains), "P:1")}, Clash::refuse, joined);
+  CHECK(again.level[0].group[0].weight == 0.8);
+  density::Options o;
+  o.spacing = 1.1;
+  CHECK(test::worst_error(h, test::compute(h, o), 200) <= 1);
+}
+
 TEST_CASE("carving leaves out the residues that lie near earlier pieces") {
   for (const double distance : {0.8, 2.5, 3.5}) {
     std::vector<Piece> pieces = {piece(chains(4), "P:1"), piece(chains(5, "L"), "P:2"),

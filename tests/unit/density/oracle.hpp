@@ -66,7 +66,7 @@ inline double log_children(const Hierarchy& h, size_t l, int64_t begin, int64_t 
       ln.push_back(-decay * (term_distance2(h, i, p) - h.atom[s].radius * h.atom[s].radius));
     } else {
       const Group& g = h.level[l].group[s];
-      ln.push_back(g.exponent * log_children(h, l + 1, g.begin, g.end, decay, p));
+      ln.push_back(g.exponent * (std::log(g.weight) + log_children(h, l + 1, g.begin, g.end, decay, p)));
     }
   }
   return log_sum(ln);
@@ -128,6 +128,16 @@ inline Hierarchy with_bodies(Hierarchy h) {
   for (size_t l = levels - 1; levels > 1 && l-- > 0;)
     h.level[l].group.push_back(
         {"bodies", h.level[l].group[0].exponent, first[l], static_cast<int64_t>(h.level[l + 1].group.size())});
+  return h;
+}
+
+/// Weights from 0.3 to 1.5 on every group of every level.
+inline Hierarchy with_weights(Hierarchy h, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> weight(0.3, 1.5);
+  for (Level& level : h.level)
+    for (Group& g : level.group)
+      g.weight = weight(random);
   return h;
 }
 

@@ -52,6 +52,8 @@ TEST_CASE("powers so small that the sums below them need more range than doubles
       INFO("innermost exponent " << exponents[0] << ", tolerance " << tolerance);
       o.tolerance = tolerance;
       CHECK(test::worst_error(h, compute(h, o), 300) <= 1);
+      const Hierarchy weighted = test::with_weights(h, 2); // a chain's 0.3 is e^-60 for its atoms
+      CHECK(test::worst_error(weighted, compute(weighted, o), 300) <= 1);
     }
   }
 }

@@ -116,7 +116,7 @@ TEST_CASE(
     REQUIRE(part.atom.size() == 2);
 
     options = {};
-    options.rules = {{selection, 0.7, {}, {}, "here", Status::usage}};
+    options.rules = {{selection, 0.7, {}, {}, "here", Status::usage, {}}};
     const Hierarchy ruled = read(options);
     size_t sharp = 0;
     for (const Group& residue : ruled.level[1].group)
@@ -170,4 +170,28 @@ TEST_CASE("Residues may be a list of numbers and ranges, their and atoms' names 
     INFO(wrong);
     CHECK(refusal(wrong, hierarchy(), Status::usage).find("gemmi's syntax") != std::string::npos);
   }
+}
+
+TEST_CASE("a rule sets the weights of the residues in a hierarchy by their atoms, and P_R alone makes them 1") {
+  Hierarchy h;
+  h.level = {{"chain", {{"A", 1, 0, 3}}},
+             {"residue", {{"GLY:1", 0.3, 0, 4}, {"ZN:2", 0.3, 4, 5}, {"GLY:3", 0.3, 5, 9}}}};
+  for (int a = 0; a < 9; ++a)
+    h.atom.push_back({{3.0 * a, 0, 0}, 1.5});
+  h.atom[8].radius = 0; // a charge counts for nothing
+  for (Group& g : h.level[1].group)
+    g.weight = 0.9;
+  formats::apply_rules(h, {parse_rule("//A W_R=0.5", "here")});
+  CHECK(h.level[1].group[0].weight == 0.5946);
+  CHECK(h.level[1].group[1].weight == 1);
+  CHECK(h.level[1].group[2].weight == 0.63);
+  CHECK(h.level[1].group[0].exponent == 0.3);
+  formats::apply_rules(h, {parse_rule("//A/1 P_R=0.4", "here")});
+  CHECK(h.level[1].group[0].weight == 1);
+  CHECK(h.level[1].group[2].weight == 0.63);
+  CHECK(test::refusal(Status::bad_input, [] {
+          Hierarchy atoms;
+          atoms.atom.push_back({{0, 0, 0}, 1});
+          formats::apply_rules(atoms, {parse_rule("* W_R=0.5", "here")});
+        }) == "here: found W_R, expected exponents of levels that there are: there is no level residue");
 }

@@ -49,7 +49,8 @@ void check_same(const Hierarchy& a, const Hierarchy& b) {
     REQUIRE(a.level[l].group.size() == b.level[l].group.size());
     for (size_t g = 0; g < a.level[l].group.size(); ++g) {
       const Group &x = a.level[l].group[g], &y = b.level[l].group[g];
-      REQUIRE((x.name == y.name && bits(x.exponent) == bits(y.exponent) && x.begin == y.begin && x.end == y.end));
+      REQUIRE((x.name == y.name && bits(x.exponent) == bits(y.exponent) && bits(x.weight) == bits(y.weight) &&
+               x.begin == y.begin && x.end == y.end));
     }
   }
   REQUIRE(a.body.size() == b.body.size());
@@ -124,6 +125,19 @@ TEST_CASE("a file of two levels is read as it stands") {
   CHECK(h.atom[1].charge == 0.12);
   CHECK(h.names[h.atom[1].name] == "CA");
   CHECK(h.names[h.atom[1].element] == "C");
+}
+
+TEST_CASE("a group has a weight in version 2, and no other needs that version") {
+  const std::string text =
+      "hier 2\nlevels chain\nchain A 0.4 0.62\natom C C 0 0 0 1\nchain B 0.4\natom C C 4 0 0 1\n";
+  const Hierarchy h = read_text(text);
+  CHECK(h.level[0].group[0].weight == 0.62);
+  CHECK(h.level[0].group[1].weight == 1);
+  CHECK(written(h) == text);
+  CHECK(message("hier 1\nlevels chain\nchain A 0.4 0.62\natom C C 0 0 0 1\n") ==
+        "x.hier:3: R6: found '0.62' more, expected 'LEVEL NAME P'");
+  CHECK(message("hier 2\nlevels chain\nchain A 0.4 2000\natom C C 0 0 0 1\n") ==
+        "x.hier:3: R9: found '2000', expected the weight, from 0.001 to 1000");
 }
 
 TEST_CASE("messages name the file, the line and what was expected") {

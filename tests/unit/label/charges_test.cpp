@@ -13,8 +13,9 @@ Hierarchy with_charges(const Hierarchy& h) {
   Hierarchy c;
   c.level = {{"chain", {}}, {"residue", {}}};
   const auto add_charge = [&](Vec3d p) { c.atom.push_back({p, 0, 0.4}); };
-  const auto close = [](Level& level, const char* name, double exponent, int64_t begin, size_t end) {
-    level.group.push_back({name, exponent, begin, static_cast<int64_t>(end)});
+  const auto close = [](Level& level, const char* name, double exponent, int64_t begin, size_t end,
+                        double weight = 1) {
+    level.group.push_back({name, exponent, begin, static_cast<int64_t>(end), weight});
   };
   for (const Group& chain : h.level[0].group) {
     const auto first = static_cast<int64_t>(c.level[1].group.size());
@@ -26,11 +27,11 @@ Hierarchy with_charges(const Hierarchy& h) {
         if (a % 3 == 0)
           add_charge(h.atom[a].center);
       }
-      close(c.level[1], "r", residue.exponent, begin, c.atom.size());
+      close(c.level[1], "r", residue.exponent, begin, c.atom.size(), residue.weight);
     }
     add_charge({50, 60, 70}); // beyond the grid of the bodies
     close(c.level[1], "charges", 4, static_cast<int64_t>(c.atom.size()) - 1, c.atom.size());
-    close(c.level[0], "c", chain.exponent, first, c.level[1].group.size());
+    close(c.level[0], "c", chain.exponent, first, c.level[1].group.size(), chain.weight);
   }
   add_charge({0, 0, 0});
   close(c.level[1], "charges", 4, static_cast<int64_t>(c.atom.size()) - 1, c.atom.size());
@@ -41,7 +42,7 @@ Hierarchy with_charges(const Hierarchy& h) {
 } // namespace
 
 TEST_CASE("a charge without a body changes no density and owns no place") {
-  const Hierarchy h = test::random_chains(3, 12, 7, {0.3, 1}, 11), c = with_charges(h);
+  const Hierarchy h = test::with_weights(test::random_chains(3, 12, 7, {0.3, 1}, 11), 4), c = with_charges(h);
   check(c, "c");
   CHECK(all_have_bodies(h));
   REQUIRE(!all_have_bodies(c));

@@ -13,7 +13,7 @@ double ln_term(const Hierarchy& h, size_t l, int64_t i, double decay, Vec3d p) {
   if (l == h.level.size())
     return -decay * (test::term_distance2(h, i, p) - h.atom[s].radius * h.atom[s].radius);
   const Group& g = h.level[l].group[s];
-  return g.exponent * test::log_children(h, l + 1, g.begin, g.end, decay, p);
+  return g.exponent * (std::log(g.weight) + test::log_children(h, l + 1, g.begin, g.end, decay, p));
 }
 
 /// The label by its definition, checked with what was found. Near ties either is right.
@@ -58,7 +58,9 @@ TEST_CASE("Labels and shares are those of the sums, at any depth and with any ex
   unsigned seed = 1;
   for (const std::vector<double>& e : exponents) {
     INFO("levels " << e.size());
-    const Hierarchy h = test::random_chains(4, 12, 6, e, seed++);
+    Hierarchy h = test::random_chains(4, 12, 6, e, seed++);
+    if (seed % 2 == 0)
+      h = test::with_weights(h, seed);
     double power = 1;
     for (const double p : e)
       power *= std::min(p, 1.0);

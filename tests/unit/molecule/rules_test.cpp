@@ -1,6 +1,7 @@
 // rules_test.cpp — the text of rules, domains and radii.
 #include "base/error.hpp"
 #include "molecule/exponents.hpp"
+#include "molecule/molecular_body.hpp"
 #include "molecule/radii.hpp"
 #include <catch2/catch.hpp>
 #include <sstream>
@@ -29,6 +30,29 @@ TEST_CASE("a rule is a selection and exponents") {
   CHECK(rule.domain == 0.2);
   CHECK(parse_rule("around //B/45 8.0 P_R=1", "-r").selection == "around //B/45 8.0");
   CHECK(parse_rule("//A; q<0.5 P_C=3", "-r").selection == "//A; q<0.5");
+}
+
+TEST_CASE("a rule may give a weight") {
+  CHECK(parse_rule("* P_R=0.4 W_R=0.6", "-r").weight == 0.6);
+  CHECK(parse_rule("//A W_R=0.6", "-r").selection == "//A");
+  CHECK_FALSE(parse_rule("* P_R=0.4", "-r").weight.has_value());
+  CHECK(message([] { parse_rule("* W_R=0.0001", "-r"); }) == "-r: found 'W_R=0.0001', expected at least 0.001");
+}
+
+TEST_CASE("an atom alone keeps its sphere, and residues of many atoms get nearly the whole weight") {
+  CHECK(residue_weight(0.62, 1) == 1);
+  CHECK(residue_weight(0.62, 0) == 1);
+  CHECK(residue_weight(0.62, 2) == 0.7874);
+  CHECK(residue_weight(0.62, 15) == 0.6401);
+}
+
+TEST_CASE("hydrogens are told by how many there are for each carbon") {
+  CHECK(hydrogens_of(0, 300, 600) == Hydrogens::none);
+  CHECK(hydrogens_of(3, 300, 600) == Hydrogens::none); // of a ligand
+  CHECK(hydrogens_of(130, 300, 600) == Hydrogens::polar);
+  CHECK(hydrogens_of(620, 380, 602) == Hydrogens::all);
+  CHECK(hydrogens_of(272, 230, 486) == Hydrogens::all); // DNA
+  CHECK(hydrogens_of(4, 0, 2) == Hydrogens::polar);
 }
 
 TEST_CASE("what is no rule is refused, with its place") {
