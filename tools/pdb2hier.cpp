@@ -50,6 +50,12 @@ void resolve(Options& o) {
     usage("--model", p.model, "first, all or a number");
   if (p.altloc.size() != 1 && p.altloc != "occupancy" && p.altloc != "first" && p.altloc != "all")
     usage("--altloc", p.altloc, "occupancy, first, all or one letter");
+  using Surface = formats::PdbOptions::Surface;
+  p.surface = o.surface == "auto"        ? Surface::automatic
+              : o.surface == "molecular" ? Surface::molecular
+                                         : Surface::plain;
+  if (o.surface == "paper")
+    p.exponents.residue = 0.5;
   p.hydrogens = o.hydrogens == "keep";
   p.waters = o.waters == "keep";
   p.hetatm = o.hetatm == "keep";

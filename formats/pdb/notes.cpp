@@ -75,6 +75,8 @@ void add_notes(PdbReport& report, const Parsed& parsed, const PdbOptions& option
   if (!dropped.empty())
     notes.push_back("dropped atoms: " + dropped);
 
+  if (!report.surface.empty())
+    notes.push_back(report.surface);
   for (const auto& [element, unknown] : report.unknown_elements)
     notes.push_back((element == "X" ? "unknown element: " : "element " + element + " without a radius: ") +
                     counted(unknown.atoms, "atom") + " given " + shortest(options.unknown_radius) +

@@ -10,8 +10,10 @@
 #include "formats/pdb/notes.hpp"
 #include "formats/pdb/sha256.hpp"
 #include "formats/read_all.hpp"
+#include "molecule/molecular_body.hpp"
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <gemmi/polyheur.hpp>
 #include <istream>
 
@@ -53,6 +55,49 @@ void set_domains(Arrangement& a, const gemmi::Structure& st, const std::string& 
   check_domains(a.grouping, options.levels, file, selections);
 }
 
+bool has_own_radii(const Parsed& parsed, const PdbOptions& options) {
+  return options.own_radii && std::any_of(parsed.pqr.begin(), parsed.pqr.end(),
+                                          [](const Parsed::Values& v) { return !std::isnan(v.radius); });
+}
+
+/// Counts the bodies of all residues, and chooses by the hydrogens among them.
+Exponents default_exponents(Arrangement& a, const Parsed& parsed, const PdbOptions& options, PdbReport& report) {
+  Exponents e = options.exponents;
+  if (options.surface == PdbOptions::Surface::plain || !has_level(options.levels, "residue"))
+    return e;
+  int64_t hydrogens = 0, carbons = 0, heavy = 0;
+  for (int64_t r = 0; r < static_cast<int64_t>(a.grouping.residue.size()); ++r) {
+    int32_t bodies = 0, h = 0, c = 0;
+    for (int64_t n = a.residue(r).begin; n < a.residue(r).end; ++n) {
+      const Atom& atom = a.flat.atom[n];
+      const std::string& element = a.flat.names[atom.element];
+      const bool body = atom.radius > 0;
+      bodies += body;
+      h += body && (element == "H" || element == "D");
+      c += body && element == "C";
+    }
+    a.grouping.residue[r].bodies = bodies;
+    if (c == 0)
+      continue; // waters and ions do not tell
+    hydrogens += h;
+    carbons += c;
+    heavy += bodies - h;
+  }
+  const Hydrogens kind = hydrogens_of(hydrogens, carbons, heavy);
+  if (carbons == 0 || (options.surface == PdbOptions::Surface::automatic && kind == Hydrogens::none &&
+                       !has_own_radii(parsed, options)))
+    return e;
+  const ResidueSettings body = molecular_body(kind);
+  e.residue = body.exponent;
+  e.weight = body.weight;
+  char text[160];
+  std::snprintf(text, sizeof text, "%s: a body near the molecular surface, P_R %g, W_R %g%s (--surface)",
+                name_of(kind).c_str(), e.residue, e.weight,
+                options.rules.empty() ? "" : " where no rule says otherwise");
+  report.surface = text;
+  return e;
+}
+
 } // namespace
 
 PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbOptions& options)
@@ -82,8 +127,8 @@ PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbO
   a.placed = place(a.flat, st, name, options.assembly, p.report);
   list_residues(a);
   set_domains(a, st, name, options);
-  set_exponents(a.grouping, options.exponents, options.rules, options.levels, ArrangementSelections(a),
-                p.report.notes);
+  const Exponents exponents = default_exponents(a, p.parsed, options, p.report);
+  set_exponents(a.grouping, exponents, options.rules, options.levels, ArrangementSelections(a), p.report.notes);
   p.order = hierarchy_order(a.grouping, options.levels);
 
   p.report.chains = static_cast<int64_t>(a.grouping.chain.size());
@@ -111,8 +156,10 @@ void PdbHierarchy::write(std::ostream& out) const {
   const Arrangement& a = parts_->arrangement;
   const Grouping& g = a.grouping;
   const std::vector<std::string>& levels = parts_->levels;
+  const bool weights = has_level(levels, "residue") && std::any_of(g.residue_weight.begin(), g.residue_weight.end(),
+                                                                   [](double w) { return w != 1; });
   HierWriter writer(out, parts_->source, levels,
-                    report().charges_alone > 0 ? HierWriter::Version::v2 : HierWriter::Version::v1);
+                    report().charges_alone > 0 || weights ? HierWriter::Version::v2 : HierWriter::Version::v1);
   std::vector<int32_t> open(levels.size(), -1);
   std::string residue_name;
   for (const int32_t r : parts_->order) {
@@ -129,7 +176,7 @@ void PdbHierarchy::write(std::ostream& out) const {
       open[l] = id;
       if (is_residue) {
         residue_name = residue.source->name + ":" + residue.source->seqid.str();
-        writer.group(l, residue_name, g.residue_exponent[r]);
+        writer.group(l, residue_name, g.residue_exponent[r], g.residue_weight[r]);
       } else if (is_chain) {
         writer.group(l, g.chain[chain], g.chain_exponent[chain]);
       } else {

@@ -20,8 +20,11 @@ struct PdbOptions {
   std::vector<std::string> levels = {"chain", "residue"}; ///< of domain, chain, residue; outermost first
   enum class Domains { none, file, entity, copy } domains = Domains::none;
   std::vector<DomainPart> domain_parts; ///< Domains::file
-  Exponents exponents;                  ///< where no rule says otherwise
-  std::vector<Rule> rules;              ///< later ones win
+  /// Where no rule says otherwise: plain: `exponents`; molecular: those of molecular_body(); automatic: molecular
+  /// for a file with hydrogens or radii of its own, else plain. Without a level "residue" always plain.
+  enum class Surface { automatic, molecular, plain } surface = Surface::automatic;
+  Exponents exponents;
+  std::vector<Rule> rules; ///< later ones win
   std::string select = "*";
   bool hydrogens = true, waters = false, hetatm = true; ///< keep
   std::string altloc = "occupancy";                     ///< occupancy, first, all, or the letter to prefer
@@ -51,6 +54,7 @@ struct PdbReport {
   std::map<std::string, int64_t> passed_over;      ///< lines or categories that are no atoms, by record or name
   std::map<std::string, int64_t> guessed_elements; ///< that the file does not give, taken from the names
   std::map<std::string, Unknown> unknown_elements; ///< by element ("X": none known), given `unknown_radius`
+  std::string surface;                             ///< which settings of the body, and why; empty: `exponents`
   std::vector<std::string> notes;                  ///< all of the above that a user should know, a sentence each
 };
 

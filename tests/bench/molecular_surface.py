@@ -9,9 +9,9 @@ points on the exposed spheres (0.12 Å apart) and circles (0.06 Å). Volume, are
 marching tetrahedra on the same grid, so that their errors are alike; a surface of n components has n - Euler/2 tunnels. The field
 of the Gaussian body is that of hier2density, by way of density2map.
 
---energy: linearised Poisson-Boltzmann by APBS, without salt, dielectric 2 and 78.54, a grid of twice the spacing: of the molecular surface
-(srfm mol), and of the Gaussian body by dielectric maps. Hydrogens are those of the file, and so are charges and radii; an atom
-of radius 0 has a charge alone. Needs numpy and scipy."""
+--energy: linearised Poisson-Boltzmann by APBS, without salt, dielectric 2 and 78.54, on a grid of twice the spacing. Both bodies are given as dielectric maps,
+the harmonic mean along each edge by where the field crosses it, so that their errors are alike. Hydrogens are those of the file, and so are
+charges and radii; an atom of radius 0 has a charge alone. Needs numpy and scipy."""
 import argparse
 import gzip
 import pathlib
@@ -27,6 +27,7 @@ from scipy.spatial import cKDTree
 
 PROBE = 1.4
 SOLUTE, SOLVENT = 2.0, 78.54
+ROOM = 5.0  # Å round the fields' grid, which has 5 Å round the body
 
 
 def read_pqr(file):
@@ -182,11 +183,18 @@ def write_dx(file, low, h, values):
         f.write(" ".join(f"{x:g}" for x in flat[flat.size // 3 * 3 :]) + "\n")
 
 
-def energy(o, pqr, low, fine, scratch, field=None):
-    """kJ/mol. Points of the grid are every second one of the field's."""
+def inside(u, v):
+    """The part of an edge that is inside, from the field at its ends."""
+    positive, sum = np.maximum(u, 0) + np.maximum(v, 0), np.abs(u) + np.abs(v)
+    return np.where((u > 0) == (v > 0), u > 0, positive / np.maximum(sum, 1e-12))
+
+
+def total_energy(o, pqr, low, fine, scratch, field=None):
+    """kJ/mol, with that of the charges' spreading on the grid; without a field in the solute's dielectric alone. Points of the grid are every second one
+    of the field's."""
     xyz, charge, radius = pqr
     h = 2 * o.spacing
-    need = (np.array(fine) / 2 + 16 / h).max()
+    need = (np.array(fine) / 2 + 2 * ROOM / h).max()
     dime = next(n for n in (65, 97, 129, 161, 193, 225, 257, 289, 321) if n >= need)
     shift = ((dime - np.array(fine) // 2) // 2).astype(int)
     first = low - shift * h
@@ -196,18 +204,18 @@ def energy(o, pqr, low, fine, scratch, field=None):
     maps = ""
     if field is not None:
         padded = np.full(3 * [2 * dime + 1], -1.0)
-        at = tuple(slice(2 * s, 2 * s + n) for s, n in zip(shift, field.shape))
-        padded[at] = field
+        padded[tuple(slice(2 * s, 2 * s + n) for s, n in zip(shift, field.shape))] = field
         for axis, name in enumerate("xyz"):
-            half = padded[tuple(slice(1 if a == axis else 0, 2 * dime + (1 if a == axis else 0), 2) for a in range(3))][:dime, :dime, :dime]
-            write_dx(f"{scratch}/{name}.dx", first + np.eye(3)[axis] * h / 2, h, np.where(half > 0, SOLUTE, SOLVENT))
+            start, middle, end = (padded[tuple(slice(k if a == axis else 0, k + 2 * dime - 1 if a == axis else 2 * dime, 2) for a in range(3))] for k in range(3))
+            part = (inside(start, middle) + inside(middle, end)) / 2
+            write_dx(f"{scratch}/{name}.dx", first + np.eye(3)[axis] * h / 2, h, 1 / (part / SOLUTE + (1 - part) / SOLVENT))
         maps = f"diel dx {scratch}/x.dx {scratch}/y.dx {scratch}/z.dx\n"
     centre = first + (dime - 1) * h / 2
-    common = (f"mg-manual\ndime {dime} {dime} {dime}\ngrid {h} {h} {h}\ngcent {centre[0]} {centre[1]} {centre[2]}\nmol 1\nlpbe\nbcfl mdh\n"
-              f"pdie {SOLUTE}\nsrfm mol\nchgm spl2\nsdens 20\nsrad {PROBE}\nswin 0.3\ntemp 298.15\ncalcenergy total\ncalcforce no\n")
     with open(f"{scratch}/a.in", "w") as f:
-        f.write(f"read\nmol pqr {scratch}/a.pqr\n{maps}end\nelec name solvated\n{common}sdie {SOLVENT}\n{'usemap diel 1' if maps else ''}\nend\n"
-                f"elec name vacuum\n{common}sdie {SOLUTE}\nend\nprint elecEnergy solvated - vacuum end\nquit\n")
+        f.write(f"read\nmol pqr {scratch}/a.pqr\n{maps}end\nelec name one\nmg-manual\ndime {dime} {dime} {dime}\ngrid {h} {h} {h}\n"
+                f"gcent {centre[0]} {centre[1]} {centre[2]}\nmol 1\nlpbe\nbcfl mdh\npdie {SOLUTE}\nsdie {SOLVENT if maps else SOLUTE}\nsrfm mol\n"
+                f"chgm spl2\nsdens 20\nsrad {PROBE}\nswin 0.3\ntemp 298.15\ncalcenergy total\ncalcforce no\n{'usemap diel 1' if maps else ''}\nend\n"
+                "print elecEnergy one end\nquit\n")
     return float(re.search(r"Global net ELEC energy = (\S+)", run(o.apbs, f"{scratch}/a.in", cwd=scratch)).group(1))
 
 
@@ -221,7 +229,7 @@ def main():
     parser.add_argument("--apbs", default="apbs")
     o = parser.parse_args()
     settings = o.hier or [""]
-    off = {s: [] for s in settings}
+    off, holes, holes_there = {s: [] for s in settings}, {s: [] for s in settings}, []
     what = ["volume", "area"] + ["energy"] * o.energy
     print("| structure | atoms | molecular surface: " + ", ".join(what) + "; tunnels, cavities |" + "".join(f" {s or 'default'} |" for s in settings))
     print("|" + "---|" * (3 + len(settings)))
@@ -233,19 +241,25 @@ def main():
             with tempfile.TemporaryDirectory() as scratch:
                 field, low = gaussian_field(o, s, file, scratch)
                 if reference is None:
-                    reference = measure(excluded_field(xyz[body], radius[body], low, field.shape, o.spacing), o.spacing)
+                    excluded = excluded_field(xyz[body], radius[body], low, field.shape, o.spacing)
+                    reference = measure(excluded, o.spacing)
                     if o.energy:
-                        reference["energy"] = energy(o, pqr, low, field.shape, scratch)
+                        vacuum = total_energy(o, pqr, low, field.shape, scratch)
+                        reference["energy"] = total_energy(o, pqr, low, field.shape, scratch, excluded) - vacuum
                 found = measure(field, o.spacing)
                 if o.energy:
-                    found["energy"] = energy(o, pqr, low, field.shape, scratch, field)
+                    found["energy"] = total_energy(o, pqr, low, field.shape, scratch, field) - vacuum
             off[s].append([100 * (found[w] / reference[w] - 1) for w in what])
+            holes[s].append((found["tunnels"], found["cavities"]))
             row += " " + ", ".join(f"{x:+.1f}" for x in off[s][-1]) + f" %; {found['tunnels']}, {found['cavities']} |"
+        holes_there.append((reference["tunnels"], reference["cavities"]))
         name = pathlib.Path(file).name.removesuffix(".gz").removesuffix(".pqr")
         print(f"| {name} | {len(xyz):,} | " + ", ".join(f"{reference[w]:,.0f}" for w in what) + f"; {reference['tunnels']}, {reference['cavities']} |{row}", flush=True)
     for s in settings:
         for w, column in zip(what, zip(*off[s])):
             print(f"{s or 'default'}, {w}: median {statistics.median(column):+.2f} %, from {min(column):+.1f} to {max(column):+.1f} %")
+        ours, theirs = (tuple(map(sum, zip(*h))) for h in (holes[s], holes_there))
+        print(f"{s or 'default'}: {ours[0]} tunnels, {ours[1]} cavities; the molecular surfaces have {theirs[0]} and {theirs[1]}")
 
 
 if __name__ == "__main__":

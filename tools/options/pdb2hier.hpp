@@ -9,7 +9,7 @@ struct Options : cli::Common {
   Options() { uses_threads = false; }
   formats::PdbOptions pdb;
   std::string levels = "chain,residue", radii = "bondi", unknown = "2";
-  std::string hydrogens = "keep", waters = "drop", hetatm = "keep";
+  std::string surface = "auto", hydrogens = "keep", waters = "drop", hetatm = "keep";
   std::vector<std::string> domains, rules, resolution;
 };
 
@@ -24,9 +24,18 @@ inline void describe(cli::Table& t, Options& o) {
   t.group("levels and resolution");
   t.add("--levels", o.levels, "group levels, outermost first, of domain, chain, residue; or none").unit("LEVELS");
   t.add("--domains", o.domains, "file of lines NAME SELECTION, or entity, or copy (of the assembly)").unit("FILE");
+  t.add(
+       "--surface", o.surface,
+       "exponents and weights without rules: molecular: the molecular surface's volume, area and solvation energy, "
+       "by the hydrogens of the file; plain: P_R=0.3; paper: P_R=0.5; auto: molecular for files with hydrogens or "
+       "with radii of their own, else plain")
+      .unit("WHICH")
+      .one_of({"auto", "molecular", "plain", "paper"});
   t.add("-r,--rule", o.rules,
-        "'SELECTION P_R=… P_C=… P_D=…': exponents (> 0) of all residues, chains and domains that the "
-        "selection touches; 'around SELECTION Å P_R=…' is a lens; later rules win")
+        "'SELECTION P_R=… W_R=… P_C=… P_D=…': exponents (> 0) of all residues, chains and domains that the "
+        "selection touches, and the weight W_R of residues (1 where P_R stands alone); 'around SELECTION Å P_R=…' "
+        "is a lens; "
+        "later rules win")
       .unit("RULE");
   t.add("--resolution", o.resolution, "file of rules, one a line, applied before those of -r").unit("FILE");
   t.group("atoms");
@@ -46,7 +55,9 @@ inline void describe(cli::Table& t, Options& o) {
       "domain. "
       "Every group has an exponent P that says how sharp it is drawn: a small one blurs the group, a large one "
       "shows its members. Rules set the exponents; by default P_R (residues) is 0.3, P_C (chains) and P_D "
-      "(domains) are 1. Input may be plain or gzip. What is dropped is said on standard error.";
+      "(domains) are 1. For files with hydrogens or radii of their own, P_R and weights W_R of the residues' sums "
+      "are those that give the molecular surface. Input may be plain or gzip. What is dropped is said on standard "
+      "error.";
   t.page.examples = {
       {"pdb2hier 1tii.pdb -o 1tii.hier", "the whole structure with the default exponents"},
       {"pdb2hier -r '* P_R=0.05 P_C=0.5' -r '//D P_R=0.5 P_C=1' 1tii.pdb -o 1tii.hier", "blurred, but for chain D"},

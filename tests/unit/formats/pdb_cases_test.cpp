@@ -53,6 +53,7 @@ TEST_CASE("every kind of file that programs write has the outcome that tests/dat
     formats::PdbOptions options;
     options.waters = true;
     options.altloc = "all";
+    options.surface = formats::PdbOptions::Surface::plain;
     if (c.select != "*")
       options.select = c.select;
     std::string said;

@@ -17,8 +17,10 @@ struct Outcome {
 
 Outcome outcome(const fs::path& path) {
   const std::string name = path.filename().string();
+  formats::PdbOptions options;
+  options.surface = formats::PdbOptions::Surface::plain;
   try {
-    const Converted c = convert(slurp(path.string()), {}, name);
+    const Converted c = convert(slurp(path.string()), options, name);
     std::string notes;
     for (size_t n = 1; n < c.report.notes.size(); ++n)
       notes += (n > 1 ? "; " : "") + c.report.notes[n];

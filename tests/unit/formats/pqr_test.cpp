@@ -147,3 +147,40 @@ TEST_CASE("PQR: a table of radii replaces the file's own when it is given") {
   CHECK(c.hierarchy.atom.at(0).radius == 1.55);
   CHECK(c.hierarchy.atom.at(0).charge == -0.3);
 }
+
+namespace {
+
+/// Three residues: methane with its hydrogens, what is left without them, an ion.
+const char* const methane = "ATOM 1 C CH4 A 1 0 0 0 0 1.9\nATOM 2 H1 CH4 A 1 0.6 0.6 0.6 0 1.4\n"
+                            "ATOM 3 H2 CH4 A 1 -0.6 -0.6 0.6 0 1.4\nATOM 4 H3 CH4 A 1 0.6 -0.6 -0.6 0 1.4\n"
+                            "ATOM 5 H4 CH4 A 1 -0.6 0.6 -0.6 0 1.4\nATOM 6 NA NA A 2 9 0 0 1 1.8\n";
+
+} // namespace
+
+TEST_CASE("PQR: exponents and weights by the hydrogens, and an ion without a weight") {
+  const Converted c = convert(methane, {}, "x.pqr");
+  CHECK(c.text.find("\nresidue CH4:1 0.4 0.691\n") != std::string::npos);
+  CHECK(c.text.find("\nresidue NA:2 0.4\n") != std::string::npos);
+  REQUIRE(c.report.notes.size() == 2);
+  CHECK(c.report.notes[1] == "all hydrogens: a body near the molecular surface, P_R 0.4, W_R 0.63 (--surface)");
+  formats::PdbOptions o;
+  o.hydrogens = false;
+  CHECK(convert(methane, o, "x.pqr").text.find("\nresidue CH4:1 0.3\n") != std::string::npos);
+  o.own_radii = false; // a file without hydrogens and radii
+  CHECK(convert(methane, o, "x.pqr").text.find("\nresidue CH4:1 0.3\n") != std::string::npos);
+  o.surface = formats::PdbOptions::Surface::molecular;
+  CHECK(convert(methane, o, "x.pqr").text.find("\nresidue CH4:1 0.3\n") != std::string::npos);
+}
+
+TEST_CASE("PQR: plain exponents, rules and fewer levels leave version 1") {
+  formats::PdbOptions plain, ruled, weighted, none;
+  plain.surface = formats::PdbOptions::Surface::plain;
+  ruled.rules = {parse_rule("* P_R=0.5", "-r")};
+  weighted.rules = {parse_rule("//A/1 W_R=0.5", "-r")};
+  none.levels = {};
+  CHECK(convert(methane, plain, "x.pqr").text.find("\nresidue CH4:1 0.3\n") != std::string::npos);
+  CHECK(convert(methane, ruled, "x.pqr").text.find("\nresidue CH4:1 0.5\n") != std::string::npos);
+  for (const formats::PdbOptions& o : {plain, ruled, none})
+    CHECK(convert(methane, o, "x.pqr").text.substr(0, 7) == "hier 1\n");
+  CHECK(convert(methane, weighted, "x.pqr").text.find("\nresidue CH4:1 0.4 0.5743\n") != std::string::npos);
+}
