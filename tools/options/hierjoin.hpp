@@ -26,9 +26,8 @@ inline void describe(cli::Table& t, Options& o) {
       .one_of({"refuse", "number"});
   t.group("resolution");
   t.add("-r,--rule", o.rules,
-        "'SELECTION P_R=… W_R=… P_C=… P_D=…': exponents of all residues, chains and domains of the joined hierarchy that "
-        "the "
-        "selection touches; applied after the rules of the plan")
+        "'SELECTION P_R=… W_R=… P_C=… P_D=…': exponents of all residues, chains and domains of the joined "
+        "hierarchy that the selection touches; applied after the rules of the plan")
       .unit("RULE");
   t.page.about =
       "Joins structures into one hierarchy, atom by atom: proteins in a membrane, filaments, lattices. A plan has "
