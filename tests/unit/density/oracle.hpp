@@ -131,10 +131,10 @@ inline Hierarchy with_bodies(Hierarchy h) {
   return h;
 }
 
-/// Weights from 0.3 to 1.5 on every group of every level.
-inline Hierarchy with_weights(Hierarchy h, unsigned seed) {
+/// Weights from `least` to 1.5 on every group of every level.
+inline Hierarchy with_weights(Hierarchy h, unsigned seed, double least = 0.3) {
   std::mt19937 random(seed);
-  std::uniform_real_distribution<double> weight(0.3, 1.5);
+  std::uniform_real_distribution<double> weight(least, 1.5);
   for (Level& level : h.level)
     for (Group& g : level.group)
       g.weight = weight(random);
