@@ -234,12 +234,12 @@ class Page:
         self.chain.hierarchy(structure, *DETAILED)
         rows = []
         for band, paper in TABLE_1.items():
-            counts = self.chain.density("--grid", "257" if self.quick else "513", "--band", band)["counts"]
+            counts = self.chain.density("--grid", "513", "--band", band)["counts"]
             n = counts["grid_points"]
             rows.append((band, f"{counts['k_A']:.3f}", f"{counts['active_points'] / (n[0] * n[1] * n[2]):.3f}", paper))
         self.write("### The paper's table 1", "Analyzed points k_A as a part of the grid. Ours counts whole blocks of 8³ "
-                   "points; the active points are beside it. 1A7M here, 2KFX there"
-                   + (", and here with 257 points, not 513." if self.quick else "."),
+                   "points; the active points are beside it. 513 points; 1A7M here, 2KFX there "
+                   "([figure 6](figures.md#figure-6-points-near-the-surface)).",
                    table(("band", "k_A", "active points", "the paper's k_A, 2KFX"), rows))
 
     # --- mesh
