@@ -150,8 +150,9 @@ inline BlockGrid planned_grid(const cli::Common& o, const cli::PlanOptions& p, c
 
 /// tetsmooth: as above. blocks: of the density's grid, 0 without.
 inline bool improvement_is_planned(const cli::Common& o, const cli::PlanOptions& p, int64_t elements,
-                                   int64_t triangles, int64_t blocks, int iterations, const cli::Run& run) {
-  const optimize::Plan plan = optimize::plan(elements, triangles, blocks, iterations);
+                                   int64_t triangles, int64_t blocks, int iterations, optimize::Effort effort,
+                                   const cli::Run& run) {
+  const optimize::Plan plan = optimize::plan(elements, triangles, blocks, iterations, effort);
   if (p.plan) {
     cli::Value v;
     v["elements_before"] = elements;

@@ -46,7 +46,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   if (grid)
     require_same_source(mesh, !notes.isovalue_missing, grid->info, density->name());
   if (plans::improvement_is_planned(o, o, std::ssize(mesh.tet), std::ssize(mesh.tri),
-                                    grid ? std::ssize(grid->corner) : 0, o.iterations, run))
+                                    grid ? std::ssize(grid->corner) : 0, o.iterations, o.chosen(), run))
     return Status::good;
   const std::string level = formats::region_level(mesh);
   const AttributeTransfer arrays(mesh);
@@ -55,8 +55,9 @@ Status run_tool(const Options& o, cli::Run& run) {
   options.iterations = o.iterations;
   options.threads = threads;
   options.measure_later = true;
-  options.min_dihedral = std::max(options.min_dihedral, o.min_dihedral);
-  options.max_dihedral = std::min(options.max_dihedral, o.max_dihedral);
+  options.effort = o.chosen();
+  options.min_dihedral = o.min_dihedral;
+  options.max_dihedral = o.max_dihedral;
   if (mesh.creator.rfind("density2tet", 0) == 0)
     options.sharp = 180; // an isosurface is smooth: folds of its first mesh are no features
   options.progress = [&](double share) { run.share(share); };

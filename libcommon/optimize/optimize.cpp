@@ -51,7 +51,7 @@ std::vector<std::shared_ptr<const Target>> set_interface_targets(DynamicMesh& m,
 // late, when few elements are left; where the surface has features far smaller than the grid, points may leave it
 // at the very end. Searches bring them back to the isosurface; to a surface that came in nothing does.
 const Guard strict, relaxed{Guard::widest_unbent, 0.24, 1, 0}, may_leave_surface{180, 1e3, 1, 0.15},
-    may_leave_slightly{80, 0.24, 1, 0.15, 0.02}, bent{70, 0.24, 1, 0};
+    may_leave_slightly{80, 0.24, 1, 0.15, 0.02}, within_a_tenth{180, 1e3, 1, 0.1, 0.1}, bent{70, 0.24, 1, 0};
 
 struct Round {
   double goal_share; // of the goal's sine
@@ -64,7 +64,7 @@ struct Round {
 };
 // The surface is made to fit while elements may still be bad: what stands on it is repaired later, but a bent
 // triangle between good elements has nowhere to go. The last round is repeated.
-const std::vector<Round> rounds{
+const std::vector<Round> rounds_to_good{
     {0.35, false, 1, true, strict, 0.1},
     {0.6, false, 1, true, strict, 0.1, true},
     {0.8, true, 1, true, strict, 0.1, true},
@@ -79,16 +79,32 @@ const std::vector<Round> rounds{
     {1, true, 32, false, relaxed},
     {0.97, true, 32, true, may_leave_surface},
 };
-// After this one points are put further out, for what chords enclose less, and elements keep the whole goal.
-constexpr size_t rounds_to_offset = 4;
+// To 15° and 155°, which is not much more than density2tet's elements have.
+const std::vector<Round> rounds_to_fair{
+    {1, false, 1, true, strict, 0.1}, {1, true, 1, true, strict, 0.1, true}, {1, true, 2, true, relaxed, 0.1, true},
+    {1, true, 8, true, relaxed},      {1, true, 8, false, within_a_tenth},   {1, true, 32, true, within_a_tenth},
+};
+
+// How an effort keeps its promise.
+struct Course {
+  double min_dihedral, max_dihedral; // degrees aimed at, more than is promised
+  const std::vector<Round>& rounds;
+  size_t rounds_to_offset; // after this one points are put further out, for what chords enclose less
+  size_t most_elements;    // below the goal that are searched for; 0: no search, of points neither
+};
+const Course to_fair{16.5, 154.4, rounds_to_fair, 1, 0}, to_good{26, 138.5, rounds_to_good, 4, 64},
+    to_best{30.65, 129.4, rounds_to_good, 4, 1024};
+
+const Course& course_of(Effort effort) {
+  return effort == Effort::fast ? to_fair : effort == Effort::good ? to_good : to_best;
+}
+
 // Where that many elements are below the goal the first rounds take them in the mesh's order and search for places
 // by coarse steps alone: the rounds after find what is left to finer ones. Not without a density, where the surface
 // that came in hardly gives way: TetGen's mesh of 1TII came to 14.9 degrees, not 17.3.
 constexpr int64_t many_elements = 16384;
 // From this round on elements longer than parts, as a far box has, are worked on too, on one thread: they are few.
 constexpr size_t lattice_outgrown = 8;
-// What projection and fitting spoil takes this many rounds to repair: with fewer they may spoil nothing.
-constexpr int rounds_to_repair = 8;
 // Where two cells a part leave fewer than this, first passes take one: a single part would be one thread's work.
 constexpr int64_t fewest_parts = 8;
 
@@ -125,9 +141,17 @@ const std::vector<Strategy> for_elements{{of_elements, bold, relaxed, 0.5, 1, 30
                                          {of_elements, bold, relaxed, 1, 1, 300, 1000},
                                          {of_elements, bold, bent, 1, 1, 300, 1000}};
 
+float goal_of(double min_dihedral, double max_dihedral) {
+  return static_cast<float>(std::max(angle_quality(min_dihedral), angle_quality(max_dihedral)));
+}
+
+float goal_of(const Course& c) {
+  return goal_of(c.min_dihedral, c.max_dihedral);
+}
+
 float goal_of(const Options& o) {
-  return static_cast<float>(std::max(angle_quality(std::min(o.min_dihedral, Options::most_min_dihedral)),
-                                     angle_quality(std::max(o.max_dihedral, Options::least_max_dihedral))));
+  return std::max(goal_of(course_of(o.effort)), goal_of(std::min(o.min_dihedral, Options::most_min_dihedral),
+                                                        std::max(o.max_dihedral, Options::least_max_dihedral)));
 }
 
 float share_of(double share, float goal) {
@@ -138,26 +162,33 @@ float share_of(double share, float goal) {
 class Improvement {
 public:
   Improvement(DynamicMesh& m, const Target& target, Isosurface* isosurface, const Options& options, Result& result)
-      : m_(m), isosurface_(isosurface), options_(options), result_(result),
+      : m_(m), isosurface_(isosurface), options_(options), course_(course_of(options.effort)), result_(result),
         // Edges of four spacings and more are those of merged cells.
         schedule_(
             m, &target,
             std::clamp(21 * mean_surface_edge(m, options.threads), 32 * target.spacing(), 256 * target.spacing()),
             options.threads),
-        goal_(goal_of(options)), usual_(std::min(goal_, goal_of({}))), at_first_(schedule_.worst()),
+        goal_(goal_of(options)), usual_(std::min(goal_, goal_of(to_good))), at_first_(schedule_.worst()),
         // Angles count, where needles would let them fall further.
         no_worse_(std::min(goal_, static_cast<float>(std::min(angle_quality(result.before.min),
                                                               angle_quality(result.before.max))))),
-        repairs_(options.iterations >= rounds_to_repair), small_(schedule_.parts_at_surface(2) < fewest_parts),
+        repairs_(options.iterations >= std::ssize(course_.rounds)),
+        small_(schedule_.parts_at_surface(2) < fewest_parts),
         many_(isosurface && schedule_.below(goal_) >= many_elements) {}
 
   void run_rounds(const FlowPass& flow) {
     double cell_of_all = 0;
     tell_progress();
     for (size_t k = 0; k < size_t(options_.iterations) && schedule_.worst() < goal_; ++k) {
-      const Round& round = rounds[std::min(k, rounds.size() - 1)];
+      const Round& round = course_.rounds[std::min(k, course_.rounds.size() - 1)];
       Pass pass = pass_of(round);
-      pass.tiny_share = k == 0 ? 0.25f : 1.f; // clusters far smaller than the grid have to go as a whole
+      // No other follows that would aim higher.
+      if (!repairs_ && k + 1 == size_t(options_.iterations) && round.guard.lift == 0) {
+        pass.goal = goal_;
+        pass.merges_and_splits = true;
+      }
+      // Clusters far smaller than the grid have to go as a whole.
+      pass.tiny_share = k == 0 && repairs_ ? 0.25f : 1.f;
       const float goal = pass.goal;
       if (round.guard.lift > 0)
         schedule_.watch_crossings(Schedule::everywhere);
@@ -179,13 +210,26 @@ public:
       tell_progress();
       if (isosurface_)
         project_after(k, goal);
-      if (done == 0 && k + 1 >= rounds.size())
+      if (done == 0 && k + 1 >= course_.rounds.size())
         break;
     }
     if (isosurface_ && result_.rounds == 0) // good enough as it came, and to stay so
       project_with_offset(std::min(goal_, at_first_));
   }
 
+  // Where the rounds have done all they can.
+  void search() {
+    if (course_.most_elements == 0 || !(repairs_ || schedule_.worst() >= goal_))
+      return;
+    if (isosurface_)
+      search_points();
+    search_elements();
+  }
+
+  // But for rounding: what is put on the isosurface may lose a millionth.
+  bool is_worse() { return schedule_.worst() < (repairs_ ? at_first_ : 0.9999f * at_first_); }
+
+private:
   void search_points() {
     const std::vector<Strategy>& rows = schedule_.ends_in_surface() ? for_points_at_end : for_points;
     size_t row = 0;
@@ -205,16 +249,13 @@ public:
   }
 
   void search_elements() {
-    for (Strategy s : for_elements)
-      if (repairs_) {
-        s.goal = goal_;
-        count(schedule_.search(s));
-      }
+    for (Strategy s : for_elements) {
+      s.goal = goal_;
+      s.most_elements = course_.most_elements;
+      count(schedule_.search(s));
+    }
   }
 
-  bool is_worse() { return schedule_.worst() < at_first_; }
-
-private:
   // Recovery and the last elements come after the rounds: a tenth is left for them.
   void tell_progress() {
     if (!options_.progress)
@@ -256,20 +297,21 @@ private:
     if (round == 0) { // not before: what is squeezed between surface and grid is gone now
       project_with_offset(repairs_ ? 1 : no_worse_);
       schedule_.watch_crossings(Schedule::guarded); // nearer to the target, fewer are
-    }
-    if (round + 1 == rounds_to_offset)
+    } else if (round + 1 == course_.rounds_to_offset)
       offset_points();
-    const float floor = round < rounds_to_offset ? goal : goal_;
+    const float floor = round < course_.rounds_to_offset ? goal : goal_;
     count(schedule_.project(repairs_ ? floor : std::max(floor, no_worse_), strict));
   }
 
   DynamicMesh& m_;
   Isosurface* const isosurface_;
   const Options& options_;
+  const Course& course_;
   Result& result_;
   Schedule schedule_;
   const float goal_, usual_, at_first_, no_worse_;
-  const bool repairs_, small_, many_;
+  const bool repairs_; ///< all rounds: what projection and fitting spoil is repaired. With fewer they spoil nothing
+  const bool small_, many_;
   int64_t at_begin_ = 0; ///< elements below the goal
 };
 
@@ -304,9 +346,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   begin("improve");
   Improvement run(m, target, isosurface.get(), options, result);
   run.run_rounds(interfaces.empty() ? flow : FlowPass{}); // which knows one target
-  if (density)
-    run.search_points();
-  run.search_elements();
+  run.search();
   if (result.counts.total() == 0 || run.is_worse()) { // the file that came in, in its own order
     result.rejected = result.counts.total() > 0;
     result.counts = {};

@@ -5,6 +5,7 @@
 #include "optimize/mesh/measures.hpp"
 #include "optimize/mesh/snapshot.hpp"
 #include "optimize/schedule/pass.hpp"
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -13,11 +14,22 @@
 
 namespace molmesh::optimize {
 
+/// How much time the elements are worth.
+enum class Effort : uint8_t {
+  fast, ///< 15° to 155°: few rounds and no search, so some points may stay off the isosurface
+  good, ///< 25° to 140°, Q 0.30, no point off
+  best, ///< 28° to 134°, Q 0.35, but for a few elements; no point off
+};
+
 struct Options {
+  Effort effort = Effort::good;
   /// Better elements than these are not aimed at: few meshes come so far, and all of their elements take time.
   static constexpr double most_min_dihedral = 34, least_max_dihedral = 125;
-  double min_dihedral = 26, max_dihedral = 138.5; ///< degrees aimed at; the work stops where they are reached
-  int iterations = 15;                            ///< rounds at most; 0 leaves the mesh as it is
+  /// Degrees aimed at where the effort aims at less; the work stops where they are reached.
+  double min_dihedral = 0, max_dihedral = 180;
+  /// Rounds at most; 0 leaves the mesh as it is. Fewer than the effort has are its first ones: none of them lets
+  /// the worst element fall, and no search follows.
+  int iterations = 15;
   double sharp = 50; ///< degrees; without a density, edges of the surface that bend by more are kept
   int threads = 1;
   /// Told now and then how much of the improvement is done (0 to 1), by the elements that are still below the goal.

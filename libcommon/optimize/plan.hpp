@@ -1,5 +1,6 @@
 // plan.hpp — what improving a mesh takes, before it is done.
 #pragma once
+#include "optimize/optimize.hpp"
 #include <cstdint>
 
 namespace molmesh::optimize {
@@ -12,6 +13,6 @@ struct Plan {
 
 /// elements, triangles: of the mesh that comes in; blocks: of the density's grid, 0: none. iterations: 0 leaves the
 /// mesh as it is.
-Plan plan(int64_t elements, int64_t triangles, int64_t blocks, int iterations);
+Plan plan(int64_t elements, int64_t triangles, int64_t blocks, int iterations, Effort effort = Effort::good);
 
 } // namespace molmesh::optimize

@@ -212,13 +212,12 @@ std::vector<int32_t> Schedule::places_to_search(const Strategy& s) {
     std::vector<int32_t> points = points_off();
     return is_hopeless(points.size()) ? std::vector<int32_t>{} : points;
   }
-  constexpr size_t most = 64; // many are no business of long searches
   const std::vector<int32_t> low = low_elements(FaultCount::share * s.goal, true);
   std::vector<int32_t> points;
   for (const int32_t t : low)
     points.push_back(m_.element[t].v[0]);
   par::sort_unique(points, 1);
-  return low.size() > most ? std::vector<int32_t>{} : points;
+  return low.size() > s.most_elements ? std::vector<int32_t>{} : points;
 }
 
 Counts Schedule::search(const Strategy& s) {

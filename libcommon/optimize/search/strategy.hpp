@@ -1,6 +1,7 @@
 // strategy.hpp — one row of a table of local searches: what it is for, what it may try, how far, how long.
 #pragma once
 #include "isosurface/guard.hpp"
+#include <cstddef>
 #include <cstdint>
 
 namespace molmesh::optimize {
@@ -28,8 +29,9 @@ struct Strategy {
   int hill_climbing = 0;  ///< trials at most: first improvement
   int threshold = 0;      ///< trials at most: threshold accepting, after hill climbing
   // Of one run.
-  float goal = 0;          ///< quality
-  bool worst_first = true; ///< deficit(), in the first round of each repair; the other one in the second
+  size_t most_elements = 64; ///< Scope::elements: nothing is done where more are below the goal
+  float goal = 0;            ///< quality
+  bool worst_first = true;   ///< deficit(), in the first round of each repair; the other one in the second
 };
 
 } // namespace molmesh::optimize

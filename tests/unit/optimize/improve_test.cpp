@@ -2,6 +2,7 @@
 #include "base/error.hpp"
 #include "isosurface/isosurface.hpp"
 #include "lattice_mesh.hpp"
+#include "mesh/validity.hpp"
 #include "mesh/worst_elements.hpp"
 #include "optimize/optimize.hpp"
 #include "optimize/schedule/schedule.hpp"
@@ -180,17 +181,40 @@ TEST_CASE("the same mesh at any number of threads") {
 TEST_CASE("a few rounds improve, and nothing becomes worse for want of more") {
   const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
   const TetMesh first = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
-  for (const int rounds : {1, 2, 4, 7}) {
+  for (const int rounds : {1, 2, 4, 8, 12}) {
     CAPTURE(rounds);
     TetMesh mesh = first;
     optimize::Options few;
     few.iterations = rounds;
     const optimize::Result r = optimize::improve(mesh, &grid, few);
     CHECK_FALSE(r.rejected);
+    CHECK(r.rounds <= rounds);
     CHECK(r.after.min > r.before.min);
     CHECK(r.after.max < r.before.max);
     CHECK(r.after.below_25 < r.before.below_25);
   }
+}
+
+TEST_CASE("more effort brings better elements and a nearer surface, by more operations", "[slow]") {
+  const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  const TetMesh first = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
+  const auto run = [&](optimize::Effort effort, double least, double most) {
+    TetMesh mesh = first;
+    optimize::Options options;
+    options.effort = effort;
+    const optimize::Result r = optimize::improve(mesh, &grid, options);
+    CHECK(r.after.min >= least);
+    CHECK(r.after.max <= most);
+    CHECK(r.fidelity.points > 100);
+    CHECK(check_validity(mesh, 1).valid());
+    return r;
+  };
+  const optimize::Result fast = run(optimize::Effort::fast, 15, 155), good = run(optimize::Effort::good, 25, 140),
+                         best = run(optimize::Effort::best, 28, 134);
+  CHECK(fast.counts.total() < good.counts.total());
+  CHECK(good.counts.total() < best.counts.total());
+  CHECK(good.fidelity.points_off == 0);
+  CHECK(best.fidelity.points_off == 0);
 }
 
 TEST_CASE("whatever quality is asked for, the surface stays on the isosurface", "[slow]") {
