@@ -16,7 +16,7 @@ struct BoxRequest {
   double scale = 0; ///< factor: times the surface's own extents, about its centre; sphere_factor: times its radius
   Vec3d lower, upper;  ///< corners: Å; met to the last bit
   double distance = 0; ///< padding, sphere_padding: Å from the surface's own extents, or its radius
-  Sphere outer;        ///< sphere: to mesh in; the box of the lattice holds it
+  Sphere outer = {};   ///< sphere: to mesh in; the box of the lattice holds it
   bool is_sphere() const { return kind >= sphere_factor; }
 };
 
