@@ -30,8 +30,11 @@ int64_t Schedule::parts_at_surface(double cell) {
 void Schedule::watch_crossings(double apart) {
   if (!target_ || watching_everywhere_)
     return;
-  watching_everywhere_ = apart == everywhere;
   std::vector<FreeTriangle> triangle = find_free_triangles(m_, threads_);
+  watching_everywhere_ =
+      apart == everywhere || std::any_of(triangle.begin(), triangle.end(), [&](const FreeTriangle& t) {
+        return std::any_of(t.v.begin(), t.v.end(), [&](int32_t v) { return m_.vertex[v].kind == Kind::trace; });
+      });
   ends_in_surface_ = !triangle.empty();
   const std::vector<uint8_t> watched =
       watching_everywhere_

@@ -35,6 +35,7 @@ public:
   Counts project(float floor, const Guard& guard);
   /// Where the mesh ends in a curved surface, operations keep it from crossing itself: near triangles that face
   /// each other within `apart` spacings, beside what they are off the target; or everywhere, from now on.
+  /// Everywhere where a wall cuts the surface: on a trace a triangle may leave its place by more.
   void watch_crossings(double apart);
   static constexpr double everywhere = 1e300;
   /// Each triangle stays within a quarter of a spacing (Guard::distance), or what it is off.
