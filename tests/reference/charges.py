@@ -35,7 +35,7 @@ def hier_charges(text):
 
 
 def compare(pdb2hier, path):
-    made = subprocess.run([pdb2hier, '-q', '--waters', 'keep', path], capture_output=True, text=True, check=False)
+    made = subprocess.run([pdb2hier, '-q', '--surface', 'plain', '--waters', 'keep', path], capture_output=True, text=True, check=False)
     if made.returncode != 0:
         return f'status {made.returncode}: {made.stderr}'
     wanted, found = sum(pqr_charges(path)), sum(hier_charges(made.stdout))
