@@ -91,10 +91,10 @@ Status run_tool(const Options& o, cli::Run& run) {
                   {"moves", c.moves},
                   {"edge_removals", c.edge_removals},
                   {"surface_flips", c.surface_flips},
-                  {"face_swaps", 0}, // these and hand_overs are no more; version 1 of the report keeps its keys
+                  {"face_swaps", c.face_swaps},
                   {"contractions", c.contractions},
                   {"splits", c.splits},
-                  {"hand_overs", 0},
+                  {"hand_overs", 0}, // none are; version 1 of the report keeps its keys
                   {"nestings", c.cavity_shrinks},
                   {"quality_before", angles_value(result.before)},
                   {"quality_after", angles_value(result.after)}});

@@ -12,9 +12,12 @@ namespace molmesh::optimize {
 
 /// How many operations were done.
 struct Counts {
-  int64_t moves = 0, edge_removals = 0, surface_flips = 0, contractions = 0, splits = 0, cavity_shrinks = 0;
+  int64_t moves = 0, edge_removals = 0, surface_flips = 0, face_swaps = 0, contractions = 0, splits = 0,
+          cavity_shrinks = 0;
   Counts& operator+=(const Counts& o);
-  int64_t total() const { return moves + edge_removals + surface_flips + contractions + splits + cavity_shrinks; }
+  int64_t total() const {
+    return moves + edge_removals + surface_flips + face_swaps + contractions + splits + cavity_shrinks;
+  }
 };
 
 /// Slots reserved for new elements and vertices of one part; nothing lives in them.

@@ -17,6 +17,9 @@ bool improve_element(Region& r, const Acceptance& accept, int32_t t, bool merges
   for (const auto& [i, j] : edges)
     if (remove_edge(r, accept, t, i, j))
       return true;
+  for (int f = 0; f < 4; ++f)
+    if (swap_face(r, accept, t, f))
+      return true;
   const float q = element().q;
   bool done = false;
   for (size_t i = 0; i < 4; ++i) {

@@ -9,6 +9,8 @@ namespace molmesh::optimize {
 
 /// The edge goes: its ring is filled anew. Flips a surface edge.
 bool remove_edge(Region& r, const Acceptance& accept, int32_t e, int i, int j);
+/// The face i goes: two elements become three.
+bool swap_face(Region& r, const Acceptance& accept, int32_t e, int i);
 /// Vertex i goes to vertex j.
 bool contract_edge(Region& r, const Acceptance& accept, int32_t e, int i, int j);
 /// Vertices i and j meet where their elements are best.

@@ -11,6 +11,7 @@ Counts& Counts::operator+=(const Counts& o) {
   moves += o.moves;
   edge_removals += o.edge_removals;
   surface_flips += o.surface_flips;
+  face_swaps += o.face_swaps;
   contractions += o.contractions;
   splits += o.splits;
   cavity_shrinks += o.cavity_shrinks;
