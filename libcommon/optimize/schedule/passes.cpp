@@ -229,19 +229,38 @@ Counts Schedule::search(const Strategy& s) {
   watch_crossings(everywhere); // points leave the surface meanwhile
   set_parts_around(points, passes_++, s.part_size * cell_);
   const std::vector<int32_t> items = elements_of_parts();
-  std::vector<size_t> places(static_cast<size_t>(parts_.count())); // of each part
+  std::vector<std::vector<int32_t>> places(static_cast<size_t>(parts_.count())); // of each part
   for (const int32_t v : points)
     if (const int32_t part = parts_.owner[v]; part >= 0)
-      ++places[part];
-  return for_parts(items, parts_of(items),
-                   [&](Region& r, std::vector<int32_t>& list) {
-                     list.insert(list.end(), r.room.element.begin(), r.room.element.end());
-                     r.time = time;
-                     search_part(r, list, s);
-                   },
-                   {.slots_per_item = 0.25,
-                    .slots = s.scope == Scope::points ? room_for_shells : PartShares{}.slots,
-                    .weight = [&](int32_t part) { return places[part]; }});
+      places[part].push_back(v);
+  std::vector<uint8_t> failed(places.size());
+  failed_searches_.begin(s);
+  Strategy bold = s;
+  bold.moves = Moves::bold;
+  const Counts counts = for_parts(items, parts_of(items),
+                                  [&](Region& r, std::vector<int32_t>& list) {
+                                    const auto part = static_cast<size_t>(r.part());
+                                    int32_t touched = 0;
+                                    for (const int32_t t : list)
+                                      for (const int32_t v : m_.element[t].v)
+                                        touched = std::max(touched, m_.touched[v]);
+                                    if (failed_searches_.knows(places[part], s, touched))
+                                      return;
+                                    const bool searched = s.moves == Moves::necks &&
+                                                          failed_searches_.knows(places[part], bold, touched);
+                                    std::vector<int32_t> slots = list;
+                                    slots.insert(slots.end(), r.room.element.begin(), r.room.element.end());
+                                    r.time = time;
+                                    search_part(r, slots, s, searched);
+                                    failed[part] = r.counts.total() == 0;
+                                  },
+                                  {.slots_per_item = 0.25,
+                                   .slots = s.scope == Scope::points ? room_for_shells : PartShares{}.slots,
+                                   .weight = [&](int32_t part) { return places[part].size(); }});
+  for (size_t part = 0; part < places.size(); ++part)
+    if (failed[part])
+      failed_searches_.note(places[part], s, time);
+  return counts;
 }
 
 } // namespace molmesh::optimize

@@ -2,7 +2,7 @@
 #pragma once
 #include "optimize/operations/region.hpp"
 #include "optimize/schedule/pass.hpp"
-#include "optimize/search/strategy.hpp"
+#include "optimize/search/failed_searches.hpp"
 #include <algorithm>
 #include <cstdint>
 #include <functional>
@@ -84,6 +84,7 @@ private:
   int passes_ = 0, projections_ = 0;
   int32_t time_ = 0, since_ = 0; ///< sweeps so far; when this kind of pass began
   Pass last_;
+  FailedSearches failed_searches_;
   Parts parts_;
   std::vector<uint32_t> stamp_; ///< of the regions
   uint32_t last_stamp_ = 0;

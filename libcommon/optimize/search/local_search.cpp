@@ -126,8 +126,10 @@ bool LocalSearch::operate(const Trial& trial) {
     return contract_edge(r_, a, t, i, j);
   case 3:
     return contract_edge(r_, a, t, j, i);
-  default:
+  case 4:
     return merge_edge(r_, a, t, i, j);
+  default:
+    return swap_face(r_, a, t, trial.operation % 6);
   }
 }
 

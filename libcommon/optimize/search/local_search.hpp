@@ -55,7 +55,7 @@ private:
   std::vector<int32_t> bad();                                                   ///< in the order of the slots
   std::vector<int32_t> worst();
   void fit_listed(const Acceptance& accept);
-  static constexpr int operations = 30;
+  static constexpr int operations = 34;
   struct Trial {
     int32_t element;
     int operation; ///< 0 … operations - 1

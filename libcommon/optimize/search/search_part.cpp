@@ -38,7 +38,12 @@ public:
   Recovery(Region& r, const std::vector<int32_t>& slots, const Strategy& strategy)
       : r_(r), strategy_(strategy), search_(r, slots, acceptance_of(strategy), careful) {}
 
-  void run() {
+  void run(bool searched) {
+    if (searched) {
+      if (search_.faults.points_off().size() <= most_points)
+        try_necks(in_necks);
+      return;
+    }
     // Where the mesh ends in it, a surface that bends freely could turn inside out unseen.
     const bool bends = strategy_.moves >= Moves::bending && r_.is_alone();
     // A guard wider than that lets it bend so far.
@@ -233,10 +238,10 @@ private:
 
 } // namespace
 
-void search_part(Region& r, const std::vector<int32_t>& slots, const Strategy& strategy) {
+void search_part(Region& r, const std::vector<int32_t>& slots, const Strategy& strategy, bool searched) {
   const bool of_points = strategy.scope == Scope::points;
   if (of_points && strategy.goal_share == 1) {
-    Recovery(r, slots, strategy).run();
+    Recovery(r, slots, strategy).run(searched);
     return;
   }
   LocalSearch search(r, slots, acceptance_of(strategy), of_points ? yielding : of_elements);
@@ -250,7 +255,7 @@ void search_part(Region& r, const std::vector<int32_t>& slots, const Strategy& s
     Strategy lower = strategy;
     lower.goal_share = 1;
     lower.goal *= strategy.goal_share;
-    Recovery(r, slots, lower).run();
+    Recovery(r, slots, lower).run(false);
     if (r.counts.total() == snapshot.counts.total())
       return;
   } else {

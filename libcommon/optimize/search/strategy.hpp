@@ -32,6 +32,7 @@ struct Strategy {
   size_t most_elements = 64; ///< Scope::elements: nothing is done where more are below the goal
   float goal = 0;            ///< quality
   bool worst_first = true;   ///< deficit(), in the first round of each repair; the other one in the second
+  bool operator==(const Strategy&) const = default;
 };
 
 } // namespace molmesh::optimize
