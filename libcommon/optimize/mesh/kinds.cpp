@@ -101,6 +101,25 @@ private:
   std::vector<size_t> root_;
 };
 
+/// How many of the fans meet at each vertex that is noted.
+class FanCounts {
+public:
+  void note(size_t v, size_t fan) { fan_.emplace_back(v, fan); }
+  /// f(v, fans), after all notes, by ascending vertex.
+  template <class F>
+  void for_each(F&& f) {
+    par::sort_unique(fan_, 1);
+    for (size_t i = 0, j; i < fan_.size(); i = j) {
+      for (j = i; j < fan_.size() && fan_[j].first == fan_[i].first;)
+        ++j;
+      f(fan_[i].first, j - i);
+    }
+  }
+
+private:
+  std::vector<std::pair<size_t, size_t>> fan_;
+};
+
 /// What meets at the vertices of one curved label and one wall: the surface's trace on the wall passes through
 /// where two edges are of both labels, with one fan of the surface and no other edge that is kept.
 class Traces {
@@ -116,26 +135,22 @@ public:
   }
   void note_fan(size_t v, size_t fan) {
     if (edges_[v] != no_candidate)
-      fan_.emplace_back(v, fan);
+      fans_.note(v, fan);
   }
   /// f(v) where it does, after all the others.
   template <class F>
   void for_each(F&& f) {
-    par::sort_unique(fan_, 1);
-    for (size_t i = 0, j; i < fan_.size(); i = j) {
-      const size_t v = fan_[i].first;
-      for (j = i; j < fan_.size() && fan_[j].first == v;)
-        ++j;
+    fans_.for_each([&](size_t v, size_t fans) {
       // With elements on both sides the surface and the wall to either side of it are fans; else all are one.
-      if ((edges_[v] & 3) == 2 && j - i == (edges_[v] & one_of_three ? 3 : 1))
+      if ((edges_[v] & 3) == 2 && fans == (edges_[v] & one_of_three ? 3 : 1))
         f(v);
-    }
+    });
   }
 
 private:
   static constexpr uint8_t no_candidate = 255, one_of_three = 4;
   std::vector<uint8_t> edges_;
-  std::vector<std::pair<size_t, size_t>> fan_;
+  FanCounts fans_;
 };
 
 /// Vertices where two or three curved labels meet in one line: two of their edges have three triangles, all others
@@ -152,25 +167,21 @@ public:
   }
   void note_fan(size_t v, size_t fan) {
     if (edges_[v] != no_candidate)
-      fan_.emplace_back(v, fan);
+      fans_.note(v, fan);
   }
   /// f(v) for each of them.
   template <class F>
   void for_each(F&& f) {
-    par::sort_unique(fan_, 1);
-    for (size_t i = 0, j; i < fan_.size(); i = j) {
-      const size_t v = fan_[i].first;
-      for (j = i; j < fan_.size() && fan_[j].first == v;)
-        ++j;
-      if (edges_[v] == 2 && j - i == 3)
+    fans_.for_each([&](size_t v, size_t fans) {
+      if (edges_[v] == 2 && fans == 3)
         f(v);
-    }
+    });
   }
 
 private:
   static constexpr uint8_t no_candidate = 255;
   std::vector<uint8_t> edges_;
-  std::vector<std::pair<size_t, size_t>> fan_;
+  FanCounts fans_;
 };
 
 /// The labels of the triangles at each vertex, in the order that they come in; 0: no more.
