@@ -3,6 +3,7 @@
 #include "compose/assemble.hpp"
 #include "formats/plan/plan.hpp"
 #include "formats/vdb/vdb.hpp"
+#include "tools/density_line.hpp"
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -77,6 +78,23 @@ void report(cli::Run& r, const compose::Assembly& a) {
   r.note(text);
 }
 
+/// "sum of 4 pieces (2,960 atoms) on …"
+std::string line(const compose::Assembly& a, std::span<const compose::Copy> copies, const compose::Options& c) {
+  const int64_t less = std::count_if(copies.begin(), copies.end(), [](const auto& copy) { return copy.subtract; });
+  const int64_t added = std::ssize(copies) - less;
+  std::string s = added == 1 ? "" : c.combine == compose::Combine::max ? "union of " : "sum of ";
+  s += cli::counted(added, "piece", "pieces");
+  if (less > 0)
+    s += " less " + grouped(less);
+  s += " (" + cli::counted(a.grid.info.atoms, "atom", "atoms") + ") " + density_line(a.grid, c.threads);
+  if (a.resampling_error > 0) {
+    char text[80];
+    std::snprintf(text, sizeof text, "; resampling errs by up to %.2g", a.resampling_error);
+    s += text;
+  }
+  return s;
+}
+
 Status run(const Options& o, cli::Run& r) {
   std::vector<double> band{0, 0};
   if (o.band != "auto") {
@@ -107,6 +125,7 @@ Status run(const Options& o, cli::Run& r) {
   formats::write_vdb(out.stream(), all.grid, c.threads,
                      {all.tail, all.resampling_error, files[0]->surface, files[0]->probe});
   r.complete(out);
+  r.made = line(all, copies, c);
   return Status::good;
 }
 

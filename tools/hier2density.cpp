@@ -1,8 +1,6 @@
 // hier2density.cpp — molecular hierarchy (.hier) to the sparse density grid near its surface (.vdb).
 #include "tools/options/hier2density.hpp"
-#include "base/grouped.hpp"
 #include "cli/progress.hpp"
-#include "cli/text.hpp"
 #include "cuda/density/density.hpp"
 #include "density/density.hpp"
 #include "density/tail.hpp"
@@ -12,11 +10,11 @@
 #include "formats/vdb/vdb.hpp"
 #include "molecule/words.hpp"
 #include "par/par.hpp"
+#include "tools/density_line.hpp"
 #include "tools/density_report.hpp"
 #include "tools/device_report.hpp"
 #include "tools/plan.hpp"
 #include <optional>
-#include <sstream>
 
 using namespace molmesh;
 
@@ -124,12 +122,8 @@ Status run(const Options& o, cli::Run& r) {
   extras.probe = body ? body->probe : 0;
   formats::write_vdb(out->stream(), band.frame, band.info, band.inside, leaves, extras);
   r.complete(*out);
-  const Vec3i n = band.frame.points;
-  std::ostringstream spacing;
-  spacing << band.frame.spacing;
-  r.made = cli::counted(band.info.atoms, "atom", "atoms") + " on " + grouped(n.x) + " × " + grouped(n.y) + " × " +
-           grouped(n.z) + " points, " + spacing.str() + " Å apart; " +
-           cli::counted(counts.search.active_points, "value", "values") + " kept near the surface";
+  r.made = cli::counted(band.info.atoms, "atom", "atoms") + ' ' + grid_words(band.frame) + "; " +
+           kept_words(counts.search.active_points);
   return Status::good;
 }
 

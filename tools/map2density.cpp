@@ -5,6 +5,7 @@
 #include "formats/openvdb/openvdb.hpp"
 #include "formats/read_all.hpp"
 #include "formats/vdb/vdb.hpp"
+#include "tools/density_line.hpp"
 #include <cstdio>
 
 using namespace molmesh;
@@ -81,6 +82,7 @@ Status run(const Options& o, cli::Run& r) {
   r.phase("write");
   formats::write_vdb(out.stream(), grid, m.threads);
   r.complete(out);
+  r.made = grid.info.source + ' ' + density_line(grid, m.threads);
   return Status::good;
 }
 
