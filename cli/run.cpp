@@ -74,9 +74,11 @@ namespace {
 void describe_common(Table& table, Common& o) {
   table.add("input", o.input, "input file; - is standard input").not_reported();
   table.add("-o,--output", o.output, "output file; - is standard output").unit("FILE").not_reported();
-  table.add("--mode", o.mode, "seq: one thread, omp: many cores, cuda: one GPU")
+  table
+      .add("--mode", o.mode,
+           "seq: one thread, omp: many cores, cuda: one GPU, auto: omp, or cuda if it makes the same bytes sooner")
       .unit("MODE")
-      .one_of({"seq", "omp", "cuda"});
+      .one_of({"auto", "seq", "omp", "cuda"});
   table.add("-t,--threads", o.threads, "threads for --mode omp; 0: all that are granted").within(0, 1024);
   table.add("--report", o.report, "write the run report (JSON) to this file").unit("FILE").not_reported();
   table.add("-q,--quiet", o.quiet, "errors only on standard error").not_reported();
@@ -196,6 +198,8 @@ int run_program(Table& table, Common& options, int argc, char** argv, const std:
     describe();
     if (const int status = parse(table, argc, argv); status >= 0)
       return status;
+    if (options.mode == "auto" && !options.chooses_mode)
+      options.mode = "omp";
     const int threads = options.resolved_threads(); // a mode that is not here stops before any file is touched
     if (!options.on_device())                       // whose driver sets aside addresses beyond any memory
       limit_memory(threads);

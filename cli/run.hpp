@@ -16,9 +16,9 @@ namespace molmesh::cli {
 /// Options of every program. A program's Options derives from it.
 struct Common {
   std::string input = "-", output = "-";
-  std::string mode = "omp"; ///< seq, omp, cuda
-  int threads = 0;          ///< 0: all
-  std::string report;       ///< empty: none
+  std::string mode = "auto"; ///< auto, seq, omp, cuda; auto becomes omp before the work, unless chooses_mode
+  int threads = 0;           ///< 0: all
+  std::string report;        ///< empty: none
   bool quiet = false, verbose = false;
 
   virtual ~Common() = default;
@@ -30,6 +30,7 @@ struct Common {
 
   /// Set by programs that have a cuda mode: throws Error(mode_unavailable) where there is no device for it.
   void (*require_device)() = nullptr;
+  bool chooses_mode = false; ///< the program itself says what auto is
   bool on_device() const { return mode == "cuda"; }
   /// Threads to use on the host: 1 for seq. Throws Error(mode_unavailable) for cuda where that cannot be.
   int resolved_threads() const;

@@ -11,6 +11,10 @@ void require_device() {
   fail(Status::mode_unavailable, "mode cuda: not available in this build, use seq or omp", {"mode"});
 }
 
+int64_t device_memory() {
+  return 0;
+}
+
 std::string device_name() {
   require_device();
   return {};

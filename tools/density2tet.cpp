@@ -1,5 +1,6 @@
 // density2tet.cpp — density grid (.vdb) to a conforming tetrahedral mesh (.vtu).
 #include "tools/options/density2tet.hpp"
+#include "base/memory.hpp"
 #include "contour/contour.hpp"
 #include "cuda/contour/contour.hpp"
 #include "formats/vdb/vdb.hpp"
@@ -16,7 +17,25 @@ using namespace molmesh;
 
 namespace {
 
-Status run_tool(const Options& o, cli::Run& run) {
+/// What --mode auto is. The device makes the same mesh, but later where it has to page.
+void choose_mode(Options& o, const formats::PackedVdb& grid, const contour::Options& options, const cli::Run& run) {
+  if (o.mode != "auto")
+    return;
+  o.mode = "omp";
+  const contour::Plan plan =
+      contour::plan(contour::expected_leaves(grid.spacing(), grid.active_points()), grid.blocks(), options.meshed);
+  if (o.plan || !contour::is_sooner_on_device(plan, options.threads))
+    return;
+  lift_memory_limit();
+  if (cuda::device_memory() > plan.memory) {
+    o.mode = "cuda";
+    run.note("mode cuda: " + cuda::device_name());
+  } else {
+    limit_memory(options.threads);
+  }
+}
+
+Status run_tool(Options& o, cli::Run& run) {
   check_regions(o.regions, o.hier, o.region);
   contour::Options options = contour_options(o);
 
@@ -27,6 +46,7 @@ Status run_tool(const Options& o, cli::Run& run) {
     output.emplace(o.output, cli::OutputFile::Content::binary);
   run.show_phases();
   auto packed = std::make_unique<const formats::PackedVdb>(input.stream(), input.name());
+  choose_mode(o, *packed, options, run);
   const std::unique_ptr<Domains> domains = read_domains(o.regions, o.hier, packed->info(), options.threads);
   if (domains)
     options.owners = domains->owners();

@@ -29,6 +29,16 @@ void require_device() {
     fail(Status::mode_unavailable, "mode cuda: found a GPU without memory pools, use seq or omp", {"mode"});
 }
 
+int64_t device_memory() {
+  try {
+    require_device();
+  } catch (const Error&) {
+    return 0;
+  }
+  size_t free = 0, all = 0;
+  return cudaMemGetInfo(&free, &all) == cudaSuccess ? static_cast<int64_t>(all) : 0;
+}
+
 std::string device_name() {
   require_device();
   cudaDeviceProp p{};

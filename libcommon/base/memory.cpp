@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -46,6 +47,10 @@ int64_t memory_at_hand(const SystemFiles& system, Swap swap) {
   return least == unknown ? -1 : least;
 }
 
+namespace {
+std::optional<rlimit> before_limit;
+}
+
 void limit_memory(int threads) {
   int64_t bytes = memory_at_hand();
   if (bytes < 0)
@@ -58,8 +63,14 @@ void limit_memory(int threads) {
   if (!(in >> total >> resident >> shared >> text >> library >> data) || data * sysconf(_SC_PAGESIZE) >= bytes ||
       getrlimit(RLIMIT_DATA, &limit) != 0)
     return;
+  before_limit = limit;
   limit.rlim_cur = std::min(limit.rlim_cur, static_cast<rlim_t>(bytes));
   setrlimit(RLIMIT_DATA, &limit);
+}
+
+void lift_memory_limit() {
+  if (before_limit)
+    setrlimit(RLIMIT_DATA, &*before_limit);
 }
 
 } // namespace molmesh

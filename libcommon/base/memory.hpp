@@ -14,5 +14,7 @@ int64_t memory_at_hand(const SystemFiles& system = {}, Swap swap = Swap::counts)
 /// the process as it is used. The stacks of that many threads, of which little is used, come on top. Nothing
 /// happens where memory is not known or where that much is mapped already, as by a sanitizer.
 void limit_memory(int threads);
+/// As it was before limit_memory(), for a library that sets aside addresses beyond any memory.
+void lift_memory_limit();
 
 } // namespace molmesh

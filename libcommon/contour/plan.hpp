@@ -30,4 +30,7 @@ struct Plan {
 /// blocks: of the grid.
 Plan plan(const Leaves& leaves, int64_t blocks, Options::Meshed meshed);
 
+/// Whether a GPU makes the mesh sooner than so many threads of the host, in spite of its start.
+bool is_sooner_on_device(const Plan& plan, int threads);
+
 } // namespace molmesh::contour

@@ -7,7 +7,10 @@
 namespace molmesh {
 
 struct Options : cli::Common, cli::PlanOptions {
-  Options() { require_device = cuda::require_device; }
+  Options() {
+    require_device = cuda::require_device;
+    chooses_mode = true;
+  }
   std::string region = "interior", box = "auto", adapt = "auto", cavities = "keep", regions = "molecule", hier;
   double drop_below = 0;
 };

@@ -77,8 +77,10 @@ TEST_CASE("help shows unit, range and live default") {
   CHECK(help.find("      --spacing Å         distance of grid points (0.01..10; default 0.25)\n") !=
         std::string::npos);
   CHECK(help.find("      --parts N           number of parts (> 0; default 8)\n") != std::string::npos);
-  CHECK(help.find("      --mode MODE         seq: one thread, omp: many cores, cuda: one GPU (seq, omp, cuda;\n"
-                  "                          default omp)\n") != std::string::npos);
+  CHECK(help.find(
+            "      --mode MODE         seq: one thread, omp: many cores, cuda: one GPU, auto: omp, or cuda if\n"
+            "                          it makes the same bytes sooner (auto, seq, omp, cuda; default auto)\n") !=
+        std::string::npos);
   CHECK(help.find("  -r, --rule TEXT         resolution rule (repeatable)\n") != std::string::npos);
   CHECK(help.find("      --domains FILE      domains of the structure\n") != std::string::npos);
   CHECK(help.find("      --fill              fill cavities\n") != std::string::npos);
@@ -188,7 +190,7 @@ TEST_CASE("the run report holds the keys of the contract and the options in forc
   CHECK(j.at("threads") == threads);
   CHECK(j.at("input") == "in.hier");
   CHECK(j.at("output") == folder / "out");
-  auto options = nlohmann::json::parse(R"({"mode": "omp", "spacing": 0.5, "parts": 8, "rule": ["*", "//A"],
+  auto options = nlohmann::json::parse(R"({"mode": "auto", "spacing": 0.5, "parts": 8, "rule": ["*", "//A"],
                                            "domains": "", "fill": true})");
   options["threads"] = threads;
   CHECK(j.at("options") == options);

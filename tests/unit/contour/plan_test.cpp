@@ -49,6 +49,20 @@ TEST_CASE("the octree tells the elements of a mesh within 15 %") {
   }
 }
 
+TEST_CASE("a device makes large meshes sooner, and its start costs more than a small one") {
+  const auto is_sooner = [](double leaves, int threads) {
+    return contour::is_sooner_on_device(contour::plan({leaves, leaves / 2, 0}, 100, contour::Options::both),
+                                        threads);
+  };
+  for (const int threads : {1, 2, 16}) {
+    CAPTURE(threads);
+    CHECK_FALSE(is_sooner(1e3, threads));
+    CHECK(is_sooner(3e6, threads));
+  }
+  CHECK(is_sooner(1e5, 1));
+  CHECK_FALSE(is_sooner(1e5, 16));
+}
+
 TEST_CASE("a coarser grid has fewer leaves, and the way back is the same") {
   const contour::Leaves fine{1000, 550, 0};
   double before = 1001;
