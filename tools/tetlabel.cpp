@@ -2,18 +2,14 @@
 #include "tools/options/tetlabel.hpp"
 #include "base/grouped.hpp"
 #include "cli/text.hpp"
-#include "formats/hier/hier.hpp"
 #include "formats/pdb/hier_selection.hpp"
-#include "formats/vtu/names.hpp"
 #include "formats/vtu/vtu.hpp"
-#include "label/mesh_labels.hpp"
-#include "mesh/same_source.hpp"
 #include "molecule/words.hpp"
+#include "tools/structure_labels.hpp"
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <sstream>
 
 using namespace molmesh;
 
@@ -70,25 +66,16 @@ Status run_tool(const Options& o, cli::Run& run) {
   const std::vector<label::NamedBoundary> boundary = select(o, h);
   formats::MeshNotes notes;
   TetMesh mesh = read_mesh(run, input, o.mesh, formats::CellArrays::keep, notes);
-  if (!o.other_structure && other_structure(h.source, mesh.source))
-    fail_input(structure.name() + ": the structure is of " + h.source + ", expected the mesh's " + mesh.source +
-               ", or --other-structure");
+  if (!o.other_structure)
+    require_same_structure(h, structure.name(), mesh, ", or --other-structure");
 
   run.phase("label");
   const label::Places places = label::places_of(mesh, o.resolved_threads());
   if (places.cell.empty())
     fail_input(input.name() + ": no tetrahedron of region 1 and no triangle of boundary 1, expected a molecule");
-  label::Labels labels =
-      label::find_labels(h, places.centroid, {decay_of(o, asked_decay, mesh), mesh.isovalue, o.resolved_threads()});
+  label::Labels labels = labels_at(places, h, mesh, decay_of(o, asked_decay, mesh), o.resolved_threads(), run);
   run.counts["tetrahedra"] = places.tets;
   run.counts["triangles"] = static_cast<int64_t>(places.cell.size()) - places.tets;
-  if (const double off = label::median_offset(places, labels, mesh.isovalue); std::fabs(off) > std::log(3.)) {
-    std::ostringstream factor;
-    factor.precision(3);
-    factor << std::exp(off);
-    run.note("half of the surface lies where the density is over " + factor.str() +
-             " times the isovalue, expected about 1: is this the mesh's .hier, and its --decay?");
-  }
   label::remove_labels(mesh);
   label::Patches patches;
   if (!boundary.empty()) { // else those of a former run stay

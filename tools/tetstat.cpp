@@ -2,6 +2,7 @@
 #include "tools/options/tetstat.hpp"
 #include "formats/tetstat/bodies.hpp"
 #include "formats/tetstat/tetstat.hpp"
+#include "tools/structure_labels.hpp"
 #include <optional>
 #include <ostream>
 
@@ -16,7 +17,7 @@ formats::MeshReport report(const std::string& path, const Options& o, cli::Run& 
   run.phase("read");
   cli::InputFile input(path);
   formats::MeshNotes notes;
-  const TetMesh mesh =
+  TetMesh mesh =
       read_mesh(run, input, o.mesh, bodies ? formats::CellArrays::keep : formats::CellArrays::drop, notes);
   run.phase("validity");
   Validity validity = check_validity(mesh, threads);
@@ -25,6 +26,8 @@ formats::MeshReport report(const std::string& path, const Options& o, cli::Run& 
     add_crossings(validity, mesh, threads);
   }
   run.phase("quality");
+  if (bodies && validity.valid() && !o.hierarchy.empty())
+    label_surface(mesh, o.hierarchy, threads, run);
   if (bodies && validity.valid())
     *bodies = formats::list_bodies(mesh, input.name(), threads);
   return formats::report_mesh(mesh, input.name(), notes, std::move(validity), {o.min_dihedral, o.max_dihedral},
@@ -36,6 +39,10 @@ Status run_tool(const Options& o, cli::Run& run) {
     fail(Status::usage, "--compare: standard input can be one of the two meshes, not both");
   if (o.bodies && !o.compare.empty())
     fail(Status::usage, "--bodies excludes --compare");
+  if (!o.bodies && !o.hierarchy.empty())
+    fail(Status::usage, "--hier: found without --bodies, expected both");
+  if (o.hierarchy == "-" && o.input == "-")
+    fail(Status::usage, "both inputs are standard input, expected at most one");
   cli::OutputFile output(o.output);
   std::optional<formats::BodyList> bodies;
   std::optional<formats::MeshReport> before;

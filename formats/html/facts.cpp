@@ -2,10 +2,10 @@
 #include "formats/html/facts.hpp"
 #include "formats/vtu/names.hpp"
 #include "geom/tet_quality.hpp"
+#include "mesh/region_order.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -51,36 +51,6 @@ Extremes extremes(const TetMesh& m, int threads) {
         a.most[0] = std::min(a.most[0], b.most[0]), a.most[1] = std::max(a.most[1], b.most[1]);
         return a;
       });
-}
-
-/// The residues whose triangles a body has, those with the most first.
-struct Residues {
-  std::string text;
-  int64_t named = 0, count = 0;
-};
-std::vector<Residues> residues_of(const TetMesh& m, const TriangleSides& sides, const MeshBodies& bodies,
-                                  const PlaceNames& places) {
-  constexpr size_t most = 8;
-  std::vector<std::map<int32_t, int64_t>> triangles(bodies.body.size());
-  for (size_t i = 0; i < m.tri.size(); ++i)
-    if (const int32_t r = places.triangle(static_cast<int64_t>(i)); r >= 0)
-      for (const int32_t f : sides.face[i])
-        if (f >= 0)
-          ++triangles[bodies.of[f / 4]][r];
-  std::vector<Residues> all;
-  for (const auto& of : triangles) {
-    std::vector<std::pair<int64_t, int32_t>> order; // most triangles first, then the file's order
-    for (const auto& [r, n] : of)
-      order.push_back({-n, r});
-    std::sort(order.begin(), order.end());
-    Residues r;
-    r.count = static_cast<int64_t>(order.size());
-    r.named = static_cast<int64_t>(std::min(most, order.size()));
-    for (int64_t i = 0; i < r.named; ++i)
-      r.text += (i > 0 ? ", " : "") + places.name(order[static_cast<size_t>(i)].second);
-    all.push_back(r);
-  }
-  return all;
 }
 
 } // namespace
@@ -131,7 +101,7 @@ std::string facts_json(const TetMesh& m, const TriangleSides& sides, const MeshB
     for (const Fault& f : more.validity->faults)
       j["faults"].push_back({{"rule", f.rule}, {"count", f.count}, {"example", f.example}});
 
-  const std::vector<Residues> residues = residues_of(m, sides, bodies, places);
+  const std::vector<std::vector<std::string>> residues = names_round_bodies(m, sides, bodies, places);
   j["bodies"] = json::array();
   for (size_t b = 0; b < bodies.body.size(); ++b) {
     const MeshBody& body = bodies.body[b];
@@ -142,10 +112,20 @@ std::string facts_json(const TetMesh& m, const TriangleSides& sides, const MeshB
                            {"centre", numbers(body.centre)},
                            {"low", numbers(body.low)},
                            {"high", numbers(body.high)},
-                           {"residues", residues[b].text},
-                           {"residues_named", residues[b].named},
-                           {"residue_count", residues[b].count}});
+                           {"residues", first_of(residues[b])},
+                           {"residues_named", std::min(shown_names, residues[b].size())},
+                           {"residue_count", residues[b].size()}});
   }
+  // In the order in which a surface between two of them is that of the first.
+  std::vector<std::pair<int32_t, std::string>> regions;
+  for (const auto& r : region_names(m))
+    regions.push_back(r);
+  const RegionOrder order(m);
+  std::sort(regions.begin(), regions.end(),
+            [&](const auto& a, const auto& b) { return order.is_first(a.first, b.first); });
+  j["regions"] = json::array();
+  for (const auto& [region, name] : regions)
+    j["regions"].push_back({{"region", region}, {"name", name}});
   const CellLabel& boundary = *find_label(labels, "boundary");
   std::vector<double> area(boundary.names.size());
   std::vector<int64_t> triangles(boundary.names.size());

@@ -3,6 +3,7 @@
 #include "base/grouped.hpp"
 #include "formats/html/embedded.hpp"
 #include "formats/html/facts.hpp"
+#include "formats/html/mesh_code.hpp"
 #include "par/par.hpp"
 #include "picture/colours.hpp"
 #include <algorithm>

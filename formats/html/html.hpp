@@ -1,6 +1,6 @@
 // html.hpp — a report about meshes as one page that any browser opens without a network (HTML.md).
 #pragma once
-#include "formats/html/cell_labels.hpp"
+#include "formats/html/colouring.hpp"
 #include "mesh/quality.hpp"
 #include "mesh/validity.hpp"
 #include <iosfwd>

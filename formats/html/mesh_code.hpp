@@ -1,17 +1,9 @@
 // mesh_code.hpp — a tetrahedral mesh in a few bits an element, for pages (HTML.md).
 #pragma once
-#include "mesh/mesh_bodies.hpp"
-#include "mesh/triangle_sides.hpp"
+#include "formats/vtu/cell_labels.hpp"
 #include <string>
 
 namespace molmesh::formats {
-
-/// Labels of cells to go with the mesh; -1: none.
-struct CellLabel {
-  std::string name;               ///< "chain"
-  std::vector<std::string> names; ///< of the values 0, 1, …
-  std::vector<int32_t> tet, tri;  ///< either may be empty: left out
-};
 
 /// One part of the code, not yet compressed.
 struct CodeStream {

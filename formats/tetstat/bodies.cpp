@@ -1,7 +1,9 @@
 // bodies.cpp — finds bodies and boundaries, measures and prints them.
 #include "formats/tetstat/bodies.hpp"
 #include "formats/tetstat/layout.hpp"
+#include "formats/vtu/cell_labels.hpp"
 #include "formats/vtu/names.hpp"
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace molmesh::formats {
@@ -22,7 +24,12 @@ std::string counted(int64_t n, const char* one, const char* more) {
 } // namespace
 
 BodyList list_bodies(const TetMesh& m, const std::string& file, int threads) {
-  BodyList list{file, find_bodies(m, face_neighbors(m, threads)).body, {}, names_of(m, "region_names")};
+  const TriangleSides sides = triangle_sides(m, threads);
+  const MeshBodies bodies = find_bodies(m, sides.across);
+  BodyList list{file, bodies.body, {}, names_of(m, "region_names"), {}};
+  const std::vector<CellLabel> labels = cell_labels(m);
+  if (const PlaceNames places(labels); places.known())
+    list.residues = names_round_bodies(m, sides, bodies, places);
   const std::vector<int32_t> label = patches(m);
   std::map<int32_t, BoundarySummary> boundary;
   for (const auto& [number, name] : boundary_names(m, label))
@@ -46,12 +53,25 @@ std::string bodies_text(const BodyList& list) {
     s += " and nothing else: cavities are holes in it";
   else
     s += ", " + counted(cavities, "cavity", "cavities");
-  s += "\n\n" + print("%-16s %16s %14s %12s   centre/Å\n", "", "volume/Å³", "area/Å²", "tetrahedra");
+  const bool round = !list.residues.empty();
+  s += "\n\n" + print("%-16s %16s %14s %12s   centre/Å%s\n", "", "volume/Å³", "area/Å²", "tetrahedra",
+                      round ? "                residues round it" : "");
   std::map<int32_t, int> number;
-  for (const MeshBody& b : list.body)
-    s += print("%-14s %16s %13s %12s   %.2f %.2f %.2f\n",
+  for (size_t i = 0; i < list.body.size(); ++i) {
+    const MeshBody& b = list.body[i];
+    const std::string centre = print("%.2f %.2f %.2f", b.centre.x, b.centre.y, b.centre.z);
+    s += print("%-14s %16s %13s %12s   %s",
                (kind(list, b.region) + ' ' + std::to_string(++number[b.region])).c_str(), amount(b.volume).c_str(),
-               amount(b.area).c_str(), grouped(b.tets).c_str(), b.centre.x, b.centre.y, b.centre.z);
+               amount(b.area).c_str(), grouped(b.tets).c_str(), centre.c_str());
+    if (round && !list.residues[i].empty()) {
+      const std::vector<std::string>& names = list.residues[i];
+      s += print("%*s%s", static_cast<int>(24 - std::min<size_t>(centre.size(), 23)), "",
+                 plain(first_of(names)).c_str());
+      if (names.size() > shown_names)
+        s += " and " + grouped(static_cast<int64_t>(names.size() - shown_names)) + " more";
+    }
+    s += '\n';
+  }
   s += print("\n%-14s %16s %13s %12s\n", "boundary", "label", "area/Å²", "triangles");
   for (const BoundarySummary& b : list.boundary)
     s += print("%-14s %16d %12s %12s\n", plain(b.name).c_str(), b.label, amount(b.area).c_str(),
@@ -61,14 +81,22 @@ std::string bodies_text(const BodyList& list) {
 
 std::string bodies_json(const BodyList& list) {
   using json = nlohmann::ordered_json;
-  json j = {{"tetstat_bodies", 1}, {"file", list.file}, {"bodies", json::array()}, {"boundaries", json::array()}};
-  for (const MeshBody& b : list.body)
+  json j = {{"tetstat_bodies", 1},
+            {"file", list.file},
+            {"units", {{"volume", "Å³"}, {"area", "Å²"}, {"centre", "Å"}}},
+            {"bodies", json::array()},
+            {"boundaries", json::array()}};
+  for (size_t i = 0; i < list.body.size(); ++i) {
+    const MeshBody& b = list.body[i];
     j["bodies"].push_back({{"region", b.region},
                            {"name", kind(list, b.region)},
                            {"tets", b.tets},
                            {"volume", b.volume},
                            {"area", b.area},
                            {"centre", {b.centre.x, b.centre.y, b.centre.z}}});
+    if (!list.residues.empty())
+      j["bodies"].back()["residues"] = list.residues[i];
+  }
   for (const BoundarySummary& b : list.boundary)
     j["boundaries"].push_back({{"label", b.label}, {"name", b.name}, {"triangles", b.triangles}, {"area", b.area}});
   return j.dump(2, ' ', false, json::error_handler_t::replace) + '\n';

@@ -19,6 +19,8 @@ struct BodyList {
   std::vector<MeshBody> body;                 ///< by region, then largest volume first
   std::vector<BoundarySummary> boundary;      ///< by label, ascending
   std::map<int32_t, std::string> region_name; ///< of the regions that the mesh itself names
+  /// [body] the residues, or chains, of its triangles, most triangles first; empty: the mesh has no labels
+  std::vector<std::vector<std::string>> residues;
 };
 
 /// m is valid (validity.hpp). Same result at any number of threads.

@@ -1,7 +1,6 @@
 // report.cpp — counts, and the JSON form.
 #include "formats/tetstat/tetstat.hpp"
 #include "formats/vtu/names.hpp"
-#include "mesh/region_order.hpp"
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -127,14 +126,13 @@ MeshReport report_mesh(const TetMesh& m, const std::string& file, const MeshNote
   r.parts = static_cast<int64_t>(std::set<int32_t>(m.part.begin(), m.part.end()).size());
   r.notes = notes;
   r.validity = std::move(validity);
-  if (const RegionOrder order(m); order.last_domain > Region::cavity) {
-    for (const auto& [region, name] : names_of(m, region_names_text))
-      if (order.is_domain(region))
-        r.region_name[region] = name;
-    for (const auto& [label, name] : boundary_names(m, m.boundary))
-      if (label > Boundary::box_z1)
-        r.label_name[label] = name;
-  }
+  for (const auto& [region, name] : names_of(m, "region_names"))
+    if (region > Region::cavity)
+      r.region_name[region] = name;
+  const std::map<int32_t, std::string> named = names_of(m, "boundary_names");
+  for (const auto& [label, count] : labels)
+    if (const auto name = named.find(label); name != named.end() && label > Boundary::box_z1)
+      r.label_name[label] = name->second;
   if (!r.validity.region.empty())
     r.quality = measure_quality(m, threads, asked);
   r.asked = asked;

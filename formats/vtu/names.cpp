@@ -122,6 +122,19 @@ std::string region_name(int32_t region) {
   return region >= 1 && region <= 3 ? name[region - 1] : "region_" + std::to_string(region);
 }
 
+std::map<int32_t, std::string> region_names(const TetMesh& m) {
+  std::map<int32_t, std::string> name;
+  for (const int32_t r : m.region)
+    if (name.empty() || name.rbegin()->first != r)
+      name.try_emplace(r);
+  const std::map<int32_t, std::string> given = names_of(m, region_names_text);
+  for (auto& [r, text] : name) {
+    const auto g = given.find(r);
+    text = g == given.end() ? region_name(r) : g->second;
+  }
+  return name;
+}
+
 std::map<int32_t, std::string> boundary_names(const TetMesh& m, const std::vector<int32_t>& label) {
   std::map<int32_t, std::string> name;
   for (const int32_t l : label)
@@ -147,17 +160,8 @@ std::vector<int32_t> patches(const TetMesh& m) {
 ExportLabels export_labels(const TetMesh& m) {
   ExportLabels e;
   e.patch = patches(m);
-  int32_t most_region = 0;
-  for (const int32_t r : m.region) {
-    most_region = std::max(most_region, r);
-    if (e.region_name.empty() || e.region_name.rbegin()->first != r)
-      e.region_name.try_emplace(r);
-  }
-  const std::map<int32_t, std::string> given = names_of(m, "region_names");
-  for (auto& [r, name] : e.region_name) {
-    const auto g = given.find(r);
-    name = g == given.end() ? region_name(r) : g->second;
-  }
+  e.region_name = region_names(m);
+  const int32_t most_region = e.region_name.empty() ? 0 : std::max(0, e.region_name.rbegin()->first);
   e.patch_name = boundary_names(m, e.patch);
   const bool own = std::any_of(e.patch_name.begin(), e.patch_name.end(),
                                [&](const auto& p) { return p.second == own_boundary_name(m, p.first); });

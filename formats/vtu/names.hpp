@@ -28,6 +28,8 @@ std::map<int32_t, std::string> names_of(const TetMesh& m, const std::string& tex
 bool is_own_name(const std::string& name);
 /// Names of regions: molecule, outside, cavity, else region_N.
 std::string region_name(int32_t region);
+/// Those of the regions that the mesh has: what region_names has, else region_name.
+std::map<int32_t, std::string> region_names(const TetMesh& m);
 /// surface, box_x0 … box_z1 of labels 1 to 7, sphere of the outer boundary if that is one, else empty; and back: 0
 /// of other names.
 std::string own_boundary_name(const TetMesh& m, int32_t label);

@@ -2,7 +2,6 @@
 'use strict';
 
 const REPORT = JSON.parse(document.getElementById('report').textContent);
-const REGION = {1: 'molecule', 2: 'outside', 3: 'cavity'};
 const MEASURES = {smallest: 'smallest dihedral angle', largest: 'largest dihedral angle', q: 'Joe–Liu Q'};
 
 function make(tag, attributes, ...children) {
@@ -31,7 +30,7 @@ function size(v) { // four digits are enough to read
 const angle = v => v === null ? '–' : v.toFixed(1) + '°';
 const plural = (n, one, many) => count(n) + ' ' + (n === 1 ? one : many);
 const css = c => `rgb(${c[0]},${c[1]},${c[2]})`;
-const regionName = r => REGION[r] || 'region ' + r;
+const regionName = (m, r) => m.regions.find(k => k.region === r).name;
 const bodiesOf = (m, r) => m.bodies.filter(b => b.region === r);
 const pictureOf = m => 'data:image/png;base64,' + document.getElementById('picture-' + m.index).textContent.trim();
 
@@ -216,7 +215,7 @@ class Detail {
         whole.indeterminate = on > 0 && on < own.length;
         for (const [, i, input] of inputs) input.checked = view.shown[i];
       };
-      const what = region === 1 ? plural(own.length, 'body', 'bodies') : region === 3 ? plural(own.length, 'closed cavity', 'closed cavities') : regionName(region);
+      const what = region === 1 ? plural(own.length, 'body', 'bodies') : region === 3 ? plural(own.length, 'closed cavity', 'closed cavities') : regionName(m, region);
       card.append(make('label', {class: 'check'}, whole, make('span', {}, what), make('small', {}, size(own.reduce((s, [b]) => s + b.volume, 0)) + ' Å³')));
       if (own.length > 1)
         card.append(make('div', {class: 'list'}, inputs.map(([b, i, input], k) => make('label', {class: 'check'}, input, make('span', {}, `${region === 1 ? 'body' : region === 3 ? 'cavity' : 'part'} ${k + 1}`), make('small', {}, size(b.volume) + ' Å³'))),
@@ -276,10 +275,10 @@ class Detail {
   }
   namesOf(name) {
     const m = this.m;
-    if (name === 'region') return [...new Set(m.bodies.map(b => b.region))].map(r => [regionName(r), r - 1]);
+    if (name === 'region') return [...new Set(m.bodies.map(b => b.region))].map(r => [regionName(m, r), r - 1]);
     if (name === 'body') {
       let n = {};
-      return m.bodies.map((b, i) => { n[b.region] = (n[b.region] || 0) + 1; return [`${b.region === 1 ? 'body' : regionName(b.region)} ${n[b.region]}`, i]; });
+      return m.bodies.map((b, i) => { n[b.region] = (n[b.region] || 0) + 1; return [`${b.region === 1 ? 'body' : regionName(m, b.region)} ${n[b.region]}`, i]; });
     }
     return this.mesh.labels[name].names.map((t, i) => [t, i]);
   }
@@ -384,9 +383,9 @@ class Detail {
       histogramCard('Longest edge over shortest', q.edge_ratio, '', shade(q.edge_ratio, v => 1.3 - v / 4), v => v === null ? '–' : v.toFixed(2)));
     const worst = make('div', {class: 'card half'}, make('h2', {}, 'Worst elements', make('small', {}, 'a click goes there')),
       table([['element', 'n', w => count(w.tet)], ['angles', 'n', w => angle(w.min) + ' – ' + angle(w.max)], ['Q', 'n', w => w.q.toFixed(3)],
-        ['region', 'w', w => regionName(w.region)], ['residue there', 'w', w => w.residue || '–'], ['centre, Å', 'n', w => place(w.centre)]], m.worst, w => this.goToWorst(w)));
+        ['region', 'w', w => regionName(m, w.region)], ['residue there', 'w', w => w.residue || '–'], ['centre, Å', 'n', w => place(w.centre)]], m.worst, w => this.goToWorst(w)));
     const names = {};
-    const bodies = m.bodies.map(b => { names[b.region] = (names[b.region] || 0) + 1; return [b, `${b.region === 1 ? 'body' : regionName(b.region)} ${names[b.region]}`]; });
+    const bodies = m.bodies.map(b => { names[b.region] = (names[b.region] || 0) + 1; return [b, `${b.region === 1 ? 'body' : regionName(m, b.region)} ${names[b.region]}`]; });
     columns.append(worst,
       make('div', {class: 'card half'}, make('h2', {}, 'Bodies and cavities', make('small', {}, 'a click goes there')),
         table([['', 'w', ([, n]) => n], ['volume, Å³', 'n', ([b]) => size(b.volume)], ['area, Å²', 'n', ([b]) => size(b.area)], ['tetrahedra', 'n', ([b]) => count(b.tets)],

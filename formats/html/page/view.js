@@ -93,6 +93,7 @@ class View {
     for (const m of [this.surface, this.cap]) if (m) { this.scene.remove(m); m.geometry.dispose(); }
     this.mesh = mesh;
     this.facts = facts;
+    this.order = facts.bodies.map(b => facts.regions.findIndex(r => r.region === b.region));
     this.shown = facts.bodies.map(b => b.region !== 2);
     if (!this.shown.some(s => s)) this.shown.fill(true);
     this.makeSurface();
@@ -118,13 +119,12 @@ class View {
     }
     // Corners of the curved surface share a normal; which of its senses faces the viewer, the shader decides.
     const sum = new Float32Array(3 * m.points), p = m.position;
-    const bodies = this.facts.bodies;
     for (let i = 0; i < n; i++) {
       if (flat[i]) continue;
       const [a, b, c] = [corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]];
       const ux = p[3 * b] - p[3 * a], uy = p[3 * b + 1] - p[3 * a + 1], uz = p[3 * b + 2] - p[3 * a + 2];
       const vx = p[3 * c] - p[3 * a], vy = p[3 * c + 1] - p[3 * a + 1], vz = p[3 * c + 2] - p[3 * a + 2];
-      const s = m.other[i] >= 0 && bodies[m.body[m.face[i] >> 2]].region > bodies[m.other[i]].region ? -1 : 1;
+      const s = m.other[i] >= 0 && this.isFirst(m.other[i], m.body[m.face[i] >> 2]) ? -1 : 1;
       const nx = s * (uy * vz - uz * vy), ny = s * (uz * vx - ux * vz), nz = s * (ux * vy - uy * vx);
       for (const v of [a, b, c]) { sum[3 * v] += nx; sum[3 * v + 1] += ny; sum[3 * v + 2] += nz; }
     }
@@ -177,6 +177,8 @@ class View {
     const share = high > low ? (x - low) / (high - low) : 1;
     return this.rampColour(measure === 'largest' ? 1 - share : share);
   }
+  // Is a surface between two bodies that of the first?
+  isFirst(a, b) { return this.order[a] < this.order[b]; }
   // What labels a tetrahedron or a triangle has: 'region', 'body', or one of the mesh's own.
   tetLabel(name, t) {
     const m = this.mesh, body = m.body[t];
@@ -189,9 +191,9 @@ class View {
     const m = this.mesh, label = m.labels[name];
     if (label && label.tri) return label.tri[i];
     let t = m.body[m.face[i] >> 2];
-    if (name === 'body' || name === 'region') { // of two sides the one that is shown, of both the lower region
+    if (name === 'body' || name === 'region') { // of two sides the one that is shown, of both that which the surface is that of
       const o = m.other[i];
-      if (o >= 0 && this.shown[o] && (!this.shown[t] || this.facts.bodies[o].region < this.facts.bodies[t].region)) t = o;
+      if (o >= 0 && this.shown[o] && (!this.shown[t] || this.isFirst(o, t))) t = o;
       return name === 'body' ? t : this.facts.bodies[t].region - 1;
     }
     return this.tetLabel(name, m.face[i] >> 2);

@@ -142,6 +142,63 @@ TEST_CASE("two meshes side by side") {
   CHECK(j["b"]["valid"] == false);
 }
 
+TEST_CASE("bodies name the residues of their triangles, those with the most first") {
+  TetMesh m = cubes(5, [](Vec3i c) -> int32_t {
+    return c == Vec3i{2, 2, 2}                                              ? Region::cavity
+           : std::min({c.x, c.y, c.z}) > 0 && std::max({c.x, c.y, c.z}) < 4 ? Region::molecule
+                                                                            : Region::outside;
+  });
+  CHECK_FALSE(has(formats::bodies_text(formats::list_bodies(m, "x.vtu", 1)), "residues"));
+  // Residues by height and side; the cavity is the one cube in the middle, between z = 2 and 3.
+  CellArray residue{"residue", std::vector<int32_t>(m.tet.size(), -1), {}};
+  for (size_t i = 0; i < m.tri.size(); ++i) {
+    const Vec3d at = cell_centroid(m, m.tet.size() + i);
+    residue.integer.push_back(m.boundary[i] != Boundary::surface ? -1
+                              : at.z < 2.9                       ? 12 - int(4 * at.z) + 13 * (at.x < 2.4)
+                                                                 : 0);
+  }
+  std::string names;
+  for (int r = 0; r < 26; ++r)
+    names += "R:" + std::to_string(r) + '\n';
+  m.cell_array.push_back(residue);
+  m.named_text.push_back({"residue_names", names});
+  const formats::BodyList list = formats::list_bodies(m, "x.vtu", 2);
+  REQUIRE(list.residues.size() == 3); // body, outside, cavity
+  std::map<std::string, int> triangles[2];
+  for (size_t i = 0; i < m.tri.size(); ++i)
+    if (const int32_t r = residue.integer[m.tet.size() + i]; r >= 0) {
+      const Vec3d d = cell_centroid(m, m.tet.size() + i) - Vec3d{2.5, 2.5, 2.5};
+      const bool cavity = std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)}) < 0.6;
+      ++triangles[0]["R:" + std::to_string(r)];
+      triangles[1]["R:" + std::to_string(r)] += cavity;
+    }
+  for (const auto& [body, of] : {std::pair{0, 0}, std::pair{2, 1}}) {
+    const std::vector<std::string>& named = list.residues[body];
+    CHECK(static_cast<int64_t>(named.size()) ==
+          std::count_if(triangles[of].begin(), triangles[of].end(), [](const auto& t) { return t.second > 0; }));
+    for (size_t k = 1; k < named.size(); ++k)
+      CHECK(triangles[of][named[k - 1]] >= triangles[of][named[k]]);
+  }
+  const auto j = nlohmann::ordered_json::parse(formats::bodies_json(list));
+  CHECK(j["bodies"][2]["residues"] == list.residues[2]);
+  CHECK(j["units"]["volume"] == "Å³");
+  const std::string text = formats::bodies_text(list);
+  CHECK(has(text, "residues round it"));
+  CHECK(has(text, (list.residues[2][0] + ", " + list.residues[2][1]).c_str()));
+  CHECK(has(text, (" and " + std::to_string(list.residues[0].size() - 8) + " more").c_str()));
+}
+
+TEST_CASE("regions of other numbers are called by the names that the mesh has for them") {
+  TetMesh m = cubes(3, [](Vec3i c) -> int32_t { return c.x == 0 ? 7 : 9; });
+  m.named_text.push_back({"region_names", "7 lipid%20head\n"});
+  const std::string text = formats::tetstat_text(report(m)),
+                    bodies = formats::bodies_text(formats::list_bodies(m, "x", 1));
+  CHECK(has(text, "7   lipid head"));
+  CHECK(has(bodies, "lipid head 1"));
+  CHECK(has(bodies, "region_9 1"));
+  CHECK(json_of(report(m))["regions"][0]["name"] == "lipid head");
+}
+
 TEST_CASE("bodies and boundaries are listed, the largest first, and sum to the mesh") {
   TetMesh m = cubes(7, [](Vec3i c) -> int32_t {
     const auto within = [&](int low, int high) {

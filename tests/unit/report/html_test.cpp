@@ -5,6 +5,7 @@
 #include "formats/html/facts.hpp"
 #include "formats/html/html.hpp"
 #include "formats/html/run_reports.hpp"
+#include "formats/vtu/names.hpp"
 #include "geom/tet_quality.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -189,6 +190,33 @@ TEST_CASE("labels are numbered by their names, and others by rank") {
         "kind[colour]");
   CHECK(colouring_by("chain", m, sides, bodies, labels).legend.size() == 2);
   CHECK(colouring_by("region", m, sides, bodies, labels).legend.size() == 2);
+}
+
+TEST_CASE("domains have their names, and the surface is theirs") {
+  TetMesh m = labelled(4);
+  m.cell_array.clear();
+  for (size_t t = 0; t < m.tet.size(); ++t)
+    if (m.region[t] == Region::molecule)
+      m.region[t] = cell_centroid(m, t).x < 2 ? 4 : 5;
+  add_region_names(m, "domain", {{4, "actin"}, {5, "tropo myosin"}}, {{8, "actin-tropo myosin"}});
+  const TriangleSides sides = triangle_sides(m, 1);
+  const MeshBodies bodies = find_bodies(m, sides.across);
+  const std::vector<CellLabel> labels = cell_labels(m);
+  CHECK(usual_colour(m, labels) == "region");
+  const picture::Colouring c = colouring_by("region", m, sides, bodies, labels);
+  std::vector<std::string> names;
+  for (const auto& row : c.legend)
+    names.push_back(row.first);
+  CHECK(names == std::vector<std::string>{"outside", "actin", "tropo myosin"});
+  for (size_t i = 0; i < m.tri.size(); ++i)
+    if (m.boundary[i] == Boundary::surface)
+      CHECK(c.triangle[i].r + 256 * c.triangle[i].g != c.legend[0].second.r + 256 * c.legend[0].second.g);
+  ReportedMesh more;
+  const json page_of = page({m}, 1e9, 1, more).report;
+  const json& regions = page_of["meshes"][0]["regions"];
+  REQUIRE(regions.size() == 3);
+  CHECK(regions[0] == json{{"region", 4}, {"name", "actin"}});
+  CHECK(regions[2]["name"] == "outside");
 }
 
 TEST_CASE("the run reports of a mesh are those of the chain that ends in it") {

@@ -1,8 +1,6 @@
 // cell_labels.cpp — numbers labels by rank and gives them the names that the mesh has for them.
-#include "formats/html/cell_labels.hpp"
-#include "base/error.hpp"
+#include "formats/vtu/cell_labels.hpp"
 #include "formats/vtu/names.hpp"
-#include "picture/colours.hpp"
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -113,57 +111,6 @@ const CellLabel* find_label(const std::vector<CellLabel>& labels, const std::str
   return nullptr;
 }
 
-std::string usual_colour(const TetMesh& m, const std::vector<CellLabel>& labels) {
-  const CellLabel* const chain = find_label(labels, "chain");
-  if (chain && chain->names.size() > 1)
-    return "chain";
-  const CellLabel& boundary = *find_label(labels, "boundary");
-  for (const std::string& n : boundary.names)
-    if (!is_own_name(n))
-      return "boundary";
-  return std::any_of(m.region.begin(), m.region.end(), [&](int32_t r) { return r != m.region[0]; }) ? "region"
-                                                                                                    : "plain";
-}
-
-picture::Colouring colouring_by(const std::string& name, const TetMesh& m, const TriangleSides& sides,
-                                const MeshBodies& bodies, const std::vector<CellLabel>& labels) {
-  picture::Colouring c{name, {}, {}};
-  if (name == "plain")
-    return {};
-  const CellLabel* const label = find_label(labels, name);
-  if (!label && name != "region" && name != "body") {
-    std::string known = "plain, region, body";
-    for (const CellLabel& l : labels)
-      known += ", " + l.name;
-    fail(Status::usage, "found the colour '" + name + "', expected one of " + known, {"colour"});
-  }
-  std::map<int32_t, bool> used;
-  for (size_t i = 0; i < m.tri.size(); ++i) {
-    int32_t value = -1;
-    const auto tet = [&](size_t side) { return sides.face[i][side] / 4; };
-    if (label && !label->tri.empty())
-      value = label->tri[i];
-    else if (sides.face[i][0] >= 0) {
-      // The side with the lower region, which the surface is that of.
-      const bool second = sides.face[i][1] >= 0 && m.region[tet(1)] < m.region[tet(0)];
-      const int32_t t = tet(second ? 1 : 0);
-      value = label ? label->tet[t] : name == "region" ? m.region[t] - 1 : bodies.of[t];
-    }
-    if (value >= 0 || m.boundary[i] < Boundary::box_x0 || m.boundary[i] > Boundary::box_z1)
-      used[value] = true; // walls have no structure behind them, and no row for that
-    c.triangle.push_back(picture::label_colour(value));
-  }
-  std::map<int32_t, int> number;
-  for (const auto& [value, seen] : used) {
-    const std::string text = value < 0          ? "none"
-                             : label            ? label->names[value]
-                             : name == "region" ? region_name(value + 1)
-                                                : "body " + std::to_string(value + 1);
-    c.legend.push_back({text, picture::label_colour(value)});
-  }
-  return c;
-}
-
 PlaceNames::PlaceNames(const std::vector<CellLabel>& labels) : inner_(find_label(labels, "residue")) {
   if (!inner_)
     inner_ = find_label(labels, "chain");
@@ -186,6 +133,35 @@ std::string PlaceNames::of_tet(const TetMesh& m, int64_t tet) const {
       if (const double d = norm2(cell_centroid(m, m.tet.size() + i) - centre); d < least)
         least = d, nearest = static_cast<int64_t>(i);
   return nearest < 0 ? std::string() : name(inner_->tri[nearest]);
+}
+
+std::vector<std::vector<std::string>> names_round_bodies(const TetMesh& m, const TriangleSides& sides,
+                                                         const MeshBodies& bodies, const PlaceNames& places) {
+  std::vector<std::map<int32_t, int64_t>> triangles(bodies.body.size());
+  for (size_t i = 0; i < m.tri.size(); ++i)
+    if (const int32_t r = places.triangle(static_cast<int64_t>(i)); r >= 0)
+      for (const int32_t f : sides.face[i])
+        if (f >= 0)
+          ++triangles[bodies.of[f / 4]][r];
+  std::vector<std::vector<std::string>> all;
+  for (const auto& of : triangles) {
+    std::vector<std::pair<int64_t, int32_t>> order;
+    for (const auto& [r, n] : of)
+      order.push_back({-n, r});
+    std::sort(order.begin(), order.end());
+    std::vector<std::string> names;
+    for (const auto& [n, r] : order)
+      names.push_back(places.name(r));
+    all.push_back(names);
+  }
+  return all;
+}
+
+std::string first_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t i = 0; i < std::min(shown_names, names.size()); ++i)
+    text += (i > 0 ? ", " : "") + names[i];
+  return text;
 }
 
 } // namespace molmesh::formats
