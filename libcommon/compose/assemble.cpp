@@ -137,6 +137,7 @@ Assembly assemble(std::span<const Copy> copies, double band_lower, double band_u
   Vec3i end;
   for (const Copy& c : copies) {
     Placed p{&c.of->grid, {}, c.of->tail, c.subtract};
+    p.name = c.of->file;
     if (on_lattice(c, origin, p.shift)) {
       ++all.copied;
     } else {

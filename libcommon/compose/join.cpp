@@ -79,7 +79,7 @@ public:
         tail_(p.tail), to_body_(p.body ? p.to_body : translation(-to_double(p.shift))),
         box_(source.all.shifted(p.shift)),
         aligned_((p.shift.x & 7) == 0 && (p.shift.y & 7) == 0 && (p.shift.z & 7) == 0), turned_(p.body != nullptr),
-        most_beyond_(most_beyond) {
+        most_beyond_(most_beyond), name_(p.name) {
     if (tail_.known() && most_beyond_ > 0)
       reach_ = tail_.distance(1e-3 * info.tolerance);
   }
@@ -94,6 +94,8 @@ public:
     return {box_.lo - Vec3i{n, n, n}, box_.hi + Vec3i{n, n, n}};
   }
   double most_beyond() const { return most_beyond_; }
+  bool knows_tail() const { return tail_.known(); }
+  const std::string& name() const { return name_; }
   /// Whether the blocks around may hold anything of this grid.
   bool near(const IndexBox& box) const { return distance(box, box_) == 0; }
 
@@ -129,6 +131,7 @@ private:
   IndexBox box_;
   bool aligned_, turned_;
   double most_beyond_, reach_ = 0; ///< Å
+  std::string name_;
 };
 
 void Part::view(Vec3i corner, View& v) const {
@@ -506,8 +509,18 @@ void Joiner::look_between(Outcome& out) const {
 }
 
 void Joiner::refuse(const Outcome& out) const {
+  char text[400];
+  for (const Part& part : added_)
+    if (!part.knows_tail() && part.most_beyond() > o_.unknown * info_.isovalue) {
+      std::snprintf(
+          text, sizeof text,
+          ": the file does not say how its density falls far from the surface (maps, resampled densities, "
+          "atoms or bodies thinner than cells), so that up to %.3g of a sum may be missing, expected at "
+          "most %.3g: a wider band, a finer grid, or the union",
+          part.most_beyond(), o_.unknown * info_.isovalue);
+      fail(Status::usage, part.name() + text, {"combine", "unknown"});
+    }
   const Vec3d p = frame_.position(out.where);
-  char text[300];
   std::snprintf(
       text, sizeof text,
       "near (%.4g, %.4g, %.4g) Å pieces lie so close together that up to %.3g of their sum is not in the files, "

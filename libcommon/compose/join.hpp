@@ -5,6 +5,7 @@
 #include "grid/block_grid.hpp"
 #include "grid/tail.hpp"
 #include <span>
+#include <string>
 
 namespace molmesh::compose {
 
@@ -18,6 +19,7 @@ struct Placed {
   /// the whole to its indices. Null: `grid` itself.
   const BlockGrid* body = nullptr;
   Rigid to_body = {};
+  std::string name = {}; ///< for messages
 };
 
 enum class Combine {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace molmesh::density {
 namespace {
@@ -116,11 +117,15 @@ Tail Climber::run() {
   });
   if (!std::isfinite(radius_))
     radius_ = 0;
+  std::vector<uint8_t> is_body(h_.atom.size());
+  for (const Body& b : h_.body)
+    is_body[b.atom] = true;
   double depth = 2 * half_diagonal * frame_.spacing;
   for_atoms(0, 0, outermost(), {}, [&](int64_t begin, int64_t end, const Path& path) {
     for (int64_t a = begin; a < end && std::isfinite(depth); ++a)
       if (h_.atom[a].radius > 0 && !seen(ball(h_.atom[a], path)))
-        depth = std::max(depth, radius_ + nearest_inside(a, begin, end, path));
+        depth = is_body[a] ? infinity // no one place stands for it
+                           : std::max(depth, radius_ + nearest_inside(a, begin, end, path));
   });
   const Bound b = sum(0, 0, outermost(), {});
   if (!std::isfinite(depth) || !std::isfinite(b.log))
@@ -131,8 +136,6 @@ Tail Climber::run() {
 } // namespace
 
 Tail tail(const Hierarchy& h, double decay, double isovalue, const GridFrame& frame) {
-  if (!h.body.empty()) // bodies without atoms: nothing is claimed
-    return {};
   return Climber(h, decay, isovalue, frame).run();
 }
 

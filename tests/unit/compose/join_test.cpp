@@ -209,6 +209,54 @@ TEST_CASE("what a file says of a field far from its surface holds, with weights 
   CHECK(known >= 8);
 }
 
+TEST_CASE("what a file says of a field with bodies without atoms holds, and their sum is joined") {
+  for (const std::vector<double>& exponents : {std::vector<double>{}, {0.5, 1}, {2, 0.5}})
+    for (const unsigned seed : {3u, 4u}) {
+      Hierarchy h = test::with_bodies(test::random_chains(1, 3, 5, exponents, seed));
+      const double spacing = 0.8 + 0.1 * seed;
+      const Piece p = make(h, spacing);
+      REQUIRE(p.tail.known());
+      const BlockIndex index(p.grid);
+      std::vector<Vec3d> body;
+      const Vec3i n = p.grid.frame.points;
+      for (int x = 0; x < n.x; ++x)
+        for (int y = 0; y < n.y; ++y)
+          for (int z = 0; z < n.z; ++z) {
+            const Vec3i q = p.grid.frame.lower + Vec3i{x, y, z};
+            if (is_active(p.grid, index, q) || value_at(p.grid, index, q) > 0)
+              body.push_back(p.grid.frame.position(q));
+          }
+      std::mt19937 random(seed);
+      std::normal_distribution<double> step(0, 9);
+      int beyond = 0;
+      for (int i = 0; i < 300; ++i) {
+        const Vec3d x = h.atom[random() % h.atom.size()].center + Vec3d{step(random), step(random), step(random)};
+        double nearest2 = 1e300;
+        for (const Vec3d& b : body)
+          nearest2 = std::min(nearest2, norm2(x - b));
+        const double distance = std::sqrt(nearest2);
+        if (distance < p.tail.depth)
+          continue;
+        CHECK(exact_density(h, p.grid.info.decay, x) <= p.tail.bound(distance) * (1 + 1e-9));
+        ++beyond;
+      }
+      CHECK(beyond > 10);
+      h.body[1].skin = 0.5 * spacing; // less than half the diagonal of a cell: it may slip through
+      h.atom[static_cast<size_t>(h.body[1].atom)].radius = h.body[1].skin;
+      CHECK_FALSE(density::tail(h, 1, 1, p.grid.frame).known());
+    }
+  const Piece rods = make(test::with_bodies(test::random_chains(1, 3, 5, {0.5, 1}, 3)), 1),
+              atoms = make(test::random_chains(2, 6, 5, {0.5, 1}, 11), 1);
+  const Vec3i shift{rods.grid.frame.points.x + 20, 0, 0};
+  const BlockGrid sum = join({{&rods.grid, {0, 0, 0}, rods.tail}, {&atoms.grid, shift, atoms.tail}}, Combine::sum);
+  CHECK(sum.info.tolerance < 1.1e-4 + 0.02);
+  const std::string line = test::refusal(Status::usage, [&] {
+    join({{&rods.grid, {0, 0, 0}, rods.tail}, {&atoms.grid, shift, {}, false, nullptr, {}, "map.vdb"}},
+         Combine::sum);
+  });
+  CHECK(line.rfind("map.vdb: the file does not say how its density falls", 0) == 0);
+}
+
 TEST_CASE("pieces that meet add up where their bands know low densities, else their sum is refused") {
   const double h = 0.75;
   const Hierarchy one = test::random_chains(1, 8, 6, {0.5, 1}, 5);
