@@ -30,6 +30,10 @@ inline contour::Options contour_options(const Options& o) {
                             "' with --region interior, which ends at the molecule's surface, "
                             "expected --region exterior or both");
   options.adapt = parse_adapt(o.adapt);
+  if (o.elements > 0 && options.adapt)
+    fail(Status::usage, "--elements excludes --adapt, which it chooses, expected one of them");
+  if (!o.size.empty() && options.adapt == 0)
+    fail(Status::usage, "--size excludes --adapt 0, of whose cells all have the grid's spacing");
   options.fill_cavities = o.cavities == "fill";
   options.drop_below = o.drop_below;
   options.threads = o.resolved_threads();

@@ -8,8 +8,10 @@
 #include "tools/contour_options.hpp"
 #include "tools/device_report.hpp"
 #include "tools/domains.hpp"
+#include "tools/element_limit.hpp"
 #include "tools/mesh_line.hpp"
 #include "tools/plan.hpp"
+#include "tools/sizes.hpp"
 #include <memory>
 #include <optional>
 
@@ -36,7 +38,7 @@ void choose_mode(Options& o, const formats::PackedVdb& grid, const contour::Opti
 }
 
 Status run_tool(Options& o, cli::Run& run) {
-  check_regions(o.regions, o.hier, o.region);
+  check_regions(o.regions, o.hier, o.region, !o.size.empty());
   contour::Options options = contour_options(o);
 
   run.phase("read");
@@ -47,27 +49,51 @@ Status run_tool(Options& o, cli::Run& run) {
   run.show_phases();
   auto packed = std::make_unique<const formats::PackedVdb>(input.stream(), input.name());
   choose_mode(o, *packed, options, run);
-  const std::unique_ptr<Domains> domains = read_domains(o.regions, o.hier, packed->info(), options.threads);
-  if (domains)
-    options.owners = domains->owners();
-  const BlockGrid grid = plans::planned_grid(o, o, options, std::move(packed), run);
+  std::unique_ptr<const Domains> domains;
+  if (!o.hier.empty()) {
+    const Hierarchy h = read_structure(o.hier, packed->info());
+    options.sizes = size_balls(o.size, h, packed->spacing());
+    if (o.regions != "molecule") {
+      domains = std::make_unique<const Domains>(
+          h, o.hier, o.regions, label::Options{packed->info().decay, packed->info().isovalue, options.threads});
+      options.owners = domains->owners();
+    }
+  }
+  const BlockGrid grid = plans::planned_grid(o, o, options, std::move(packed), o.elements, run);
   if (o.plan)
     return Status::good;
   contour::Summary summary;
-  TetMesh mesh;
-  try {
+  const auto of_input = [&](auto work) {
+    try {
+      return work();
+    } catch (const Error& e) {
+      fail(e.status, (e.status == Status::usage ? "" : input.name() + ": ") + e.what(), e.quantities);
+    }
+  };
+  const auto make = [&](const contour::Options& with) {
+    summary = {};
     const auto phase = [&](const std::string& p) { run.phase(p); };
     cuda::DeviceReport device;
-    mesh = o.on_device() ? cuda::contour_mesh(grid, options, summary, phase, device)
-                         : contour::contour(grid, options, summary, phase);
+    TetMesh made = of_input([&] {
+      return o.on_device() ? cuda::contour_mesh(grid, with, summary, phase, device)
+                           : contour::contour(grid, with, summary, phase);
+    });
     if (o.on_device())
       run.counts["device"] = device_value(device);
-  } catch (const Error& e) {
-    fail(e.status, (e.status == Status::usage ? "" : input.name() + ": ") + e.what(), e.quantities);
-  }
-  if (domains) {
-    run.phase("divide");
-    run.counts["regions"] = domains->divide(mesh);
+    if (domains) {
+      run.phase("divide");
+      run.counts["regions"] = domains->divide(made);
+    }
+    return made;
+  };
+  std::string cost;
+  TetMesh mesh;
+  if (o.elements > 0) {
+    run.phase("fit");
+    const auto counter = of_input([&] { return std::make_unique<const contour::LeafCounter>(grid, options); });
+    mesh = limited_mesh(*counter, grid, options, o.elements, run, cost, make);
+  } else {
+    mesh = make(options);
   }
   run.counts["points"] = mesh.point.size();
   run.counts["tetrahedra"] = mesh.tet.size();
@@ -106,7 +132,7 @@ Status run_tool(Options& o, cli::Run& run) {
                (summary.molecule_volumes.empty()
                     ? ""
                     : cli::counted(std::ssize(summary.molecule_volumes), "body", "bodies") + ", ") +
-               cli::counted(std::ssize(summary.cavity_volumes), "closed cavity", "closed cavities") + ", " +
+               cli::counted(std::ssize(summary.cavity_volumes), "closed cavity", "closed cavities") + ", " + cost +
                mesh_line(mesh, options.threads) + (mesh.sphere ? ", within " + sphere_text(*mesh.sphere) : "");
   return Status::good;
 }

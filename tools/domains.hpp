@@ -101,27 +101,27 @@ private:
   std::vector<std::string> name_;
 };
 
-/// Of density2tet's options.
-inline void check_regions(const std::string& regions, const std::string& hier, const std::string& region) {
-  if ((regions != "molecule") != !hier.empty())
+/// Of density2tet's options. sized: there is a --size.
+inline void check_regions(const std::string& regions, const std::string& hier, const std::string& region,
+                          bool sized) {
+  if (sized && hier.empty())
+    fail(Status::usage, "--size: found no --hier, expected the hierarchy that the selection is of");
+  if (!sized && (regions != "molecule") != !hier.empty())
     fail(Status::usage, "--regions: found " + regions + (hier.empty() ? " without --hier" : " with --hier") +
                             ", expected a level and --hier, or neither");
   if (regions != "molecule" && region == "exterior")
     fail(Status::usage, "--regions: found --region exterior, expected interior or both");
 }
 
-/// The groups of that level of a file, which is of the grid's structure; null where none is named.
-inline std::unique_ptr<Domains> read_domains(const std::string& level, const std::string& file,
-                                             const FieldInfo& field, int threads) {
-  if (file.empty())
-    return nullptr;
+/// The hierarchy in a file, which is of the grid's structure.
+inline Hierarchy read_structure(const std::string& file, const FieldInfo& field) {
   cli::InputFile input(file);
-  const Hierarchy h = formats::read_hier(input.stream(), input.name());
+  Hierarchy h = formats::read_hier(input.stream(), input.name());
   const int64_t atoms = std::count_if(h.atom.begin(), h.atom.end(), [](const Atom& a) { return a.radius > 0; });
   if (other_structure(h.source, field.source) || atoms != field.atoms)
     fail_input(file + ": " + std::to_string(atoms) + " atoms of " + h.source + ", expected the " +
                std::to_string(field.atoms) + " atoms of the density's " + field.source);
-  return std::make_unique<Domains>(h, file, level, label::Options{field.decay, field.isovalue, threads});
+  return h;
 }
 
 } // namespace molmesh

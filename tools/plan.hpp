@@ -5,6 +5,7 @@
 #include "density/plan.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "optimize/plan.hpp"
+#include "tools/element_limit.hpp"
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -100,16 +101,18 @@ inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, 
 }
 
 /// density2tet: as above. grid: unpacks the values; a mesh that is far too large is refused without them.
+/// most_elements: --elements, 0 without.
 template <class Unpack>
 bool mesh_is_planned(const cli::Common& o, const cli::PlanOptions& p, const contour::Options& options,
-                     const density::GridSize& size, const cli::Run& run, Unpack grid) {
+                     const density::GridSize& size, int64_t most_elements, const cli::Run& run, Unpack grid) {
   const int64_t limit = p.memory_limit();
   const auto refuse = [&](const Chain& chain) {
     cli::require_memory(
         p, chain.mesh(options.meshed).memory, "a mesh at " + cli::length_text(size.spacing),
         fitting_spacing(size.spacing, limit, [&](double s) { return chain.at(s).memory(options.meshed); }));
   };
-  const bool usual = !options.adapt && options.box.kind == contour::BoxRequest::automatic && !options.owners;
+  const bool usual = !options.adapt && options.box.kind == contour::BoxRequest::automatic && !options.owners &&
+                     options.sizes.empty() && most_elements == 0;
   Chain chain{size, contour::expected_leaves(size.spacing, size.active_points)};
   if (!p.plan) {
     const int64_t expected = chain.mesh(options.meshed).memory;
@@ -119,7 +122,10 @@ bool mesh_is_planned(const cli::Common& o, const cli::PlanOptions& p, const cont
       refuse(chain);
   }
   constexpr int64_t countable = 20'000'000;
-  if (!p.plan || !usual || size.active_points <= countable)
+  contour::Fit fit;
+  if (most_elements > 0)
+    chain.leaves = (fit = planned_fit(grid(), options, most_elements)).leaves;
+  else if (!p.plan || !usual || size.active_points <= countable)
     chain.leaves = contour::count_leaves(grid(), options);
   if (!p.plan) {
     refuse(chain);
@@ -129,6 +135,8 @@ bool mesh_is_planned(const cli::Common& o, const cli::PlanOptions& p, const cont
                {"active_points", size.active_points},
                {"blocks", size.blocks},
                {"leaves", std::llround(chain.leaves.all)}};
+  if (most_elements > 0)
+    v.add({{"adapt", fit.fineness.adapt}, {"layers", fit.fineness.layers}});
   add_mesh(v, chain.mesh(options.meshed), p.speed);
   add_improvement(v["tetsmooth"], chain.improvement(options.meshed), p.speed);
   cli::write_plan(o, p, run, v);
@@ -137,13 +145,14 @@ bool mesh_is_planned(const cli::Common& o, const cli::PlanOptions& p, const cont
 
 /// The grid that density2tet reads, after its plan; with --plan any grid.
 inline BlockGrid planned_grid(const cli::Common& o, const cli::PlanOptions& p, const contour::Options& options,
-                              std::unique_ptr<const formats::PackedVdb> packed, const cli::Run& run) {
+                              std::unique_ptr<const formats::PackedVdb> packed, int64_t most_elements,
+                              const cli::Run& run) {
   const density::GridSize size{packed->spacing(), {}, packed->active_points(), packed->blocks(), 0};
   std::optional<BlockGrid> grid;
   const auto unpack = [&]() -> const BlockGrid& {
     return grid ? *grid : grid.emplace(packed->unpack(options.threads));
   };
-  if (!mesh_is_planned(o, p, options, size, run, unpack))
+  if (!mesh_is_planned(o, p, options, size, most_elements, run, unpack))
     unpack();
   return grid ? std::move(*grid) : BlockGrid();
 }

@@ -36,7 +36,7 @@ public:
   /// Copies for the host.
   contour::Surface surface_on_host() { return {host(surface.cells), host(surface.samples)}; }
   contour::LeafList leaves_on_host() {
-    return {host(leaves.key), host(leaves.level), host(leaves.block), host(leaves.large)};
+    return {host(leaves.key), host(leaves.level), host(leaves.block), host(leaves.large), leaves.adapt};
   }
 
   std::optional<DeviceLattice<Backend>> lattice;

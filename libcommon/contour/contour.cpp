@@ -22,14 +22,8 @@ TetMesh contour(const BlockGrid& grid, const Options& asked, Summary& summary,
   } before_the_grid_is_gone{stages};
   stages.find_surface(lattice);
   on_phase("octree");
-  RefineOptions refine_options;
   summary.adapt = options.adapt.value_or(default_adapt(grid.frame.spacing));
-  refine_options.adapt = summary.adapt * (1 << finer.halvings);
-  refine_options.inside = options.meshed != Options::exterior;
-  refine_options.outside = with_outside;
-  if (options.owners)
-    refine_options.divided = border_nodes(lattice, options.owners);
-  stages.select_leaves(refine_options);
+  stages.select_leaves(refine_options(lattice, options, grid.frame.spacing, finer.halvings));
   stages.make_dual(options.unmeshed_side(), on_phase);
   on_phase("relaxation");
   stages.relax();

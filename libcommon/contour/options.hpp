@@ -2,6 +2,8 @@
 #pragma once
 #include "contour/octree/border_nodes.hpp"
 #include "contour/octree/lattice.hpp"
+#include "contour/octree/leaves.hpp"
+#include "contour/octree/sized_nodes.hpp"
 #include "contour/surface/split_cell.hpp"
 #include <algorithm>
 #include <cstdint>
@@ -28,6 +30,8 @@ struct Options {
   int threads = 1;
   /// Where the inside has several owners, cells between these are the smallest ones; empty: one owner.
   FindOwners owners;
+  std::vector<SizeBall> sizes; ///< not with adapt 0
+  int layers = 1;              ///< as RefineOptions
 
   /// The side of the surface without elements in the mesh, whatever components there are; crossed: there is none.
   Side unmeshed_side() const {
@@ -46,5 +50,8 @@ struct Summary {
       cavity_volumes; ///< Å³ of each component, in the order of the octree's curve
   int64_t dropped_parts = 0, filled_cavities = 0;
 };
+
+/// What the octree over the lattice has to be like. halvings: of the grid's spacing to the lattice's.
+RefineOptions refine_options(const Lattice& lattice, const Options& options, double grid_spacing, int halvings);
 
 } // namespace molmesh::contour

@@ -1,8 +1,6 @@
 // plan.cpp — counts leaves; elements, memory and time for each leaf are measured (docs/benchmarks.md, Plans).
 #include "contour/plan.hpp"
 #include "contour/outer_sphere/outer_sphere.hpp"
-#include "contour/small_bodies/finer_grid.hpp"
-#include "contour/stages.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <atomic>
@@ -35,24 +33,34 @@ double interpolated(double Measured::*x, double spacing) {
 
 } // namespace
 
-Leaves count_leaves(const BlockGrid& grid, const Options& asked) {
-  Options options = asked;
-  options.box = with_sphere(grid, asked.box, asked.threads);
+LeafCounter::LeafCounter(const BlockGrid& grid, const Options& options) : options_(options) {
+  options_.box = with_sphere(grid, options.box, options.threads);
+  finer_ = finer_grid(grid, options_);
+  lattice_.emplace(finer_.grid ? *finer_.grid : grid, options_.box, options.meshed != Options::interior,
+                   options.threads);
+  surface_ = find_surface(*lattice_, options.threads);
+  refine_ = refine_options(*lattice_, options_, grid.frame.spacing, finer_.halvings);
+}
+
+Leaves LeafCounter::count() const {
+  return count(refine_);
+}
+Leaves LeafCounter::count(double adapt, int layers) const {
+  RefineOptions refine = refine_;
+  refine.adapt = adapt * (1 << finer_.halvings);
+  refine.layers = layers;
+  return count(refine);
+}
+
+Leaves LeafCounter::count(const RefineOptions& refine) const {
+  const Options& options = options_;
+  const Lattice& lattice = *lattice_;
   Leaves leaves;
-  const FinerGrid finer = finer_grid(grid, options);
-  leaves.halvings = finer.halvings;
-  const Lattice lattice(finer.grid ? *finer.grid : grid, options.box, options.meshed != Options::interior,
-                        options.threads);
-  HostStages stages(options.threads);
-  stages.find_surface(lattice);
-  RefineOptions refine;
-  refine.adapt = options.adapt.value_or(default_adapt(grid.frame.spacing)) * (1 << finer.halvings);
-  refine.inside = options.meshed != Options::exterior;
-  refine.outside = options.meshed != Options::interior;
-  if (options.owners)
-    refine.divided = border_nodes(lattice, options.owners);
-  stages.select_leaves(refine);
-  const OctreeView& tree = stages.tree().view();
+  leaves.halvings = finer_.halvings;
+  LeafList list = select_leaves(lattice, surface_, refine, options.threads);
+  leaves.adapt = list.adapt / (1 << finer_.halvings);
+  const Octree octree(lattice.cells, std::move(list), options.threads);
+  const OctreeView& tree = octree.view();
   std::atomic<int64_t> corners{0}, beyond{0}; // inside the surface; beyond an outer sphere
   par::for_n(tree.size(), options.threads, 4096, [&](int64_t i) {
     const auto leaf = static_cast<int32_t>(i);
@@ -72,6 +80,10 @@ Leaves count_leaves(const BlockGrid& grid, const Options& asked) {
   leaves.all = tree.size() - static_cast<double>(beyond) / 8;
   leaves.inside = static_cast<double>(corners) / 8;
   return leaves;
+}
+
+Leaves count_leaves(const BlockGrid& grid, const Options& options) {
+  return LeafCounter(grid, options).count();
 }
 
 Leaves at_spacing(const Leaves& counted, double from, double to) {

@@ -1,7 +1,10 @@
 // plan.hpp — how large a mesh will be and what it takes, before it is made.
 #pragma once
+#include "contour/octree/leaves.hpp"
 #include "contour/options.hpp"
+#include "contour/small_bodies/finer_grid.hpp"
 #include "grid/block_grid.hpp"
+#include <optional>
 
 namespace molmesh::contour {
 
@@ -9,6 +12,27 @@ namespace molmesh::contour {
 struct Leaves {
   double all = 0, inside = 0; ///< inside: by the share of a leaf's corners that are
   int halvings = 0;           ///< as in Summary
+  double adapt = 0;           ///< the tolerance that chords allowed, in grid spacings
+};
+
+/// The octrees of one grid. Throws as contour().
+class LeafCounter {
+public:
+  /// The grid stays the caller's.
+  LeafCounter(const BlockGrid& grid, const Options& options);
+  LeafCounter(const LeafCounter&) = delete;
+  LeafCounter& operator=(const LeafCounter&) = delete;
+  /// As the options say; or with another tolerance and other layers.
+  Leaves count() const;
+  Leaves count(double adapt, int layers) const;
+
+private:
+  Leaves count(const RefineOptions& refine) const;
+  Options options_;
+  FinerGrid finer_;
+  std::optional<Lattice> lattice_;
+  Surface surface_;
+  RefineOptions refine_;
 };
 
 /// Counts them: surface cells and octree of contour(), a tenth of its time. Throws as contour().

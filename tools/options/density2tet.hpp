@@ -13,6 +13,8 @@ struct Options : cli::Common, cli::PlanOptions {
   }
   std::string region = "interior", box = "auto", adapt = "auto", cavities = "keep", regions = "molecule", hier;
   double drop_below = 0;
+  int64_t elements = 0;
+  std::vector<std::string> size;
 };
 
 inline void describe(cli::Table& t, Options& o) {
@@ -31,12 +33,24 @@ inline void describe(cli::Table& t, Options& o) {
         "0.2 Å are, at most 0.4; cells are the grid's own and larger, bodies of few spacings get halves or "
         "quarters")
       .unit("ERROR");
+  t.add("--elements", o.elements,
+        "at most so many tetrahedra, and 0.7 of them where the grid has so many: chooses --adapt, then layers of "
+        "small cells round the surface; what it cost in distance from the isosurface is said; 0: as --adapt says")
+      .within(0, 1 << 30);
+  t.add(
+       "--size", o.size,
+       "'SELECTION Å': near these atoms of --hier (gemmi's selection syntax) no cell is larger, the grid's spacing "
+       "or more; sizes above twice the spacing allow larger cells of the surface there; 'around SELECTION Å Å' is "
+       "a "
+       "lens; cells double with the distance from there")
+      .unit("SIZE");
   t.add(
        "--regions", o.regions,
        "molecule (one region), or a level of the .hier (domain, chain): each of its groups is a region of its own, "
        "where its share of the density is the largest; they meet in labelled faces of equal shares")
       .unit("LEVEL");
-  t.add("--hier", o.hier, "hierarchy (.hier) that the density was made from, for --regions").unit("FILE");
+  t.add("--hier", o.hier, "hierarchy (.hier) that the density was made from, for --regions and --size")
+      .unit("FILE");
   t.group("small parts");
   t.add("--cavities", o.cavities, "closed cavities: keep (region 3) or fill (region 1)").one_of({"keep", "fill"});
   t.add("--drop-below", o.drop_below,
@@ -61,6 +75,9 @@ inline void describe(cli::Table& t, Options& o) {
       {"density2tet --region exterior --box sphere:3x 1tii.vdb -o 1tii.tet.vtu",
        "the surroundings, up to a sphere of three times the molecule's radius"},
       {"density2tet --regions chain --hier 1tii.hier 1tii.vdb -o 1tii.tet.vtu", "each chain a volume of its own"},
+      {"density2tet --elements 100000 1tii.vdb -o 1tii.tet.vtu", "the best mesh of at most 100,000 tetrahedra"},
+      {"density2tet --hier 1tii.hier --size 'around //D/45 8 0.5' 1tii.vdb -o 1tii.tet.vtu",
+       "cells of at most 0.5 Å near all atoms within 8 Å of residue 45 of chain D"},
       {"density2tet --region exterior --cavities fill --drop-below 50 1tii.vdb -o 1tii.tet.vtu",
        "the surroundings alone, without closed cavities and bodies of less than 50 Å³"}};
   t.page.files = {{".vdb", "density grid (OpenVDB), read: formats/vdb/VDBv1.md"},

@@ -174,6 +174,8 @@ struct MergeNodes {
   SurfaceNodes nodes, children;
   int level;
   double tolerance; ///< distance of the samples from their mean plane, fine spacings
+  NodeSet loose;    ///< nodes with a tolerance of their own
+  double loose_tolerance;
   OneDisc one_disc{};
 
   MOLMESH_HD void operator()(int64_t i) const {
@@ -190,14 +192,16 @@ struct MergeNodes {
       return;
     const SurfaceSample *const begin = sample + nodes.cell_begin(i), *const end = sample + nodes.cell_begin(i + 1);
     const MeanPlane plane(begin, end);
-    if (nearly_plane(begin, end, plane))
+    const uint64_t key = nodes.key[i];
+    if (nearly_plane(begin, end, plane, loose.word(key >> 6) >> (key & 63) & 1 ? loose_tolerance : tolerance))
       flags = static_cast<uint8_t>(one_cell | near_faces(plane.middle, corner, extent));
   }
 
 private:
-  MOLMESH_HD bool nearly_plane(const SurfaceSample* begin, const SurfaceSample* end, const MeanPlane& plane) const {
+  MOLMESH_HD static bool nearly_plane(const SurfaceSample* begin, const SurfaceSample* end, const MeanPlane& plane,
+                                      double most) {
     for (const SurfaceSample* s = begin; s < end; ++s)
-      if (!(plane.has(*s) && std::fabs(dot(s->point - plane.middle, plane.normal)) <= tolerance))
+      if (!(plane.has(*s) && std::fabs(dot(s->point - plane.middle, plane.normal)) <= most))
         return false;
     return true;
   }

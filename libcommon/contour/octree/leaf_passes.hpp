@@ -24,6 +24,7 @@ struct LeafLists {
   par::List<Launcher, uint8_t> level;
   par::List<Launcher, OctreeView::Block> block;
   par::List<Launcher, int32_t> large;
+  double adapt = 0;
 };
 
 template <par::Launcher Launcher>
@@ -40,14 +41,27 @@ public:
 
   LeafLists<Launcher> run() {
     collect_surface_nodes();
+    for (int level = 1; level <= levels_; ++level) {
+      divided_.push_back(uploaded(options_.divided, level));
+      loose_.push_back(uploaded(options_.loose, level));
+    }
     double tolerance = options_.adapt;
-    select(tolerance);
+    double of_edge = options_.loose.empty() ? 0 : 0.125;
+    select(tolerance, of_edge);
     if (options_.adapt > 0) {
       find_cuts();
-      for (const double most = allowed_cut(); std::fabs(cut_off()) > most && tolerance > 0; select(tolerance))
-        tolerance = tolerance > least_tolerance ? tolerance / 2 : 0;
+      const double most = allowed_cut();
+      while (std::fabs(cut_off()) > most && tolerance > 0) {
+        if (of_edge * (1 << most_merges) > tolerance) // loose nodes first: the others owe them nothing
+          of_edge /= 2;
+        else
+          tolerance = tolerance > least_tolerance ? tolerance / 2 : 0;
+        select(tolerance, of_edge);
+      }
     }
-    return leaves();
+    LeafLists<Launcher> found = leaves();
+    found.adapt = tolerance;
+    return found;
   }
 
 private:
@@ -94,11 +108,20 @@ private:
     }
   }
 
-  /// How coarse the octree is.
-  void select(double tolerance) {
-    for (int l = 1; options_.adapt > 0 && l <= std::min(most_merges, top_); ++l)
+  /// How coarse the octree is. of_edge: what loose nodes may be off, as a share of their edge.
+  void select(double tolerance, double of_edge) {
+    for (int l = 1; options_.adapt > 0 && l <= std::min(most_merges, top_); ++l) {
+      const Nodes& loose = loose_[static_cast<size_t>(l) - 1];
       m_.for_n("merge nodes", surface_nodes(l).n,
-               MergeNodes{l_.cells, surface_.sample, surface_nodes(l), surface_nodes(l - 1), l, tolerance});
+               MergeNodes{l_.cells,
+                          surface_.sample,
+                          surface_nodes(l),
+                          surface_nodes(l - 1),
+                          l,
+                          tolerance,
+                          {loose.data(), loose.n},
+                          std::max(tolerance, of_edge * (1 << l))});
+    }
     refined_.clear();
     refined_.resize(static_cast<size_t>(levels_) + 1);
     for (int level = 1; level <= levels_; ++level)
@@ -150,25 +173,50 @@ private:
     Array<uint64_t> near = m_.template array<uint64_t>(6 * blocks.n);
     m_.for_n("block nodes", blocks.n,
              SurfaceBlocks{surface_nodes(level), surface_nodes(level + 1), blocks, surface.data(), near.data()});
-    const Nodes balance =
-        level == 1
-            ? Nodes{}
-            : par::gather<par::KeyedWord>(m_, "balance", set(level - 1).n,
-                                          ParentsOfNeighbours{set(level - 1), nodes_per_axis(l_.cells, level)});
+    const Nodes balance = level == 1 ? Nodes{} : parents_of_neighbours(level);
     const Nodes uniform = level == 1 && !(options_.adapt > 0) ? uniform_nodes() : Nodes{};
-    Nodes divided;
-    if (level == 1 && !options_.divided.empty()) {
-      divided.n = static_cast<int64_t>(options_.divided.size());
-      divided.array = m_.upload(options_.divided.data(), divided.n);
-    }
+    const Nodes& divided = divided_[static_cast<size_t>(level) - 1];
     Nodes overhang[3]; // nodes that reach beyond the domain
     for (int a = 0; a < 3; ++a)
       if (l_.cells[a] % (1 << level) != 0)
         overhang[a] = layer(level, a);
     Nodes nodes =
         par::unite(m_, {&surface, &balance, &uniform, &divided, &overhang[0], &overhang[1], &overhang[2]});
+    if (level == 1 && options_.adapt > 0)
+      grow(nodes, level);
     if (options_.adapt > 0 && level <= most_merges)
       spread(surface, near, nodes);
+    return nodes;
+  }
+
+  Nodes parents_of_neighbours(int level) {
+    const auto of = [&](NodeSet below) {
+      return par::gather<par::KeyedWord>(m_, "balance", below.n,
+                                         ParentsOfNeighbours{below, nodes_per_axis(l_.cells, level)});
+    };
+    if (options_.layers == 1)
+      return of(set(level - 1));
+    Nodes wide = par::unite(m_, {&refined(level - 1)});
+    grow(wide, level - 1);
+    return of({wide.data(), wide.n});
+  }
+  /// By as many layers of the level's nodes as are asked for beyond the first.
+  void grow(Nodes& nodes, int level) {
+    for (int k = 1; k < options_.layers; ++k) {
+      const Nodes wider = par::gather<par::KeyedWord>(
+          m_, "neighbours", nodes.n, WithNeighbours{{nodes.data(), nodes.n}, nodes_per_axis(l_.cells, level)});
+      nodes = par::unite(m_, {&wider});
+    }
+  }
+
+  /// Of RefineOptions: the level's.
+  Nodes uploaded(const std::vector<std::vector<par::KeyedWord>>& by_level, int level) {
+    Nodes nodes;
+    if (static_cast<size_t>(level) <= by_level.size() && !by_level[static_cast<size_t>(level) - 1].empty()) {
+      const std::vector<par::KeyedWord>& words = by_level[static_cast<size_t>(level) - 1];
+      nodes.n = std::ssize(words);
+      nodes.array = m_.upload(words.data(), nodes.n);
+    }
     return nodes;
   }
 
@@ -253,9 +301,10 @@ private:
   int top_, levels_; ///< levels_: at least 3, so that blocks of 8³ fine cells are nodes
   SurfaceView surface_;
   RefineOptions options_;
-  std::vector<Level> level_;   ///< [top + 3]
-  Array<double> cell_cut_;     ///< CutByCells
-  std::vector<Nodes> refined_; ///< [levels + 1] nodes with children
+  std::vector<Level> level_;           ///< [top + 3]
+  Array<double> cell_cut_;             ///< CutByCells
+  std::vector<Nodes> refined_;         ///< [levels + 1] nodes with children
+  std::vector<Nodes> divided_, loose_; ///< [levels] of RefineOptions
 };
 
 } // namespace molmesh::contour

@@ -50,7 +50,7 @@ LeafList select_leaves(const Lattice& lattice, const Surface& surface, const Ref
           {surface.cells.data(), surface.samples.data(), static_cast<int64_t>(surface.cells.size())}, options)
           .run();
   return {std::move(found.key.array), std::move(found.level.array), std::move(found.block.array),
-          std::move(found.large.array)};
+          std::move(found.large.array), found.adapt};
 }
 
 } // namespace molmesh::contour

@@ -25,8 +25,13 @@ struct RefineOptions {
   /// little of the volume (chord_items.hpp).
   double adapt = 0;
   bool inside = true, outside = true; ///< regions to mesh
-  /// Nodes of level 1 that have children whatever the surface needs: words of 4³ nodes, ascending.
-  std::vector<par::KeyedWord> divided = {};
+  /// [level - 1] Nodes that have children whatever the surface needs: words of 4³ nodes, ascending.
+  std::vector<std::vector<par::KeyedWord>> divided = {};
+  /// Likewise, nodes that may be one cell with a surface up to an eighth of their edge off its mean plane, where
+  /// that is more than adapt. Where chords cut off too much this is halved first.
+  std::vector<std::vector<par::KeyedWord>> loose = {};
+  /// Layers of leaves of each size round those of half that size; balance needs one.
+  int layers = 1;
 };
 
 /// A node of the octree has children where its surface cells may not be one (more than one component of the

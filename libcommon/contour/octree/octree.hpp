@@ -135,6 +135,7 @@ struct LeafList {
   LargeArray<uint8_t> level;
   LargeArray<OctreeView::Block> block; ///< ascending
   LargeArray<int32_t> large;           ///< ascending
+  double adapt = 0;                    ///< the tolerance that chords allowed, in fine spacings
 };
 
 class Octree {

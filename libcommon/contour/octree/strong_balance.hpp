@@ -103,6 +103,38 @@ struct ParentsOfNeighbours {
   }
 };
 
+/// The nodes of block i and those across their faces. A block without nodes stays one.
+struct WithNeighbours {
+  NodeSet set;
+  Vec3i nodes; ///< of the level, per axis
+  MOLMESH_HD int64_t operator()(int64_t i, par::KeyedWord* out) const {
+    const uint64_t word = set.block[i].word;
+    const Vec3i b = morton_point(set.block[i].key);
+    uint64_t own = word;
+    for (int a = 0; a < 3; ++a)
+      own |= with_next(word, 0, a) | with_previous(word, 0, a);
+    int64_t n = 0;
+    const auto add = [&](Vec3i block, uint64_t w) {
+      w &= nodes_within(block, nodes);
+      if (w == 0 && !(block == b))
+        return;
+      if (out)
+        out[n] = {morton(block), w};
+      ++n;
+    };
+    add(b, own);
+    for (int a = 0; a < 3; ++a) {
+      Vec3i q = b;
+      ++q[a];
+      add(q, with_previous(0, word, a));
+      q[a] -= 2;
+      if (q[a] >= 0)
+        add(q, with_next(0, word, a));
+    }
+    return n;
+  }
+};
+
 /// Surface blocks with a node near a face.
 struct NearBlocks {
   const uint64_t* near;

@@ -1,6 +1,7 @@
 // leaves_test.cpp — the device's surface cells and leaves, run by the host: the same, bit by bit, as the host's;
 // and both against leaves found the slow and obvious way.
 #include "contour/octree/leaves.hpp"
+#include "contour/octree/sized_nodes.hpp"
 #include "cuda/contour/leaves.hpp"
 #include "cuda/par/host.hpp"
 #include "unit/contour/level_steps.hpp"
@@ -122,6 +123,10 @@ TEST_CASE("leaf selection: device and host the same on random densities, uniform
       CAPTURE(trial, adapt);
       compare(grid, box, {adapt, true, trial % 2 == 0}, seen);
       compare(grid, box, {adapt, trial % 4 == 1, true}, seen);
+      const contour::Lattice lattice(grid, box, true, 1);
+      const contour::SizedNodes sized =
+          contour::sized_nodes(lattice.view(), {{{1, 0, 1}, 2, 1}, {{-3, 0, 0}, 3, 4}});
+      compare(grid, box, {adapt, true, true, sized.divided, sized.loose, 1 + trial % 3}, seen);
     }
   }
   CHECK(seen.cells > 10000);

@@ -1,0 +1,68 @@
+// surface_error.cpp — projects each centroid; sums are added up chunk by chunk, in order.
+#include "contour/surface_distance/surface_error.hpp"
+#include "contour/surface_distance/nearer_items.hpp"
+#include "geom/tet_measures.hpp"
+#include "isosurface/isosurface.hpp"
+#include "par/par.hpp"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace molmesh::contour {
+namespace {
+
+struct Sum {
+  double worst = 0, squares = 0, area = 0;
+};
+
+/// Å; p's foot, or nothing where it is not found.
+std::optional<double> to_foot(const IsosurfaceView& view, Vec3d p) {
+  Vec3d foot = p;
+  if (!view.project(foot, CentroidDistance::beyond * view.spacing()))
+    return {};
+  return norm(foot - p);
+}
+
+/// Of the middle of a triangle. Its foot may be on another piece of the surface than the nearest, or not be found:
+/// by way of a corner it is not nearer than it is.
+double off(const IsosurfaceView& view, Vec3d middle, const std::array<Vec3d, 3>& corners) {
+  double least = to_foot(view, middle).value_or(1e300);
+  if (least > CentroidDistance::sure * view.spacing())
+    for (const Vec3d& c : corners)
+      least = std::min(least, norm(c - middle) + to_foot(view, c).value_or(view.spacing()));
+  return least;
+}
+
+} // namespace
+
+SurfaceError surface_error(const TetMesh& mesh, const BlockGrid& grid, int threads) {
+  constexpr int64_t chunk = 1 << 12;
+  const Isosurface isosurface(grid, threads);
+  const IsosurfaceView view = isosurface.view();
+  const int64_t n = std::ssize(mesh.tri);
+  std::vector<Sum> sums(static_cast<size_t>((n + chunk - 1) / chunk));
+  par::for_n(std::ssize(sums), threads, 1, [&](int64_t c) {
+    Sum& sum = sums[static_cast<size_t>(c)];
+    for (int64_t i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
+      if (mesh.boundary[static_cast<size_t>(i)] != surface)
+        continue;
+      const Tri& t = mesh.tri[static_cast<size_t>(i)];
+      const Vec3d a = mesh.point[t[0]], b = mesh.point[t[1]], d = mesh.point[t[2]];
+      const double distance = off(view, (a + b + d) / 3., {a, b, d}), area = tri_area(a, b, d);
+      sum.worst = std::max(sum.worst, distance);
+      sum.squares += area * distance * distance;
+      sum.area += area;
+    }
+  });
+  Sum all;
+  for (const Sum& s : sums) {
+    all.worst = std::max(all.worst, s.worst);
+    all.squares += s.squares;
+    all.area += s.area;
+  }
+  return {all.worst, all.area > 0 ? std::sqrt(all.squares / all.area) : 0};
+}
+
+} // namespace molmesh::contour

@@ -1,0 +1,77 @@
+// element_limit.hpp — density2tet's --elements: the mesh that fits, or the spacing that would.
+#pragma once
+#include "base/grouped.hpp"
+#include "cli/run.hpp"
+#include "cli/text.hpp"
+#include "contour/fit.hpp"
+#include "contour/surface_distance/surface_error.hpp"
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <string>
+
+namespace molmesh {
+
+/// The finest spacing, from `least` on in steps of 3 %, of whose mesh with the default tolerance nine tenths of
+/// `most` elements are planned; 0: none up to 20 Å.
+inline double spacing_for(const BlockGrid& grid, contour::Options options, int64_t most, double least) {
+  options.adapt = {};
+  options.layers = 1;
+  const double h = grid.frame.spacing;
+  const contour::Leaves leaves = contour::count_leaves(grid, options);
+  for (double s = least; s < 20; s *= 1.03)
+    if (10 * contour::plan(contour::at_spacing(leaves, h, s), std::ssize(grid.corner), options.meshed).elements <=
+        9 * most)
+      return s;
+  return 0;
+}
+
+/// "hier2density --spacing 1.3 fits".
+inline std::string fitting_spacing(double s) {
+  char text[64];
+  std::snprintf(text, sizeof text, "hier2density --spacing %.3g fits", s);
+  return s > 0 ? text : "no spacing fits";
+}
+
+[[noreturn]] inline void refuse_elements(const BlockGrid& grid, const contour::Options& options, int64_t most,
+                                         const contour::Fit& least) {
+  fail(Status::usage,
+       "elements: found " + std::to_string(most) + ", expected at least about " +
+           std::to_string(std::llround(least.elements)) + " for this surface at a spacing of " +
+           cli::length_text(grid.frame.spacing) + ": " +
+           fitting_spacing(spacing_for(grid, options, most, grid.frame.spacing)),
+       {"elements"});
+}
+
+/// Of the octree that fitted_mesh() tries first. Throws Error(usage) where no mesh of the grid has so few elements.
+inline contour::Fit planned_fit(const BlockGrid& grid, const contour::Options& options, int64_t most) {
+  const contour::LeafCounter counter(grid, options);
+  const contour::Fit f = contour::fit(counter, grid, options.meshed, double(most) / contour::usual_ratio);
+  if (f.coarsest && contour::least_ratio * f.elements > double(most))
+    refuse_elements(grid, options, most, f);
+  return f;
+}
+
+/// make: as contour::fitted_mesh. cost: in surface distance, for the summary line. Throws as planned_fit().
+inline TetMesh limited_mesh(const contour::LeafCounter& counter, const BlockGrid& grid,
+                            const contour::Options& options, int64_t most, cli::Run& run, std::string& cost,
+                            const std::function<TetMesh(const contour::Options&)>& make) {
+  contour::Fit fit;
+  TetMesh mesh = contour::fitted_mesh(counter, grid, options, most, make, fit);
+  if (mesh.tet.empty())
+    refuse_elements(grid, options, most, fit);
+  run.phase("surface distance");
+  const contour::SurfaceError error = contour::surface_error(mesh, grid, options.threads);
+  run.counts["layers"] = fit.fineness.layers;
+  run.counts["surface_error"] = cli::Value{{"worst", error.worst}, {"rms", error.rms}};
+  if (fit.finest && 10 * std::ssize(mesh.tet) < 7 * most)
+    run.note("this grid has " + grouped(std::ssize(mesh.tet)) + " elements at the most (--elements " +
+             std::to_string(most) + "): for more, " +
+             fitting_spacing(spacing_for(grid, options, most, grid.frame.spacing / 16)));
+  char text[96];
+  std::snprintf(text, sizeof text, "surface off by %.2g Å at the most, %.2g Å rms, ", error.worst, error.rms);
+  cost = text;
+  return mesh;
+}
+
+} // namespace molmesh
