@@ -56,6 +56,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   options.threads = threads;
   options.measure_later = true;
   options.effort = o.chosen();
+  options.coarsen = o.coarsen;
   options.min_dihedral = o.min_dihedral;
   options.max_dihedral = o.max_dihedral;
   if (mesh.creator.rfind("density2tet", 0) == 0)
@@ -98,6 +99,8 @@ Status run_tool(const Options& o, cli::Run& run) {
                   {"nestings", c.cavity_shrinks},
                   {"quality_before", angles_value(result.before)},
                   {"quality_after", angles_value(result.after)}});
+  if (o.coarsen)
+    run.counts["removed_points"] = result.removed;
   if (grid && o.iterations > 0)
     run.counts["surface"] = fidelity_value(result.fidelity);
   if (grid && o.iterations > 0 && !level.empty())

@@ -2,6 +2,8 @@
 #include "optimize/optimize.hpp"
 #include "base/error.hpp"
 #include "isosurface/reference_surface.hpp"
+#include "optimize/acceptance/faults.hpp"
+#include "optimize/mesh/target_size.hpp"
 #include "optimize/schedule/schedule.hpp"
 #include "par/par.hpp"
 #include <algorithm>
@@ -89,11 +91,12 @@ const std::vector<Round> rounds_to_fair{
 struct Course {
   double min_dihedral, max_dihedral; // degrees aimed at, more than is promised
   const std::vector<Round>& rounds;
-  size_t rounds_to_offset; // after this one points are put further out, for what chords enclose less
-  size_t most_elements;    // below the goal that are searched for; 0: no search, of points neither
+  size_t rounds_to_coarsening; // before it
+  size_t rounds_to_offset;     // after this one points are put further out, for what chords enclose less
+  size_t most_elements;        // below the goal that are searched for; 0: no search, of points neither
 };
-const Course to_fair{16.5, 154.4, rounds_to_fair, 1, 0}, to_good{26, 138.5, rounds_to_good, 4, 64},
-    to_best{30.65, 129.4, rounds_to_good, 4, 1024};
+const Course to_fair{16.5, 154.4, rounds_to_fair, 2, 1, 0}, to_good{26, 138.5, rounds_to_good, 4, 4, 64},
+    to_best{30.65, 129.4, rounds_to_good, 4, 4, 1024};
 
 const Course& course_of(Effort effort) {
   return effort == Effort::fast ? to_fair : effort == Effort::good ? to_good : to_best;
@@ -110,6 +113,12 @@ constexpr int64_t fewest_parts = 8;
 
 constexpr double fitting_share = 0.1; // of the goal's sine
 const Guard fitting{40, 0.24, 0.5, 0};
+
+// Coarsening: elements may fall to this share of the goal's sine, sizes on the surface are those of triangles that
+// are off by so many spacings (the guard keeps them nearer), and after some times little is left to remove.
+constexpr double coarsening_share = 0.5, coarsening_tolerance = 0.2;
+constexpr int coarsenings = 3;
+const Guard coarse{32, 0.1, 0.5, 0};
 
 // Points off the isosurface come back where elements can be repaired after. Rows are tried in turn while nothing
 // comes back, each time in other parts, and none of them where no point is left. After a point has come back, all
@@ -162,7 +171,8 @@ float share_of(double share, float goal) {
 class Improvement {
 public:
   Improvement(DynamicMesh& m, const Target& target, Isosurface* isosurface, const Options& options, Result& result)
-      : m_(m), isosurface_(isosurface), options_(options), course_(course_of(options.effort)), result_(result),
+      : m_(m), target_(target), isosurface_(isosurface), options_(options), course_(course_of(options.effort)),
+        result_(result),
         // Edges of four spacings and more are those of merged cells.
         schedule_(
             m, &target,
@@ -176,10 +186,43 @@ public:
         small_(schedule_.parts_at_surface(2) < fewest_parts),
         many_(isosurface && schedule_.below(goal_) >= many_elements) {}
 
-  void run_rounds(const FlowPass& flow) {
+  /// Vertices go in the middle of the rounds: elements are good enough then to give way, and rounds repair what is
+  /// left. With fewer rounds than all no element falls under the goal.
+  void coarsen() {
+    Pass pass = pass_of({repairs_ ? coarsening_share : 1, false, 2, true, coarse});
+    const Pass repair = pass_of({0.8, false, 2, true, strict, 0.1});
+    for (int k = 0; k < coarsenings; ++k) {
+      const std::vector<float> size =
+          target_sizes(m_, &target_, coarsening_tolerance * target_.spacing(), options_.threads);
+      int64_t removed = 0;
+      for (int shift = 0; shift < 2; ++shift)
+        removed += count(schedule_.coarsen(pass, size));
+      result_.removed += removed;
+      count(schedule_.run(repair));
+      if (removed == 0)
+        break;
+    }
+    if (isosurface_) {
+      offset_points();
+      count(schedule_.project(at_least(share_of(0.5, usual_)), strict));
+    }
+  }
+
+  /// Coarse triangles enclose less: their points are put further out than those of fine ones.
+  void put_further_out() {
+    for (int k = 0; isosurface_ && k < 2; ++k) {
+      isosurface_->set_offset(isosurface_->offset() +
+                              chord_offset(m_, *isosurface_, options_.threads, most_coarse_offset));
+      count(schedule_.project(at_least(FaultCount::share * usual_), strict));
+    }
+  }
+
+  size_t rounds_to_coarsening() const { return course_.rounds_to_coarsening; }
+
+  void run_rounds(const FlowPass& flow, size_t from = 0, size_t to = SIZE_MAX) {
     double cell_of_all = 0;
     tell_progress();
-    for (size_t k = 0; k < size_t(options_.iterations) && schedule_.worst() < goal_; ++k) {
+    for (size_t k = from; k < std::min(size_t(options_.iterations), to) && schedule_.worst() < goal_; ++k) {
       const Round& round = course_.rounds[std::min(k, course_.rounds.size() - 1)];
       Pass pass = pass_of(round);
       // No other follows that would aim higher.
@@ -213,7 +256,7 @@ public:
       if (done == 0 && k + 1 >= course_.rounds.size())
         break;
     }
-    if (isosurface_ && result_.rounds == 0) // good enough as it came, and to stay so
+    if (isosurface_ && from == 0 && result_.rounds == 0) // good enough as it came, and to stay so
       project_with_offset(std::min(goal_, at_first_));
   }
 
@@ -226,10 +269,17 @@ public:
     search_elements();
   }
 
-  // But for rounding: what is put on the isosurface may lose a millionth.
-  bool is_worse() { return schedule_.worst() < (repairs_ ? at_first_ : 0.9999f * at_first_); }
+  // But for rounding: what is put on the isosurface may lose a millionth. What is coarsened may lose what is better
+  // than promised.
+  bool is_worse() {
+    const float least = options_.coarsen ? std::min(at_first_, FaultCount::share * goal_) : at_first_;
+    return schedule_.worst() < (repairs_ ? least : 0.9999f * least);
+  }
 
 private:
+  /// A floor for projection: with fewer rounds than all nothing repairs what falls to it.
+  float at_least(float floor) const { return repairs_ ? floor : std::max(floor, no_worse_); }
+
   void search_points() {
     const std::vector<Strategy>& rows = schedule_.ends_in_surface() ? for_points_at_end : for_points;
     size_t row = 0;
@@ -300,10 +350,11 @@ private:
     } else if (round + 1 == course_.rounds_to_offset)
       offset_points();
     const float floor = round < course_.rounds_to_offset ? goal : goal_;
-    count(schedule_.project(repairs_ ? floor : std::max(floor, no_worse_), strict));
+    count(schedule_.project(at_least(floor), strict));
   }
 
   DynamicMesh& m_;
+  const Target& target_;
   Isosurface* const isosurface_;
   const Options& options_;
   const Course& course_;
@@ -345,8 +396,17 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
 
   begin("improve");
   Improvement run(m, target, isosurface.get(), options, result);
-  run.run_rounds(interfaces.empty() ? flow : FlowPass{}); // which knows one target
+  const FlowPass flow_here = interfaces.empty() ? flow : FlowPass{}; // which knows one target
+  if (options.coarsen) {
+    run.run_rounds(flow_here, 0, run.rounds_to_coarsening());
+    run.coarsen();
+    run.run_rounds(flow_here, run.rounds_to_coarsening());
+  } else {
+    run.run_rounds(flow_here);
+  }
   run.search();
+  if (options.coarsen)
+    run.put_further_out();
   if (result.counts.total() == 0 || run.is_worse()) { // the file that came in, in its own order
     result.rejected = result.counts.total() > 0;
     result.counts = {};

@@ -30,6 +30,9 @@ struct Options {
   /// Rounds at most; 0 leaves the mesh as it is. Fewer than the effort has are its first ones: none of them lets
   /// the worst element fall, and no search follows.
   int iterations = 15;
+  /// Edges inside, on walls and, with a density, on the surface contract as far as its curvature, gradation and
+  /// quality allow.
+  bool coarsen = false;
   double sharp = 50; ///< degrees; without a density, edges of the surface that bend by more are kept
   int threads = 1;
   /// Told now and then how much of the improvement is done (0 to 1), by the elements that are still below the goal.
@@ -44,6 +47,7 @@ struct Options {
 struct Result {
   Counts counts;
   int rounds = 0;
+  int64_t removed = 0;   ///< vertices that coarsening has removed
   bool rejected = false; ///< the worst element would have become worse: the mesh is as it came
   Angles before, after;
   Fidelity fidelity; ///< after (with a density)

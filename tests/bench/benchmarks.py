@@ -619,6 +619,7 @@ class Page:
             self.include("set_figures.md")
         self.include("peer_figures.md")
         self.include("gpu_figures.md")
+        self.include("coarsening_figures.md")
         self.include("plan_figures.md")
         self.include("limits.md")
         if self.skipped:

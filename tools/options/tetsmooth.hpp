@@ -15,6 +15,7 @@ struct Options : cli::Common, cli::PlanOptions {
   }
   std::string density, hier, effort = "good";
   int iterations = 15, parts = 8;
+  bool coarsen = false;
   double min_dihedral = 0, max_dihedral = 180; // degrees asked for
   MeshInput mesh;
 
@@ -36,6 +37,9 @@ inline void describe(cli::Table& t, Options& o) {
         "fast: 15° to 155°, some points off the isosurface; good: 25° to 140°, Q 0.30; best: 28° to 134°, Q 0.35, "
         "but for a few elements")
       .one_of({"fast", "good", "best"});
+  t.add("--coarsen", o.coarsen,
+        "makes a smaller mesh: edges inside, on walls and (with --density) on the surface contract as far as "
+        "curvature, neighboring sizes and quality allow");
   t.add("--iterations", o.iterations, "rounds at most; 0 leaves the mesh as it is").within(0, 1000);
   t.add("--parts", o.parts, "parts (METIS) that the elements are numbered by in the output, one an element at most")
       .within(1, 1000000);
@@ -55,7 +59,8 @@ inline void describe(cli::Table& t, Options& o) {
       {"tetsmooth --min-dihedral 20 --hier 1tii.hier 1tii.tet.vtu -o 1tii.vtu",
        "status 5 below 20°, and what is nearest to the elements that miss it"},
       {"tetsmooth --parts 64 --density 1tii.vdb 1tii.tet.vtu -o 1tii.vtu",
-       "elements in 64 parts for a parallel solver"}};
+       "elements in 64 parts for a parallel solver"},
+      {"tetsmooth --coarsen --density 1tii.vdb 1tii.tet.vtu -o 1tii.vtu", "less than half as many elements"}};
   t.page.files = {{".vtu", "mesh (VTK), read and written: formats/vtu/VTUv1.md"},
                   {".msh, .mesh, .vtk", "meshes of other programs, read: formats/mesh/MESH.md"},
                   {".vdb", "density grid (OpenVDB), read: formats/vdb/VDBv1.md"},

@@ -28,6 +28,7 @@ MOLMESH_HD inline float deficit(float q, float goal, bool worst_first, const Gua
 enum class Aim : uint8_t {
   quality, ///< the worst element concerned rises, and the deficit of all does not
   fit,     ///< the surface triangles concerned fit better, and no element falls under the goal
+  size,    ///< fewer elements: none falls under the goal, and no triangle beyond the guard
 };
 
 /// Decides about every exchange. Set once for a trial or a sweep, and constant while operations use it.
@@ -47,9 +48,10 @@ struct Acceptance {
   float tiny_share = 1;
 
   bool fits_surface() const { return aim == Aim::fit; }
+  bool may_lower() const { return aim != Aim::quality; } ///< elements, down to the goal
   /// What new elements must be better than.
   float demand(float before) const {
-    return fits_surface() ? 0.999999f * std::min(before, goal) : before + 1e-9f + 0.01f * before;
+    return may_lower() ? 0.999999f * std::min(before, goal) : before + 1e-9f + 0.01f * before;
   }
   bool fits(const Fit& now, const Fit& before) const {
     return may_bend || (fits_surface() ? now.excess < 0.98 * before.excess : now.worst <= before.worst);

@@ -190,6 +190,9 @@ Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int t
         });
       },
       [](double a, double b) { return a + b; });
+  const bool coarse = std::abs(surface.offset()) > most_offset * surface.spacing();
+  const double most_off =
+      coarse ? std::abs(surface.offset()) + 0.0025 * surface.spacing() : 0.02 * surface.spacing();
   std::vector<uint8_t> in_cavity(m.point.size());
   for (const int32_t v : regions.cavity)
     in_cavity[v] = 1;
@@ -211,7 +214,7 @@ Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int t
                         double distance;
                         Vec3d normal;
                         one.points_off = !surface.probe(m.point[v], distance, normal) ||
-                                         std::abs(distance + surface.offset()) > 0.02 * surface.spacing();
+                                         std::abs(distance + surface.offset()) > most_off;
                         one.points_off_cavity = one.points_off && in_cavity[v];
                         one.points_off_wall = one.points_off && m.vertex[v].kind == Kind::trace;
                         return one;
@@ -219,9 +222,10 @@ Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int t
                       add));
 }
 
-double chord_offset(const DynamicMesh& m, const Isosurface& surface, int threads) {
+double chord_offset(const DynamicMesh& m, const Isosurface& surface, int threads, double most) {
   const Fidelity f = measure_triangles(m, surface, threads);
-  const double most = most_offset * surface.spacing(), now = surface.offset();
+  const double now = surface.offset();
+  most *= surface.spacing();
   return f.area > 0 ? std::clamp(now + f.missing / f.area, -most, most) - now : 0;
 }
 

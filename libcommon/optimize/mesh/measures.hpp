@@ -21,7 +21,8 @@ std::string text(const Angles& a);
 struct Fidelity {
   int64_t points = 0; ///< free ones: where the surface touches itself or labels meet they stay as they came
   int64_t triangles = 0;
-  int64_t points_off = 0;           ///< further than 0.02 spacings from it, or where it is not known
+  int64_t points_off =
+      0; ///< further than 0.02 spacings from it, or than the offset where that is larger, or not known
   int64_t points_off_cavity = 0;    ///< of these, on closed cavities: where one is smaller than the grid can show
   int64_t points_off_wall = 0;      ///< and in walls that cut the surface
   int64_t centroids_off = 0;        ///< further than 0.25 spacings, or not known
@@ -38,9 +39,12 @@ Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int t
 /// Do more triangles of the curved surfaces face into the isosurface than out of it?
 bool runs_against(const DynamicMesh& m, const Isosurface& surface, int threads);
 
+/// Of triangles far coarser than the grid: how far outside the isosurface their points may be put, in spacings.
+inline constexpr double most_coarse_offset = 0.06;
+
 /// Chords enclose less than the surface they hang on: how far their points must lie outside it (Å, from where they
-/// are now) to make up for that, at most 0.0175 spacings in all (I8 allows 0.02).
-double chord_offset(const DynamicMesh& m, const Isosurface& surface, int threads);
+/// are now) to make up for that, at most `most` spacings in all (I8 allows 0.02).
+double chord_offset(const DynamicMesh& m, const Isosurface& surface, int threads, double most = most_offset);
 
 /// Of an equilateral triangle as large as those of the curved surfaces are on average (Å); 0 where there is none.
 double mean_surface_edge(const DynamicMesh& m, int threads);

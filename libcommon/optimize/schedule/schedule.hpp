@@ -28,6 +28,9 @@ public:
   /// Makes surface triangles that do not keep the guard, and surface vertices off the target, fit where no element
   /// falls under the goal.
   Counts fit_surface(const Pass& pass);
+  /// Removes vertices where no new edge is much longer than the sizes at its ends and no element falls under the
+  /// goal. size [vertices]: target_sizes().
+  Counts coarsen(const Pass& pass, const std::vector<float>& size);
   /// Searches in parts around the few places that the strategy is for. Nothing else changes.
   Counts search(const Strategy& strategy);
   /// Puts surface vertices on the target where no element falls under `floor`; floor ≥ 1 means: an element may lose
