@@ -72,7 +72,7 @@ void describe_to(CLI::Option& to, const Option& o) {
     to.check(CLI::IsMember(o.words));
   if (o.must_be_given)
     to.required();
-  if (o.several() && !o.argument) // an option takes one value each time
+  if (o.several() && !o.argument && !o.at_once) // an option takes one value each time
     to.allow_extra_args(false);
 }
 

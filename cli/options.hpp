@@ -26,6 +26,7 @@ struct Option {
   std::vector<std::string> words; ///< what it may be; empty: anything
   std::string default_text;
   bool must_be_given = false, in_report = true;
+  bool at_once = false;           ///< several(): also several values after one name
   std::vector<std::string> given; ///< on the command line, after parse()
 
   /// Unit of a number (Å), or what stands for the value in the help (FILE: a file's name, which may not be empty).
@@ -36,6 +37,7 @@ struct Option {
   Option& required() { return must_be_given = true, *this; }
   /// The default as the help shows it, where the target does not hold it.
   Option& shown_default(const std::string& text) { return default_text = text, *this; }
+  Option& several_at_once() { return at_once = true, *this; }
   /// The run report has it elsewhere, or not at all.
   Option& not_reported() { return in_report = false, *this; }
 

@@ -4,6 +4,7 @@
 #include "formats/plan/plan.hpp"
 #include "formats/vdb/vdb.hpp"
 #include "tools/density_line.hpp"
+#include "tools/join_tiles.hpp"
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -96,6 +97,8 @@ std::string line(const compose::Assembly& a, std::span<const compose::Copy> copi
 }
 
 Status run(const Options& o, cli::Run& r) {
+  if (!o.tiles.empty())
+    return join_tiles(o, r);
   std::vector<double> band{0, 0};
   if (o.band != "auto") {
     band = cli::numbers("--band", o.band, 2);
@@ -123,7 +126,7 @@ Status run(const Options& o, cli::Run& r) {
   report(r, all);
   r.phase("write");
   formats::write_vdb(out.stream(), all.grid, c.threads,
-                     {all.tail, all.resampling_error, files[0]->surface, files[0]->probe});
+                     {all.tail, all.resampling_error, files[0]->surface, files[0]->probe, {}, 0});
   r.complete(out);
   r.made = line(all, copies, c);
   return Status::good;

@@ -8,12 +8,12 @@
 #include "formats/hier/hier.hpp"
 #include "formats/vdb/leaves.hpp"
 #include "formats/vdb/vdb.hpp"
-#include "molecule/words.hpp"
 #include "par/par.hpp"
 #include "tools/density_line.hpp"
 #include "tools/density_report.hpp"
 #include "tools/device_report.hpp"
 #include "tools/plan.hpp"
+#include "tools/tile.hpp"
 #include <optional>
 
 using namespace molmesh;
@@ -48,6 +48,7 @@ density::Options density_options(const Options& o) {
   if (o.on_device() && d.atoms == density::AtomSearch::kdtree)
     fail(Status::usage, "--atoms: found kdtree, expected bvh or all with --mode cuda");
   d.threads = o.resolved_threads();
+  d.tile = tile_of(o.tile, o.on_device());
   return d;
 }
 
@@ -120,6 +121,8 @@ Status run(const Options& o, cli::Run& r) {
     extras.tail = density::tail(h, d.decay, d.isovalue, band.frame);
   extras.surface = o.surface;
   extras.probe = body ? body->probe : 0;
+  extras.tile = d.tile;
+  extras.tile_digest = d.tile.whole() ? 0 : digest_of(h, d);
   formats::write_vdb(out->stream(), band.frame, band.info, band.inside, leaves, extras);
   r.complete(*out);
   r.made = cli::counted(band.info.atoms, "atom", "atoms") + ' ' + grid_words(band.frame) + "; " +

@@ -69,11 +69,15 @@ inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, 
       return false;
   }
   density::Plan plan = density::plan(h, d);
-  const density::Cost cost = density::cost(plan.size, atoms);
+  const density::GridSize own = density::part_of(plan, d.tile);
+  const density::Cost cost = density::cost(own, atoms);
   if (!p.plan) {
     cli::require_memory(p, cost.memory, "a density at " + cli::length_text(plan.size.spacing),
                         fitting_spacing(plan.size.spacing, limit, [&](double s) {
-                          return density::cost(density::at_spacing(plan.counted, s), atoms).memory;
+                          density::GridSize at = density::at_spacing(plan.counted, s);
+                          at.active_points = int64_t(double(at.active_points) * own.active_points /
+                                                     double(std::max<int64_t>(1, plan.size.active_points)));
+                          return density::cost(at, atoms).memory;
                         }));
     return false;
   }
@@ -82,8 +86,8 @@ inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, 
                {"spacing", plan.size.spacing},
                {"margin", plan.margin},
                {"grid_points", std::vector{n.x, n.y, n.z}},
-               {"active_points", plan.size.active_points},
-               {"blocks", plan.size.blocks},
+               {"active_points", own.active_points},
+               {"blocks", own.blocks},
                {"memory_bytes", cost.memory},
                {"seconds", cost.seconds / p.speed}};
   Options both;

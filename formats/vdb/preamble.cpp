@@ -89,6 +89,11 @@ void write_preamble(Bytes& out, const GridFrame& f, const FieldInfo& info, const
     if (extras.surface != "vdw")
       m.add("probe", "double", extras.probe);
   }
+  if (!extras.tile.whole()) {
+    m.add("tile", "int32", extras.tile.number);
+    m.add("tiles", "int32", extras.tile.count);
+    m.add("tile_digest", "int64", extras.tile_digest);
+  }
   m.write(out);
 
   const double h = f.spacing;

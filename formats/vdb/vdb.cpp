@@ -31,9 +31,11 @@ class Reader {
 public:
   Reader(const vdb::FloatGrid& in, const std::string& file, int threads)
       : in_(in), file_(file), threads_(threads) {}
-  BlockGrid read();
+  BlockGrid read(bool whole);
   FieldInfo info() {
     read_info();
+    read_extras();
+    refuse_tile();
     return grid_.info;
   }
   VdbExtras extras;
@@ -53,6 +55,8 @@ private:
   void read_leaves();
   void read_tiles();
   void check_slots(size_t b) const;
+  void refuse_tile() const;
+  void check_tile() const;
 
   const vdb::FloatGrid& in_;
   const std::string& file_;
@@ -130,6 +134,13 @@ void Reader::read_extras() {
   if (!(extras.tail.decay >= 0 && extras.tail.radius >= 0 && extras.tail.depth >= 0 &&
         extras.resampling_error >= 0))
     refuse("R7: tail_decay, tail_radius, tail_depth and resampling_error must not be negative");
+  if (!in_.metadata.contains("tiles"))
+    return;
+  extras.tile = {meta<int32_t>("tile"), meta<int32_t>("tiles")};
+  extras.tile_digest = meta<int64_t>("tile_digest");
+  if (!(1 <= extras.tile.number && extras.tile.number <= extras.tile.count))
+    refuse("R12: tile " + std::to_string(extras.tile.number) + " of " + std::to_string(extras.tile.count) +
+           ", expected 1 to their number");
 }
 
 void Reader::read_frame() {
@@ -195,7 +206,8 @@ void Reader::read_tiles() {
     refuse("R10: background " + std::to_string(in_.background) + ", expected 0");
   // Each line of inside points along an axis ends in active ones, and |V|² ≤ |X||Y||Z| of the projections (Loomis
   // and Whitney 1949): no more blocks than this can be enclosed, and a small file cannot ask for much memory.
-  const double enclosed = std::pow(0.5 * static_cast<double>(in_.leaf.size()), 1.5);
+  // In a tile the lines across it may end at its sides; then each of its layers is a plane of such lines.
+  const double enclosed = std::pow(0.5 * static_cast<double>(in_.leaf.size()), extras.tile.whole() ? 1.5 : 2);
   // And not more than the file's size allows: bodies have far fewer blocks inside than bytes in their file.
   const double most = static_cast<double>(in_.bytes) / 2 + (1 << 20);
   double inside = 0;
@@ -221,15 +233,36 @@ void Reader::read_tiles() {
     refuse("R3: an inside tile occurs twice");
 }
 
-BlockGrid Reader::read() {
+void Reader::refuse_tile() const {
+  if (!extras.tile.whole())
+    refuse("R12: tile " + std::to_string(extras.tile.number) + " of " + std::to_string(extras.tile.count) +
+           ", expected the whole density: densityjoin joins tiles");
+}
+
+void Reader::check_tile() const {
+  const Slab slab = slab_of(grid_.frame, extras.tile);
+  for (const std::vector<Vec3i>* const blocks : {&grid_.corner, &grid_.inside})
+    for (const Vec3i& c : *blocks)
+      if (!slab.contains(c))
+        refuse("R12: a block at index " + std::to_string(c[slab.axis]) + " of axis " + "xyz"[slab.axis] +
+               ", expected those of the tile, " + std::to_string(slab.begin) + " to " +
+               std::to_string(slab.end - 1));
+}
+
+/// whole: no tile.
+BlockGrid Reader::read(bool whole) {
   read_info();
   read_extras();
+  if (whole)
+    refuse_tile();
   read_frame();
   read_tiles();
   read_leaves();
   for (const Vec3i& c : grid_.inside) // both ascending
     if (std::binary_search(grid_.corner.begin(), grid_.corner.end(), c))
       refuse("R3: a leaf within an inside tile");
+  if (!extras.tile.whole())
+    check_tile();
   return std::move(grid_);
 }
 
@@ -275,9 +308,18 @@ FieldInfo PackedVdb::info() const {
 
 BlockGrid PackedVdb::unpack(int threads, VdbExtras* extras) const {
   Reader reader(content_->grid, content_->file, threads);
-  BlockGrid grid = reader.read();
+  BlockGrid grid = reader.read(true);
   if (extras)
     *extras = reader.extras;
+  return grid;
+}
+
+BlockGrid read_tile(std::istream& in, const std::string& file, int threads, VdbExtras& extras) {
+  const std::string bytes = read_all(in, file);
+  const vdb::FloatGrid decoded = vdb::decode(bytes, "density", file);
+  Reader reader(decoded, file, threads);
+  BlockGrid grid = reader.read(false);
+  extras = reader.extras;
   return grid;
 }
 

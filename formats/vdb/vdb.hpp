@@ -10,9 +10,12 @@ namespace molmesh::formats {
 
 class Leaves;
 
-/// Throws Error(bad_input) when the stream is no OpenVDB file, or has no grid `density` of molmesh_profile 1.
+/// Throws Error(bad_input) when the stream is no OpenVDB file, or has no grid `density` of molmesh_profile 1, or
+/// holds a tile of one.
 /// extras: gets what else the file says.
 BlockGrid read_vdb(std::istream& in, const std::string& file, int threads = 1, VdbExtras* extras = nullptr);
+/// The same of a tile of a grid, or of a whole one, which is tile 1 of 1.
+BlockGrid read_tile(std::istream& in, const std::string& file, int threads, VdbExtras& extras);
 /// A file whose tree is known and whose values are still packed: its size, before the grid takes its memory. Throws
 /// as read_vdb().
 class PackedVdb {

@@ -85,17 +85,18 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
   s.full = o.full_search;
   s.atoms = o.atoms;
   s.threads = o.threads;
+  s.tile = o.tile;
   s.progress = o.progress;
-  const Field f = make_field(hierarchy, o.decay, budget_for(s).far, o.threads);
+  Field f = make_field(hierarchy, o.decay, budget_for(s).far, o.threads);
   const Box box = f.bounds();
   const bool derived = o.margin < 0;
+  const double sufficient = derived || !o.tile.whole() ? sufficient_margin(f, o.band_lower) : 0;
   const auto enough = [&] { // as messages show it
-    return derived ? 0 : std::ceil(100 * sufficient_margin(f, o.band_lower)) / 100;
+    return derived ? 0 : std::ceil(100 * (o.tile.whole() ? sufficient_margin(f, o.band_lower) : sufficient)) / 100;
   };
   double margin = o.margin;
   if (derived) {
     // One cell more on each side: then no cell of the band touches the wall either.
-    const double sufficient = sufficient_margin(f, o.band_lower);
     const double h =
         o.grid_points > 0 ? longest_edge(box, sufficient) / static_cast<double>(o.grid_points - 3) : o.spacing;
     margin = sufficient + h;
@@ -106,6 +107,8 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
   const GridFrame frame = o.grid_points > 0 ? frame_with_points(box, margin, o.grid_points)
                                             : frame_with_spacing(box, margin, o.spacing);
   check_spacing(o, frame.spacing);
+  if (!o.tile.whole())
+    keep_near(f, searched_box(frame, o.tile));
   bool cut = false;
   const BandSink look = [&](const FieldInfo& info, std::span<const BandBlocks> runs) {
     for (const BandBlocks& blocks : runs) {
@@ -121,7 +124,7 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
   Band band = find(f, frame, s, counts.search);
   if (const BandBlocks left = band.block; !left.empty()) // without a sink, or with a finder that does not use it
     look(band.info, {&left, 1});
-  if (band.active_points == 0)
+  if (band.active_points == 0 && o.tile.whole())
     fail_without_band(o, frame.spacing, margin, enough());
   if (o.take)
     band.block = {}, band.storage = {};

@@ -16,6 +16,7 @@ struct Options {
   bool full_search = false;
   AtomSearch atoms = AtomSearch::bvh;
   int threads = 1;
+  Tile tile; ///< the part of the grid whose blocks are wanted; the band finder has to know of tiles
   std::function<void(int64_t done, int64_t total)> progress;
   BandSink take; ///< receives the band's blocks; the returned Band is then empty. Empty: the band keeps them
 };
@@ -28,10 +29,11 @@ struct Counts {
 /// Finds the band of a field: find_band, or what does the same on a device.
 using BandFinder = std::function<Band(const Field&, const GridFrame&, const SearchOptions&, SearchCounts&)>;
 
-/// Computes the band, all but info.creator. Atoms of radius 0 make no density. Throws Error(failed) if the wall of
-/// a grid with the caller's margin cuts the surface or no cell reaches the band, Error(usage) if the grid is too
-/// large to index, the band too narrow for the tolerance (docs/theory/field.md §5) or a value too large for a
-/// float.
+/// Computes the band, all but info.creator. Of a tile: its blocks alone, and of the numbers of `info` and Counts
+/// what comes from them; all else as of the whole. Atoms of radius 0 make no density. Throws Error(failed) if the
+/// wall of a grid with the caller's margin cuts the surface or no cell reaches the band (of a tile: none may),
+/// Error(usage) if the grid is too large to index, the band too narrow for the tolerance (docs/theory/field.md §5)
+/// or a value too large for a float.
 Band compute(const Hierarchy& h, const Options& options, Counts& counts, const BandFinder& find = find_band);
 
 } // namespace molmesh::density

@@ -1,6 +1,7 @@
 // plan.cpp — counts a coarse band; how the surface grows with the resolution is measured on many structures.
 #include "density/plan.hpp"
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <iterator>
 
@@ -55,12 +56,43 @@ Cost cost(const GridSize& size, int64_t atoms) {
           0.02 + 25e-9 * active + 1e-6 * n};
 }
 
+GridSize part_of(const Plan& plan, Tile tile) {
+  if (tile.whole())
+    return plan.size;
+  GridFrame frame;
+  frame.points = plan.size.points;
+  const Slab slab = slab_of(frame, tile);
+  const double coarser = double(plan.size.points[slab.axis]) / plan.counted.points[slab.axis];
+  const auto is_in = [&](Vec3i corner) {
+    const double at = (corner[slab.axis] + 4) * coarser;
+    return at >= slab.begin && at < slab.end;
+  };
+  int64_t active = 0, blocks = 0, inside = 0;
+  for (const BandBlock& b : plan.band.block)
+    if (is_in(b.corner)) {
+      ++blocks;
+      for (const uint64_t word : b.active)
+        active += std::popcount(word);
+    }
+  for (const Vec3i& c : plan.band.inside)
+    inside += is_in(c);
+  const auto share = [](int64_t all, int64_t part, int64_t counted) {
+    return counted > 0 ? times(all, double(part) / double(counted)) : 0;
+  };
+  GridSize s = plan.size;
+  s.active_points = share(s.active_points, active, plan.counted.active_points);
+  s.blocks = share(s.blocks, blocks, plan.counted.blocks);
+  s.inside_blocks = share(s.inside_blocks, inside, plan.counted.inside_blocks);
+  return s;
+}
+
 Plan plan(const Hierarchy& hierarchy, const Options& options) {
   constexpr double countable = 3e6, coarsest = 1.5;
   constexpr double active_points_of_atom = 24; // at 1 Å, no more
   Options o = options;
   o.progress = {};
   o.take = {};
+  o.tile = {};
   Plan p;
   const auto count = [&] {
     Counts counts;

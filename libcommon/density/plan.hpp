@@ -30,6 +30,9 @@ struct Plan {
   double margin = 0;      ///< Å
 };
 
+/// What a tile of the planned grid holds, as the counted band is distributed.
+GridSize part_of(const Plan& plan, Tile tile);
+
 /// Counts the band on a grid of h, 2h or 4h, the first of some three million active points, and no coarser than
 /// 1.5 Å where h is finer; throws as compute().
 Plan plan(const Hierarchy& hierarchy, const Options& options);

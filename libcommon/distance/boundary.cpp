@@ -189,11 +189,17 @@ Ball Arc::bounds() const {
   return {half, std::max(chord, rise)};
 }
 
-Boundary boundary_of(const UnionOfBalls& balls, int threads) {
+Boundary boundary_of(const UnionOfBalls& balls, int threads, const Region& region) {
   constexpr int64_t at_once = 128;
   const int64_t n = balls.size(), parts = (n + at_once - 1) / at_once;
   Boundary all;
   all.tolerance = tolerance_for(balls.balls());
+  // An arc is that of the lower number, which may be a ball that meets one of the region.
+  double largest = 0;
+  for (const Ball& b : balls.balls())
+    largest = std::max(largest, b.radius);
+  const Vec3d more = 2 * largest * Vec3d{1, 1, 1};
+  const Region around{region.lo - more, region.hi + more};
   std::vector<Part> part(static_cast<size_t>(parts));
   const auto each = [&](int64_t p, auto&& use) {
     for (int64_t i = p * at_once; i < std::min(n, (p + 1) * at_once); ++i)
@@ -204,6 +210,8 @@ Boundary boundary_of(const UnionOfBalls& balls, int threads) {
     BallArcs arcs;
     Part& to = part[static_cast<size_t>(p)];
     each(p, [&](int32_t i) {
+      if (!around.meets(caps.ball(i)))
+        return;
       const std::vector<Cap>& of = caps.find(i);
       if (of.empty())
         to.alone.push_back(i);
@@ -220,6 +228,10 @@ Boundary boundary_of(const UnionOfBalls& balls, int threads) {
     append(all.arc, p.arc);
     append(all.vertex, p.vertex);
   }
+  par::for_n(n, threads, 4096, [&](int64_t i) {
+    const auto b = static_cast<size_t>(i);
+    all.free[b] = all.free[b] && region.meets(balls.balls()[b]);
+  });
   all.cap_begin.resize(static_cast<size_t>(n) + 1);
   par::for_n(parts, threads, 1, [&](int64_t p) {
     BallCaps caps(balls, all.tolerance);

@@ -2,6 +2,7 @@
 // where three do.
 #pragma once
 #include "distance/union_of_balls.hpp"
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -54,7 +55,21 @@ struct Boundary {
   }
 };
 
-/// Time: proportional to the number of pairs of balls that meet. The same for any number of threads.
-Boundary boundary_of(const UnionOfBalls& balls, int threads);
+/// Where a boundary is wanted.
+struct Region {
+  Vec3d lo{-1e300, -1e300, -1e300}, hi{1e300, 1e300, 1e300}; ///< Å
+  bool meets(const Ball& b) const {
+    double gap2 = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double gap = std::max({lo[a] - b.center[a], b.center[a] - hi[a], 0.0});
+      gap2 += gap * gap;
+    }
+    return gap2 <= b.radius * b.radius;
+  }
+};
+
+/// Of balls that do not meet the region it has no part, or some, and calls none free. Time: proportional to the
+/// number of pairs of balls that meet, there. The same for any number of threads, and within any region.
+Boundary boundary_of(const UnionOfBalls& balls, int threads, const Region& region = {});
 
 } // namespace molmesh::distance

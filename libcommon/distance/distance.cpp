@@ -71,13 +71,13 @@ struct Found {
 
 class Search {
 public:
-  Search(const Balls& b, const density::Options& o, const GridFrame& frame)
-      : o_(o), frame_(frame), balls_(b.ball), boundary_(boundary_of(balls_, o.threads)) {
+  Search(const Balls& b, const density::Options& o, const GridFrame& frame) : o_(o), frame_(frame), balls_(b.ball) {
     const double below = std::log(o.band_lower), above = std::log(o.band_upper);
     // Corners of a band cell are at most a cell's diagonal away from its limits, since distances change by no more.
     const double diagonal = std::sqrt(3.0) * frame.spacing * (1 + 1e-9);
     scale_ = {b.offset, b.offset + length * below, b.offset + length * above, 0};
     wanted_ = {scale_.lower - diagonal, scale_.upper + diagonal};
+    boundary_ = boundary_of(balls_, o.threads, o.tile.whole() ? Region{} : region_of(o.tile));
     const double digits = 0.2 * std::min({o.tolerance, o.band_upper - 1, 1 - o.band_lower});
     scale_.dropped_bits = std::clamp(24 + static_cast<int>(std::floor(std::log2(digits))), 0, 20);
   }
@@ -86,10 +86,20 @@ public:
   void run(Band& band, density::Counts& counts, Take&& take);
 
 private:
+  /// What gives a place of the tile its distance is a ball that meets this, or lies on one.
+  Region region_of(Tile tile) const {
+    const density::BlockRange own = density::blocks_of(frame_, slab_of(frame_, tile));
+    const density::Box first = density::points_box(frame_, own.begin, 1),
+                       last = density::points_box(frame_, own.end, 1); // a block beyond
+    const double reach = std::max(std::abs(wanted_.lowest), std::abs(wanted_.highest)) + 2 * frame_.spacing;
+    const Vec3d more = reach * Vec3d{1, 1, 1};
+    return {first.lo - more, last.hi + more};
+  }
+
   const density::Options& o_;
   const GridFrame& frame_;
   const UnionOfBalls balls_;
-  const Boundary boundary_;
+  Boundary boundary_;
   Scale scale_{};
   Wanted wanted_{};
 };
@@ -97,7 +107,8 @@ private:
 template <class Take>
 void Search::run(Band& band, density::Counts& counts, Take&& take) {
   const Influence influence(balls_, boundary_, wanted_);
-  std::vector<NearBrick> brick = bricks_near(influence.places(), frame_, o_.threads);
+  std::vector<NearBrick> brick =
+      bricks_near(influence.places(), frame_, density::blocks_of(frame_, slab_of(frame_, o_.tile)), o_.threads);
   const auto n = static_cast<int64_t>(brick.size());
   constexpr int64_t at_once = 256;
   par::Pool<Worker> workers;
@@ -178,7 +189,7 @@ Band compute(const Hierarchy& h, const Body& body, const density::Options& o, de
       band.block.insert(band.block.end(), blocks.begin(), blocks.end());
     return false;
   });
-  if (band.active_points == 0)
+  if (band.active_points == 0 && o.tile.whole())
     fail_without_band(band.frame.spacing, margin, enough);
   par::sort(band.inside, o.threads);
   par::sort(band.block, o.threads, [](const BandBlock& a, const BandBlock& b) { return a.corner < b.corner; });

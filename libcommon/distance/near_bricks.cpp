@@ -1,14 +1,16 @@
 // near_bricks.cpp — halves the grid down to bricks, all cubes of one size at once.
 #include "distance/near_bricks.hpp"
-#include "density/culling/bricks.hpp"
 #include "par/par.hpp"
 #include <algorithm>
 #include <numeric>
 
 namespace molmesh::distance {
 
-std::vector<NearBrick> bricks_near(const std::vector<Ball>& balls, const GridFrame& frame, int threads) {
+std::vector<NearBrick> bricks_near(const std::vector<Ball>& balls, const GridFrame& frame,
+                                   const density::BlockRange& range, int threads) {
   using density::brick_blocks;
+  if (range.empty())
+    return {};
   int32_t blocks = density::blocks_across(frame);
   std::vector<NearBrick> cubes(1);
   cubes[0].corner = density::first_block(frame);
@@ -22,7 +24,7 @@ std::vector<NearBrick> bricks_near(const std::vector<Ball>& balls, const GridFra
       NearBrick& to = next[static_cast<size_t>(i)];
       const auto c = static_cast<int32_t>(i % 8);
       to.corner = from.corner + blocks * Vec3i{c >> 2, c >> 1 & 1, c & 1};
-      if (!density::in_grid(frame, to.corner))
+      if (!range.meets(to.corner, blocks))
         return;
       density::Box box = density::points_box(frame, to.corner, blocks);
       const Vec3d step = frame.spacing * Vec3d{1, 1, 1};

@@ -5,7 +5,7 @@
 namespace molmesh {
 
 struct Options : cli::Common {
-  std::vector<std::string> piece;
+  std::vector<std::string> piece, tiles;
   std::string combine = "sum";
   std::string band = "auto";
   double unknown = 0.02;
@@ -25,6 +25,12 @@ inline void describe(cli::Table& t, Options& o) {
         "with sum: how much of the sum may be missing at a point because a file does not hold it, in isovalues")
       .unit("X")
       .within(0, 0.09);
+  t.group("tiles");
+  t.add("--tiles", o.tiles,
+        "the tiles of one density, all of them in any order, instead of pieces: gives what one run gives")
+      .unit("FILE")
+      .several_at_once()
+      .not_reported();
   t.group("result");
   t.add("--band", o.band,
         "lower and upper limit of the densities to keep, in isovalues; auto: what all pieces know, for sums from "
@@ -43,11 +49,13 @@ inline void describe(cli::Table& t, Options& o) {
       "not change each other's surface, or where they were computed with a wide band (hier2density --band "
       "0.01,1.1); "
       "else densityjoin refuses, and hierjoin or --combine max will do. Pieces marked 'subtract' are cut out of "
-      "all others.";
+      "all others. "
+      "Tiles of one density (hier2density --tile) become the density that one run makes.";
   t.page.examples = {
       {"densityjoin --piece A.vdb --piece 'A.vdb translate=0,0,60' -o two.vdb",
        "a density and a copy 60 Å above it"},
       {"densityjoin LATTICE.join -o lattice.vdb", "by a plan"},
+      {"densityjoin --tiles TILE-*.vdb -o big.vdb", "the tiles of one density"},
       {"densityjoin --combine max --piece MAP.vdb --piece MODEL.vdb -o both.vdb", "a map and the model in it"},
       {"densityjoin --piece ALL.vdb --piece 'PORE.vdb combine=subtract' -o open.vdb", "one body without another"}};
   t.page.files = {{".join", "plan of pieces, read: formats/plan/PLAN.md"},

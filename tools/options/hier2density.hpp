@@ -17,6 +17,7 @@ struct Options : cli::Common, cli::PlanOptions {
   std::string surface = "gaussian";
   std::optional<double> probe, decay, isovalue;
   double tolerance = 1e-4;
+  std::string tile = "1/1";
   std::string band = "0.9,1.1", search = "neighbor", atoms = "bvh";
 };
 
@@ -39,17 +40,18 @@ inline void describe(cli::Table& t, Options& o) {
       .unit("Å⁻²")
       .positive()
       .shown_default("1");
-  t.add("--isovalue", o.isovalue, "the surface is where the field has this value; of gaussian alone")
+  t.add("--isovalue", o.isovalue, "the value of the field at the surface; of gaussian alone")
       .positive()
       .shown_default("1");
   t.add("--band", o.band, "limits of the band to keep, in multiples of the isovalue, 0 < LO < 1 < HI")
       .unit("LO,HI");
-  t.add("--tolerance", o.tolerance, "largest error of a value G, in units of max(1, G)").within(1e-6, 1e-2);
+  t.add("--tolerance", o.tolerance, "largest error of G, in units of max(1, G)").within(1e-6, 1e-2);
   t.group("search");
   t.add("--search", o.search, "neighbor: only near the surface, full: every grid point")
       .one_of({"neighbor", "full"});
   t.add("--atoms", o.atoms, "how contributing atoms are found: bvh: boxes of the hierarchy, kdtree, all")
       .one_of({"bvh", "kdtree", "all"});
+  t.add("--tile", o.tile, "slab I of N of the grid alone, for densityjoin --tiles").unit("I/N");
   cli::add_plan_options(t, o);
   t.page.about =
       "Computes the density of a molecular hierarchy on a grid, near the surface alone. The density is the sum "

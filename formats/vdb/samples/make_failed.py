@@ -20,6 +20,21 @@ def put(at, fmt, *values):
 scale = good.index(b"UniformScaleTranslateMap") + 24 + 24
 background = scale + 15 * 8 + 4
 
+
+
+def with_tile(number, count):
+    """The same file as a tile: three more metadata entries, behind which no length depends on them."""
+    def text(t):
+        return struct.pack("<I", len(t)) + t.encode()
+
+    first = good.index(text("name") + text("string"))
+    entries = [("tile", "int32", struct.pack("<i", number)), ("tiles", "int32", struct.pack("<i", count)),
+               ("tile_digest", "int64", struct.pack("<q", 1))]
+    more = b"".join(text(name) + text(kind) + struct.pack("<I", len(value)) + value for name, kind, value in entries)
+    count_of_all = struct.unpack_from("<I", good, first - 4)[0] + len(entries)
+    return good[:first - 4] + struct.pack("<I", count_of_all) + more + good[first:]
+
+
 samples = {
     "R1-empty": b"",
     "R1-not-openvdb": b"PDB" + good[3:],
@@ -38,6 +53,8 @@ samples = {
     "R9-not-uniform": put(scale + 8, "<d", 2.0),
     "R10-background-1": put(background, "<f", 1.0),
     "R11-outside-the-grid": put(after("grid_points", "vec3i"), "<i", 2),
+    "R12-a-tile-alone": with_tile(1, 2),
+    "R12-tile-3-of-2": with_tile(3, 2),
 }
 for name, data in samples.items():
     assert data != good, name

@@ -17,10 +17,14 @@ float usual_step(const Field& f, double h) {
   return static_cast<float>(std::exp(std::min(40.0, 4 * f.decay * f.steepest * h)));
 }
 
+/// Blocks of the first of the eight parts of a brick.
+constexpr uint64_t part_of_brick = 0x330033;
+
 } // namespace
 
-BrickSearch::BrickSearch(const Field& f, const GridFrame& frame, const SearchOptions& o, const BrickList& bricks)
-    : f_(f), frame_(frame), bricks_(bricks), full_(o.full), lower_(float_band(o).lower),
+BrickSearch::BrickSearch(const Field& f, const GridFrame& frame, const SearchOptions& o, const BlockRange& own,
+                         const BrickList& bricks)
+    : f_(f), frame_(frame), own_(own), bricks_(bricks), full_(o.full), lower_(float_band(o).lower),
       upper_(float_band(o).upper), far_below_(lower_ / usual_step(f, frame.spacing)),
       far_above_(upper_ * usual_step(f, frame.spacing)) {
   if (const double digits = budget_for(o).digits; digits > 0)
@@ -59,7 +63,18 @@ void BrickSearch::work_through_block(int b, int octant, Vec3i corner, BrickState
   s.known |= bit;
 }
 
+uint64_t BrickSearch::wanted(Vec3i brick) const {
+  if (own_.meets(brick, brick_blocks))
+    return every_block;
+  uint64_t blocks = 0;
+  for (int b = 0; b < blocks_a_brick; ++b)
+    blocks |= uint64_t{own_.meets(brick + block_at(b) - Vec3i{1, 1, 1}, 3)} << b;
+  return blocks;
+}
+
 void BrickSearch::work_through(const Brick& brick, BrickState& s, Workspace& w) const {
+  const uint64_t blocks = wanted(brick.corner);
+  const int64_t points = w.points;
   for (BrickWords* const words : {&w.below, &w.far_below})
     std::fill_n(&words->word[0][0], 8 * blocks_a_brick, every_block);
   for (BrickWords* const words : {&w.above, &w.far_above})
@@ -67,16 +82,19 @@ void BrickSearch::work_through(const Brick& brick, BrickState& s, Workspace& w) 
   w.block.enter(middle_of(brick.corner, brick_blocks), bricks_.clusters(brick));
   for (int octant = 0; octant < 8; ++octant) {
     const Vec3i part = 2 * Vec3i{octant >> 2, octant >> 1 & 1, octant & 1};
-    if (!in_grid(frame_, brick.corner + part) ||
+    if (!in_grid(frame_, brick.corner + part) || !(blocks & part_of_brick << (16 * part.x + 4 * part.y + part.z)) ||
         (!w.block.narrow(middle_of(brick.corner + part, 2), frame_.spacing) && !full_))
       continue;
     for (int i = 0; i < 8; ++i) {
       const Vec3i at = part + Vec3i{i >> 2, i >> 1 & 1, i & 1};
-      if (in_grid(frame_, brick.corner + at))
-        work_through_block(16 * at.x + 4 * at.y + at.z, i, brick.corner + at, s, w);
+      const int b = 16 * at.x + 4 * at.y + at.z;
+      if (in_grid(frame_, brick.corner + at) && blocks >> b & 1)
+        work_through_block(b, i, brick.corner + at, s, w);
     }
   }
   settle(s, w);
+  if (blocks != every_block) // another tile's, which counts them
+    w.points = points;
   need_neighbors(s, w.near_found);
 }
 
@@ -93,7 +111,7 @@ void BrickSearch::settle(BrickState& s, Workspace& w) const {
   s.sides = w.spares.sides();
   faced_from_words(w.below, s.sides->below);
   faced_from_words(w.above, s.sides->above);
-  if (s.known)
+  if (s.known && own_.meets(s.corner, brick_blocks))
     store(s, w);
 }
 
@@ -159,7 +177,7 @@ void BrickSearch::need_neighbors(BrickState& s, RowHints& hint) const {
       const Vec3i corner = s.corner + brick_blocks * direction(n + z + 1);
       if (at != bricks_.brick.end() && at->corner == corner)
         ++at;
-      else if ((z == 0 || open >> (4 + (z > 0)) & 1) && in_grid(frame_, corner))
+      else if ((z == 0 || open >> (4 + (z > 0)) & 1) && own_.meets(corner, brick_blocks))
         s.needed.push_back(corner);
     }
   }

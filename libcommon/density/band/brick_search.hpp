@@ -10,13 +10,17 @@ namespace molmesh::density {
 /// Keeps references to all that it is given. Calls for different bricks are independent.
 class BrickSearch {
 public:
-  BrickSearch(const Field& f, const GridFrame& frame, const SearchOptions& o, const BrickList& bricks);
-  /// Sides of the brick's points, and values where they may be wanted.
+  BrickSearch(const Field& f, const GridFrame& frame, const SearchOptions& o, const BlockRange& own,
+              const BrickList& bricks);
+  /// Sides of the brick's points, and values where they may be wanted; of a brick beyond `own` blocks the sides
+  /// alone, of the blocks next to them.
   void work_through(const Brick& brick, BrickState& s, Workspace& w) const;
   /// The brick's active points. below, above: of the 27 bricks around, as sides_around() gives them.
   void finish(BrickState& s, const FacedBits* const* below, const FacedBits* const* above, Workspace& w) const;
 
 private:
+  /// Blocks of a brick that are own, or next to own ones; by number.
+  uint64_t wanted(Vec3i brick) const;
   void work_through_block(int b, int octant, Vec3i corner, BrickState& s, Workspace& w) const;
   void settle(BrickState& s, Workspace& w) const;
   void store(BrickState& s, Workspace& w) const;
@@ -34,6 +38,7 @@ private:
 
   const Field& f_;
   const GridFrame& frame_;
+  const BlockRange& own_;
   const BrickList& bricks_;
   const bool full_; ///< compute every point
   const float lower_, upper_;

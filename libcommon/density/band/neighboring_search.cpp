@@ -17,7 +17,8 @@ namespace {
 class Search {
 public:
   Search(const Field& f, const GridFrame& frame, const SearchOptions& o)
-      : f_(f), frame_(frame), o_(o), arithmetic_(arithmetic_for(f, o.tolerance)) {}
+      : f_(f), frame_(frame), o_(o), arithmetic_(arithmetic_for(f, o.tolerance)),
+        own_(blocks_of(frame, slab_of(frame, o.tile))) {}
   Band run(SearchCounts& counts);
 
 private:
@@ -33,8 +34,9 @@ private:
   const GridFrame& frame_;
   const SearchOptions& o_;
   const Arithmetic arithmetic_;
-  BrickList bricks_;
-  const BrickSearch brick_{f_, frame_, o_, bricks_};
+  const BlockRange own_; ///< blocks that are wanted
+  BrickList bricks_;     ///< theirs, and those next to them
+  const BrickSearch brick_{f_, frame_, o_, own_, bricks_};
   par::Pool<Workspace> workspaces_;
   size_t turn_ = 0; ///< of Workspace::begin
   std::atomic<int64_t> done_{0};
@@ -95,6 +97,8 @@ void Search::find(SlabState& slab, size_t brick, Workspace& w) {
 void Search::finish(const SlabState& before, SlabState& slab, const SlabState& after, size_t brick,
                     Workspace& w) const {
   BrickState& s = slab.brick[brick];
+  if (!own_.meets(s.corner, brick_blocks))
+    return;
   const FacedBits *below[27], *above[27];
   s.closed = s.inside;
   if (sides_around(before, slab, after, s, w.near_finished, below, above))
@@ -105,8 +109,11 @@ void Search::finish(const SlabState& before, SlabState& slab, const SlabState& a
 /// one two before goes into the band, then the one before is finished.
 Band Search::run(SearchCounts& counts) {
   Band band = empty_band(f_, frame_, o_);
-  bricks_ = o_.atoms == AtomSearch::kdtree ? bricks_by_kd_tree(f_, frame_, o_.full, o_.threads)
-                                           : bricks_by_bvh(f_, frame_, o_.full, o_.threads);
+  const Slab slab_of_tile = slab_of(frame_, o_.tile);
+  if (!own_.empty()) {
+    const auto bricks_by = o_.atoms == AtomSearch::kdtree ? bricks_by_kd_tree : bricks_by_bvh;
+    bricks_ = bricks_by(f_, frame_, blocks_of(frame_, slab_of_tile, brick_blocks), o_.full, o_.threads);
+  }
   constexpr size_t many = size_t{1} << 22;
   if (!o_.take)
     band.block.reserve(std::min(blocks_a_brick * bricks_.brick.size(), many)); // pages come when they are used
@@ -143,7 +150,7 @@ Band Search::run(SearchCounts& counts) {
         band.storage.push_back(std::move(chunk));
   }
   band.active_points = counts.active_points;
-  band.info.analyzed_points = o_.full ? int64_t{frame_.points.x} * frame_.points.y * frame_.points.z : points;
+  band.info.analyzed_points = o_.full ? points_of(frame_, slab_of_tile) : points;
   return band;
 }
 
@@ -158,8 +165,15 @@ Band empty_band(const Field& f, const GridFrame& frame, const SearchOptions& o) 
   band.info.band_upper = o.band_upper;
   band.info.tolerance = o.tolerance;
   band.info.inside_value = static_cast<float>(std::max(2 * o.isovalue, o.band_upper));
-  band.info.atoms = f.atoms();
+  band.info.atoms = f.all_atoms;
   return band;
+}
+
+Box searched_box(const GridFrame& frame, Tile tile) {
+  const BlockRange r = blocks_of(frame, slab_of(frame, tile), brick_blocks);
+  // Cubes that are halved to bricks reach beyond the grid.
+  const Box first = points_box(frame, r.begin, brick_blocks), last = points_box(frame, r.end, brick_blocks);
+  return {first.lo, last.hi};
 }
 
 Budget budget_for(const SearchOptions& o) {

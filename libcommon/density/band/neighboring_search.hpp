@@ -10,6 +10,7 @@
 #include "density/culling/block_atoms.hpp"
 #include "density/field/field.hpp"
 #include "grid/band.hpp"
+#include "grid/tile.hpp"
 #include <functional>
 #include <span>
 
@@ -32,6 +33,7 @@ struct SearchOptions {
   bool full = false;                                       ///< compute every point of the grid
   AtomSearch atoms = AtomSearch::bvh;
   int threads = 1;
+  Tile tile;                                                 ///< the part of the grid whose blocks are wanted
   std::function<void(int64_t done, int64_t total)> progress; ///< called from any thread; may be empty
   BandSink take; ///< empty: the band keeps its blocks, and their memory grows with the surface
 };
@@ -45,8 +47,11 @@ struct FloatBand {
 FloatBand float_band(const SearchOptions& options);
 /// The band before the search: the frame and the numbers of `info`, without blocks.
 Band empty_band(const Field& f, const GridFrame& frame, const SearchOptions& options);
+/// Of the points whose sides a tile needs: its own, and those of the bricks next to it.
+Box searched_box(const GridFrame& frame, Tile tile);
 /// Finds the band: frame, values, sides and the numbers of `info`; the caller sets the texts. The field must be
-/// made with budget_for(options).far. Same result for any number of threads.
+/// made with budget_for(options).far; of a tile, keep_near() may have left it what lies near searched_box(). Same
+/// result for any number of threads; what tiles have, together, is what the whole has.
 Band find_band(const Field& f, const GridFrame& frame, const SearchOptions& options, SearchCounts& counts);
 
 } // namespace molmesh::density

@@ -19,11 +19,7 @@ Arithmetic arithmetic_for(const Field& f, double tolerance) {
   if (f.plain_above)
     return coarse ? Arithmetic::in_single : Arithmetic::in_double;
   // The smallest term of a group above the innermost level that can matter, as cutoffs see it.
-  double least = 0;
-  for (size_t c = 0; c < f.group.size(); ++c) {
-    const double p = f.level[0].exponent[f.group[c]];
-    least = std::min(least, p * (f.ln_peak[c] - f.decay * f.cutoff2[c]));
-  }
+  const double least = f.least_power;
   if (f.ln_highest > 700 - margin)
     return Arithmetic::in_logarithms;
   if (least < -700 + margin)
@@ -33,16 +29,13 @@ Arithmetic arithmetic_for(const Field& f, double tolerance) {
 
 BlockAtoms::BlockAtoms(const Field& f, const Budget& budget, double lower, double upper, Arithmetic a)
     : arithmetic(a), f_(f), budget_(budget), lower_(lower), upper_(upper),
-      within_(std::min(0.1, budget.within / (1.1 * f.steepest))), steep_(std::max(1.0, f.steepest)), least_(a) {
+      within_(std::min(0.1, budget.within / (1.1 * f.steepest))), steep_(std::max(1.0, f.steepest)), least_(a),
+      reach_(f.farthest_cutoff), largest_peak_(f.largest_peak) {
   double gentlest = infinity;
   for (const double p : f.level[0].exponent)
     gentlest = std::min(gentlest, p);
   for (const FieldLevel& l : f.level)
     steepest_.push_back(std::max(1.0, *std::max_element(l.exponent.begin(), l.exponent.end())));
-  for (const double peak : f.ln_peak)
-    largest_peak_ = std::max(largest_peak_, peak);
-  for (const double c2 : f.cutoff2)
-    reach_ = std::max(reach_, std::sqrt(c2));
   scaled_ = !f.plain_above || f.beyond_single() || gentlest * 100 < -std::log2(budget.block / 1e3);
 }
 

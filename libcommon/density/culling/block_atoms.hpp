@@ -112,8 +112,8 @@ private:
   const double steep_; ///< largest product of exponents up to the root, 1 or more
   const float rough_root_error_ = rough_root_error();
   const Arithmetic least_;       ///< the constructor's
-  double reach_ = 0;             ///< Å, the largest cutoff
-  double largest_peak_ = 0;      ///< ln
+  const double reach_;           ///< Å, the largest cutoff
+  const double largest_peak_;    ///< ln
   std::vector<double> steepest_; ///< largest exponent of each level, 1 or more
   double blur_ = 0;              ///< what single precision can do to ln of a bound; 0 where slack() covers that
   double blurred_ = 1;           ///< e^blur_

@@ -27,6 +27,20 @@ bool in_grid(const GridFrame& frame, Vec3i block) {
   return true;
 }
 
+BlockRange blocks_of(const GridFrame& frame, const Slab& slab, int32_t more) {
+  BlockRange r{first_block(frame), {}};
+  for (int a = 0; a < 3; ++a)
+    r.end[a] = static_cast<int32_t>((int64_t{frame.lower[a]} + frame.points[a] + 7) >> 3);
+  const int a = slab.axis;
+  if (slab.begin >= slab.end) {
+    r.end[a] = r.begin[a];
+    return r;
+  }
+  r.begin[a] = std::max(r.begin[a], (slab.begin >> 3) - more);
+  r.end[a] = std::min(r.end[a], ((slab.end + 7) >> 3) + more);
+  return r;
+}
+
 int32_t blocks_across(const GridFrame& frame) {
   int32_t blocks = brick_blocks;
   const Vec3i first = first_block(frame);

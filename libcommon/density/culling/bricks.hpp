@@ -2,7 +2,7 @@
 #pragma once
 #include "density/band/active_set_simd.hpp"
 #include "density/field/field.hpp"
-#include "grid/block_grid.hpp"
+#include "grid/tile.hpp"
 #include <span>
 #include <vector>
 
@@ -29,6 +29,21 @@ Box points_box(const GridFrame& frame, Vec3i corner, int32_t blocks);
 /// The first block (in blocks) of the grid, and whether a block has a point of it.
 Vec3i first_block(const GridFrame& frame);
 bool in_grid(const GridFrame& frame, Vec3i block);
+
+/// Blocks begin ≤ index < end.
+struct BlockRange {
+  Vec3i begin, end;
+  /// Whether the cube of blocks from `corner` on has some of them.
+  bool meets(Vec3i corner, int32_t blocks) const {
+    for (int a = 0; a < 3; ++a)
+      if (int64_t{corner[a]} + blocks <= begin[a] || corner[a] >= end[a])
+        return false;
+    return true;
+  }
+  bool empty() const { return begin.x >= end.x || begin.y >= end.y || begin.z >= end.z; }
+};
+/// Those of a grid that lie in a slab of it, and with them as many `more` on both sides of the slab.
+BlockRange blocks_of(const GridFrame& frame, const Slab& slab, int32_t more = 0);
 
 /// Width in blocks of the smallest cube of 8^n bricks that spans the grid from its first block.
 int32_t blocks_across(const GridFrame& frame);

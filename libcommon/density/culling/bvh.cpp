@@ -14,8 +14,8 @@ constexpr size_t at_once = 1024; // clusters
 
 /// Of `clusters`, those nearer than their cutoff to each of the eight cubes that begin at `corner`. Distances along
 /// an axis serve four cubes; summed in the order of distance2().
-void halve(const Field& f, const GridFrame& frame, std::span<const int32_t> clusters, Vec3i corner, int32_t blocks,
-           std::vector<int32_t>* lists) {
+void halve(const Field& f, const GridFrame& frame, const BlockRange& range, std::span<const int32_t> clusters,
+           Vec3i corner, int32_t blocks, std::vector<int32_t>* lists) {
   const Box low = points_box(frame, corner, blocks),
             high = points_box(frame, corner + blocks * Vec3i{1, 1, 1}, blocks);
   int32_t near[8][at_once];
@@ -36,13 +36,13 @@ void halve(const Field& f, const GridFrame& frame, std::span<const int32_t> clus
   }
   for (size_t i = 0; i < 8; ++i)
     if (const auto at = static_cast<int32_t>(i);
-        in_grid(frame, corner + blocks * Vec3i{at >> 2, at >> 1 & 1, at & 1}))
+        range.meets(corner + blocks * Vec3i{at >> 2, at >> 1 & 1, at & 1}, blocks))
       lists[i].assign(near[i], near[i] + found[i]);
 }
 
 /// The eight halves of every parent, `blocks` wide; without `every` those that have clusters.
-BrickList halves(const Field& f, const GridFrame& frame, const BrickList& parents, int32_t blocks, bool every,
-                 int threads) {
+BrickList halves(const Field& f, const GridFrame& frame, const BlockRange& range, const BrickList& parents,
+                 int32_t blocks, bool every, int threads) {
   struct Piece {
     size_t parent, first, count; // clusters of the parent
     std::vector<int32_t> lists[8];
@@ -58,7 +58,7 @@ BrickList halves(const Field& f, const GridFrame& frame, const BrickList& parent
   par::for_n(n, threads, 1, [&](int64_t i) {
     Piece& p = pieces[i];
     const Brick& parent = parents.brick[p.parent];
-    halve(f, frame, parents.clusters(parent).subspan(p.first, p.count), parent.corner, blocks, p.lists);
+    halve(f, frame, range, parents.clusters(parent).subspan(p.first, p.count), parent.corner, blocks, p.lists);
   });
   BrickList children;
   int64_t total = 0;
@@ -72,7 +72,7 @@ BrickList halves(const Field& f, const GridFrame& frame, const BrickList& parent
         pieces[p].to[c] = static_cast<size_t>(total);
         total += static_cast<int64_t>(pieces[p].lists[c].size());
       }
-      if (total > first || (every && in_grid(frame, corner)))
+      if (total > first || (every && range.meets(corner, blocks)))
         children.brick.push_back({corner, first, total});
     }
   }
@@ -89,10 +89,11 @@ BrickList halves(const Field& f, const GridFrame& frame, const BrickList& parent
 
 /// Bytes of the list that comes of these bricks at least: where a cluster's cutoff reaches all over a brick, all
 /// parts of the brick have the cluster.
-double sure_bytes(const Field& f, const GridFrame& frame, const BrickList& bricks, int32_t blocks) {
+double sure_bytes(const Field& f, const GridFrame& frame, const BlockRange& range, const BrickList& bricks,
+                  int32_t blocks) {
   double bytes = 0;
   for (const Brick& n : bricks.brick) {
-    if (!in_grid(frame, n.corner) || !in_grid(frame, n.corner + (blocks - 1) * Vec3i{1, 1, 1}))
+    if (!range.meets(n.corner, 1) || !range.meets(n.corner + (blocks - 1) * Vec3i{1, 1, 1}, 1))
       continue;
     const Box cube = points_box(frame, n.corner, blocks);
     int64_t everywhere = 0;
@@ -119,7 +120,7 @@ void require_memory(double bytes) {
 
 } // namespace
 
-BrickList bricks_by_bvh(const Field& f, const GridFrame& frame, bool every, int threads) {
+BrickList bricks_by_bvh(const Field& f, const GridFrame& frame, const BlockRange& range, bool every, int threads) {
   int32_t blocks = blocks_across(frame);
   BrickList bricks;
   bricks.cluster.resize(static_cast<size_t>(f.clusters()));
@@ -127,9 +128,9 @@ BrickList bricks_by_bvh(const Field& f, const GridFrame& frame, bool every, int 
   bricks.brick.push_back({first_block(frame), 0, f.clusters()});
   while (blocks > brick_blocks) {
     blocks /= 2;
-    bricks = halves(f, frame, bricks, blocks, every, threads);
+    bricks = halves(f, frame, range, bricks, blocks, every, threads);
     if (blocks >= 16 * brick_blocks) // what no memory holds is refused before the time is spent
-      require_memory(sure_bytes(f, frame, bricks, blocks));
+      require_memory(sure_bytes(f, frame, range, bricks, blocks));
   }
   std::sort(bricks.brick.begin(), bricks.brick.end(),
             [](const Brick& a, const Brick& b) { return a.corner < b.corner; });

@@ -7,8 +7,8 @@
 
 namespace molmesh::density {
 
-/// The bricks that have clusters nearer than their cutoff; with `every` all bricks of the grid. Same list at any
-/// number of threads. Throws std::bad_alloc early if the list is sure to exceed the memory.
-BrickList bricks_by_bvh(const Field& f, const GridFrame& frame, bool every, int threads);
+/// Of the bricks with blocks in `range`, those that have clusters nearer than their cutoff; with `every` all. Same
+/// list at any number of threads. Throws std::bad_alloc early if the list is sure to exceed the memory.
+BrickList bricks_by_bvh(const Field& f, const GridFrame& frame, const BlockRange& range, bool every, int threads);
 
 } // namespace molmesh::density

@@ -56,7 +56,8 @@ std::vector<int32_t> KdTree::near(const Box& box) const {
   return cluster;
 }
 
-BrickList bricks_by_kd_tree(const Field& f, const GridFrame& frame, bool every, int threads) {
+BrickList bricks_by_kd_tree(const Field& f, const GridFrame& frame, const BlockRange& range, bool every,
+                            int threads) {
   const KdTree tree(f);
   struct Asked {
     Vec3i corner;
@@ -65,7 +66,7 @@ BrickList bricks_by_kd_tree(const Field& f, const GridFrame& frame, bool every, 
   std::vector<Asked> asked;
   constexpr int32_t together = 4 * brick_blocks; // of a cube that has any, the tree is asked for every brick
   const auto descend = [&](auto&& self, Vec3i corner, int32_t blocks) -> void {
-    if (!in_grid(frame, corner) ||
+    if (!range.meets(corner, blocks) ||
         (!every && blocks >= together && tree.near(points_box(frame, corner, blocks)).empty()))
       return;
     if (blocks == brick_blocks)

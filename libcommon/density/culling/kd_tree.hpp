@@ -22,6 +22,7 @@ private:
 };
 
 /// As bricks_by_bvh(), by a kd-tree that is asked once for each brick near a cluster.
-BrickList bricks_by_kd_tree(const Field& f, const GridFrame& frame, bool every, int threads);
+BrickList bricks_by_kd_tree(const Field& f, const GridFrame& frame, const BlockRange& range, bool every,
+                            int threads);
 
 } // namespace molmesh::density

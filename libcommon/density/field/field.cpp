@@ -223,6 +223,16 @@ double highest_logarithm(const Field& f) {
   return highest;
 }
 
+void set_extremes(Field& f) {
+  f.all_atoms = f.atoms();
+  for (size_t c = 0; c < f.group.size(); ++c) {
+    const double p = f.level[0].exponent[f.group[c]];
+    f.least_power = std::min(f.least_power, p * (f.ln_peak[c] - f.decay * f.cutoff2[c]));
+    f.largest_peak = std::max(f.largest_peak, f.ln_peak[c]);
+    f.farthest_cutoff = std::max(f.farthest_cutoff, std::sqrt(f.cutoff2[c]));
+  }
+}
+
 double steepest_path(const Field& f) {
   std::vector<double> outer{1.0}, path;
   for (size_t l = f.level.size(); l-- > 0;) {
@@ -277,7 +287,46 @@ Field make_field(const Hierarchy& h, double decay, double far_error, int threads
     for (const double p : f.level[l].exponent)
       f.plain_above = f.plain_above && p == 1;
   set_cutoffs(f);
+  set_extremes(f);
   return f;
+}
+
+void keep_near(Field& f, const Box& box) {
+  size_t clusters = 0;
+  int64_t atoms = 0;
+  std::vector<FieldBody> bodies;
+  for (size_t c = 0; c < f.group.size(); ++c) { // places that are read are not yet written over
+    if (!(distance2(box, f.box[c]) < f.cutoff2[c]))
+      continue;
+    if (const int32_t body = f.body_of(static_cast<int64_t>(c)); body >= 0)
+      bodies.push_back({static_cast<int64_t>(clusters), f.body[static_cast<size_t>(body)].core});
+    const int64_t first = atoms;
+    for (int64_t a = f.begin[c]; a < f.begin[c + 1]; ++a, ++atoms) {
+      for (LargeArray<double>* v : {&f.x, &f.y, &f.z, &f.peak})
+        (*v)[atoms] = (*v)[a];
+      f.source[atoms] = f.source[a];
+    }
+    f.begin[clusters] = first;
+    f.group[clusters] = f.group[c];
+    f.box[clusters] = f.box[c];
+    f.ln_peak[clusters] = f.ln_peak[c];
+    f.cutoff2[clusters] = f.cutoff2[c];
+    ++clusters;
+  }
+  f.begin.resize(clusters + 1);
+  f.begin[clusters] = atoms;
+  const auto shrink = [](auto& v, size_t n) {
+    v.resize(n);
+    v.shrink_to_fit();
+  };
+  for (LargeArray<double>* v : {&f.x, &f.y, &f.z, &f.peak})
+    shrink(*v, static_cast<size_t>(atoms));
+  shrink(f.source, static_cast<size_t>(atoms));
+  for (std::vector<double>* v : {&f.ln_peak, &f.cutoff2})
+    shrink(*v, clusters);
+  shrink(f.group, clusters);
+  shrink(f.box, clusters);
+  f.body = std::move(bodies);
 }
 
 } // namespace molmesh::density

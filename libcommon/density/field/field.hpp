@@ -56,6 +56,10 @@ struct Field {
   double steepest = 1;           ///< Q: the largest product of exponents from an innermost group to the root
   bool plain_above = true;       ///< every exponent above the innermost level is 1
   double ln_highest = 0;         ///< no sum or power on the way to the root, and not G, has a larger logarithm
+  /// Of all clusters, also those that keep_near() leaves out: the largest ln_peak and 0, the largest cutoff in Å,
+  /// the least logarithm of an innermost group's power that can matter and 0; and how many atoms there are.
+  double largest_peak = 0, farthest_cutoff = 0, least_power = 0;
+  int64_t all_atoms = 0;
 
   int64_t clusters() const { return static_cast<int64_t>(group.size()); }
   int64_t atoms() const { return static_cast<int64_t>(x.size()); }
@@ -70,6 +74,9 @@ struct Field {
 /// far_error: bound on what all clusters beyond their cutoff2 together add to G anywhere (no unit). Throws
 /// Error(usage) when ln_highest is 1e8 or more.
 Field make_field(const Hierarchy& h, double decay, double far_error, int threads = 1);
+
+/// Leaves a field the clusters that are nearer than their cutoff to `box`. Groups keep their numbers.
+void keep_near(Field& f, const Box& box);
 
 /// The groups above the innermost level that are open while innermost groups pass by in ascending order.
 class OpenGroups {

@@ -158,3 +158,37 @@ TEST_CASE("the solvent-excluded body is what no probe reaches, by probes all ove
     CHECK(highest < step); // the nearest place may be one that is not taken
   }
 }
+
+TEST_CASE("distances of tiles are those of the whole grid") {
+  const Hierarchy h = cloud(150, 14, 5);
+  for (const distance::Body& body : bodies)
+    for (const double h_grid : {0.2, 0.7}) {
+      density::Options o;
+      o.spacing = h_grid;
+      const BlockGrid whole = compute(h, body, o);
+      const int32_t count = h_grid < 0.5 ? 3 : 2;
+      INFO("surface " << int(body.surface) << ", probe " << body.probe << ", spacing " << o.spacing);
+      size_t blocks = 0, inside = 0;
+      int64_t points = 0;
+      for (int32_t number = 1; number <= count; ++number) {
+        o.tile = {number, count};
+        o.threads = number;
+        const BlockGrid tile = compute(h, body, o);
+        for (const Vec3i& c : tile.inside)
+          REQUIRE(std::binary_search(whole.inside.begin(), whole.inside.end(), c));
+        for (size_t b = 0; b < tile.corner.size(); ++b) {
+          const auto at = std::lower_bound(whole.corner.begin(), whole.corner.end(), tile.corner[b]);
+          REQUIRE((at != whole.corner.end() && *at == tile.corner[b]));
+          const auto w = static_cast<size_t>(at - whole.corner.begin());
+          REQUIRE(std::equal(&tile.value[512 * b], &tile.value[512 * b] + 512, &whole.value[512 * w]));
+          REQUIRE(std::equal(&tile.active[8 * b], &tile.active[8 * b] + 8, &whole.active[8 * w]));
+        }
+        blocks += tile.corner.size();
+        inside += tile.inside.size();
+        points += tile.info.analyzed_points;
+      }
+      CHECK(blocks == whole.corner.size());
+      CHECK(inside == whole.inside.size());
+      CHECK(points == whole.info.analyzed_points);
+    }
+}
