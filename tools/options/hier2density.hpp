@@ -45,7 +45,7 @@ inline void describe(cli::Table& t, Options& o) {
       .shown_default("1");
   t.add("--band", o.band, "limits of the band to keep, in multiples of the isovalue, 0 < LO < 1 < HI")
       .unit("LO,HI");
-  t.add("--tolerance", o.tolerance, "largest error of G, in units of max(1, G)").within(1e-6, 1e-2);
+  t.add("--tolerance", o.tolerance, "largest error of G in units of max(1, G)").within(1e-6, 1e-2);
   t.group("search");
   t.add("--search", o.search, "neighbor: only near the surface, full: every grid point")
       .one_of({"neighbor", "full"});
