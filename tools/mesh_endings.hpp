@@ -1,5 +1,6 @@
 // mesh_endings.hpp — formats of meshes by the endings of files' names.
 #pragma once
+#include "base/error.hpp"
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,18 @@ inline const std::vector<std::pair<const char*, const char*>> mesh_endings = {
 inline std::string ending(const std::string& path) {
   const size_t name = path.rfind('/') + 1, dot = path.rfind('.');
   return dot == std::string::npos || dot <= name ? "" : path.substr(dot);
+}
+
+/// Throws Error(usage) that lists what there is.
+inline std::string format_by_ending(const std::string& output) {
+  const std::string end = ending(output);
+  std::string known;
+  for (const auto& [e, format] : mesh_endings) {
+    if (end == e)
+      return format;
+    known += (known.empty() ? "" : ", ") + std::string(e);
+  }
+  fail(Status::usage, "-o: found " + output + ", expected a name that ends in one of " + known + ", or --format");
 }
 
 } // namespace molmesh

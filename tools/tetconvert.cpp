@@ -10,6 +10,7 @@
 #include "formats/tetgen/tetgen.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "formats/xdmf/xdmf.hpp"
+#include "tools/charges_file.hpp"
 #include "tools/mesh_endings.hpp"
 #include <algorithm>
 #include <deque>
@@ -20,22 +21,13 @@ using namespace molmesh;
 namespace {
 
 std::string format_of(const Options& o) {
-  if (o.format != "auto")
-    return o.format;
-  const std::string end = ending(o.output);
-  std::string known;
-  for (const auto& [e, format] : mesh_endings) {
-    if (end == e)
-      return format;
-    known += (known.empty() ? "" : ", ") + std::string(e);
-  }
-  fail(Status::usage, "-o: found " + o.output + ", expected a name that ends in one of " + known + ", or --format");
+  return o.format == "auto" ? format_by_ending(o.output) : o.format;
 }
 
 /// The output's name without its ending.
-std::string stem(const Options& o, const std::string& format) {
+std::string stem(const Options& o, const std::string& option) {
   if (o.output == "-" || std::filesystem::is_other(o.output)) // a pipe, a terminal
-    fail(Status::usage, "--format " + format + ": several files, expected -o FILE");
+    fail(Status::usage, option + ": several files, expected -o FILE");
   const std::string end = ending(o.output);
   const bool known =
       std::any_of(mesh_endings.begin(), mesh_endings.end(), [&](const auto& e) { return end == e.first; });
@@ -46,11 +38,15 @@ std::string stem(const Options& o, const std::string& format) {
 
 std::vector<std::string> molmesh::Options::outputs() const {
   const std::string f = format_of(*this);
-  if (f != "tetgen" && f != "xdmf")
-    return {output};
-  const std::string name = stem(*this, f);
-  return f == "xdmf" ? std::vector{name + ".xdmf", name + ".h5"}
-                     : std::vector{name + ".node", name + ".ele", name + ".face"};
+  std::vector<std::string> files{output};
+  if (f == "tetgen" || f == "xdmf") {
+    const std::string name = stem(*this, "--format " + f);
+    files = f == "xdmf" ? std::vector{name + ".xdmf", name + ".h5"}
+                        : std::vector{name + ".node", name + ".ele", name + ".face"};
+  }
+  if (!charges.empty())
+    files.push_back(stem(*this, "--charges") + ".charges");
+  return files;
 }
 
 namespace {
@@ -87,6 +83,8 @@ int64_t write_mesh(cli::Run& run, Outputs& outputs, const Options& o, const std:
     (format == "stl"   ? formats::write_stl
      : format == "ply" ? formats::write_ply
                        : formats::write_off)(out, m, input);
+  if (!o.charges.empty())
+    write_charges_file(outputs.back().stream(), o.charges, m);
   for (cli::OutputFile& output : outputs) // the last gets its name first: no .xdmf is without its .h5
     run.complete(output);
   return unplaced;

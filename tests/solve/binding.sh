@@ -9,10 +9,7 @@ set -eu
 [ $# -ge 3 ] || { echo "usage: binding.sh BIN X.hier SPACING [BOX [SALT]]" >&2; exit 2; }
 bin=$(realpath "$1") hier=$(realpath "$2") spacing=$3 box=${4:-2x} salt=${5:-0}
 here=$(cd "$(dirname "$0")" && pwd)
-for python in python3 /usr/bin/python3; do
-  ! "$python" -c 'import dolfinx, meshio' 2>/dev/null || break
-  [ "$python" = python3 ] || { echo "SKIPPED: no DOLFINx (Debian: python3-dolfinx-real python3-meshio)"; exit 77; }
-done
+python=$("$here/dolfinx.sh") || { status=$?; echo "$python"; exit $status; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"

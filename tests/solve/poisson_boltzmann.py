@@ -3,8 +3,8 @@
     poisson_boltzmann.py X.xdmf X.charges X.vtu [--eps REGION=ε …] [--salt mol/l] [--salt-regions REGION …]
                          [--equation linear|nonlinear]
 
-X.xdmf has the molecule (region 1) and its surroundings, by `tetconvert X.vtu -o X.xdmf`. X.charges: the number of charges, then X Y Z
-CHARGE RADIUS of each (`make -f Makefile.pipeline X.charges`). --eps: the relative permittivity of a region, by default 2 in region 1 and 78.54 in all
+X.xdmf has the molecule (region 1) and its surroundings, and X.charges the number of charges, then X Y Z CHARGE RADIUS of each: both
+by `tetconvert --charges X.hier X.vtu -o X.xdmf`. --eps: the relative permittivity of a region, by default 2 in region 1 and 78.54 in all
 others: a membrane that is a region of its own has its own. --salt-regions hold the salt, 1:1, at 298.15 K: without it
 those with the permittivity of region 2. All charges must lie in
 regions of one permittivity. X.vtu receives the potential on the molecular surface, in kT/e. Prints what poisson_boltzmann.edp prints.
@@ -93,7 +93,8 @@ def main():
     permittivity = {region: given.get(region, 2 if region == 1 else 78.54) for region in set(regions.values.tolist()) | {1, 2}}
     eps_out = permittivity[2]
     kappa2 = 8 * np.pi * COULOMB / (eps_out * KT) * 6.02214076e-4 * o.salt  # Å⁻²
-    charges = np.loadtxt(o.charges, skiprows=1, ndmin=2)[:, :4]
+    with open(o.charges) as lines:
+        charges = np.loadtxt(lines, max_rows=int(next(lines)), ndmin=2)[:, :4]
     charged = charges[charges[:, 3] != 0]
     if not len(charged):
         sys.exit(f"{o.charges}: found no charge, expected at least one")

@@ -6,7 +6,7 @@ namespace molmesh {
 
 struct Options : cli::Common {
   Options() { uses_threads = false; }
-  std::string format = "auto";
+  std::string format = "auto", charges;
   MeshInput mesh;
   std::vector<std::string> outputs() const override;
 };
@@ -21,6 +21,11 @@ inline void describe(cli::Table& t, Options& o) {
       .unit("FORMAT")
       .one_of({"auto", "gmsh", "gmsh-binary", "gmsh22", "medit", "tetgen", "xdmf", "mcsf", "abaqus", "nastran",
                "vtu", "stl", "ply", "off"});
+  t.add("--charges", o.charges,
+        "the structure (.hier) that the mesh was made from: writes its charges, and the mesh point nearest to "
+        "each, beside the "
+        "output: X.charges beside X.msh")
+      .unit("FILE");
   describe_mesh_input(t, o.mesh);
   t.page.about =
       "Reads a mesh of any format that is read and writes it in another. Regions, boundaries and named boundaries "
@@ -29,6 +34,7 @@ inline void describe(cli::Table& t, Options& o) {
       "no place for is said on standard error. A format of several files is named by any of them.";
   t.page.examples = {{"tetconvert 1tii.vtu -o 1tii.msh", "for Gmsh, with physical groups and their names"},
                      {"tetconvert 1tii.vtu -o 1tii.xdmf", "for DOLFINx: writes 1tii.xdmf and 1tii.h5"},
+                     {"tetconvert --charges 1tii.hier 1tii.vtu -o 1tii.mesh", "for FreeFEM, with 1tii.charges"},
                      {"tetconvert 1tii.vtu -o 1tii.stl", "the molecular surface alone"},
                      {"tetconvert --scale 10 PART.msh -o part.vtu", "a mesh of Gmsh in nanometres as .vtu in Å"}};
   t.page.files = {{".vtu", "mesh (VTK), read and written: formats/vtu/VTUv1.md"},
@@ -39,6 +45,8 @@ inline void describe(cli::Table& t, Options& o) {
                   {".bdf, .nas", "Nastran, written: formats/nastran/NASTRAN.md"},
                   {".node, .ele, .face", "TetGen, written: formats/tetgen/TETGEN.md"},
                   {".xdmf, .h5", "XDMF and HDF5, written: formats/xdmf/XDMF.md"},
+                  {".hier", "molecular hierarchy, read: formats/hier/HIERv1.md"},
+                  {".charges", "charges and the mesh points nearest to them, written: formats/charges/CHARGES.md"},
                   {".m", "FEtk's MCSF, written: formats/mcsf/MCSF.md"},
                   {".stl, .ply, .off", "molecular surface, written: formats/surface/SURFACE.md"}};
   t.page.see_also = {"tetsmooth", "tetlabel", "tetstat"};
