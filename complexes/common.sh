@@ -48,3 +48,13 @@ check() {
 
 # spacing Å: of GRID points along an edge of that length
 spacing() { awk -v l="$1" -v n="$GRID" 'BEGIN { printf "%.6g", l / (n - 1) }'; }
+
+# strand: strand.hier, which stands for a piece of tropomyosin: two copies of a helix of PDB 1SU4 side by side, along z, their middle in the origin.
+strand() {
+  pdb2hier -q --select '//A/740-778' "$data/paper/1su4.pdb.gz" -o helix.hier
+  cat >strand.join <<'END'
+join 1
+piece helix.hier chains=A:Tm matrix=-0.98448,0,-0.17551,54.693,0.09038,0.8572,-0.50699,-7.174,0.15044,-0.51498,-0.8439,15.333 lattice=1,2,1,0,-9.8,0
+END
+  hierjoin -q strand.join -o strand.hier
+}

@@ -11,15 +11,8 @@
 needs paper/actin_filament_28mer_for_2w4u_derived.pdb.gz paper/1su4.pdb.gz typical/1aki.pdb
 
 pdb2hier -q --hydrogens drop "$data/paper/actin_filament_28mer_for_2w4u_derived.pdb.gz" -o actin.hier
-pdb2hier -q --select '//A/740-778' "$data/paper/1su4.pdb.gz" -o helix.hier
 pdb2hier -q "$data/typical/1aki.pdb" -o knob.hier
-
-# Two helices side by side, along z, their middle in the origin.
-cat >strand.join <<'END'
-join 1
-piece helix.hier chains=A:Tm matrix=-0.98448,0,-0.17551,54.693,0.09038,0.8572,-0.50699,-7.174,0.15044,-0.51498,-0.8439,15.333 lattice=1,2,1,0,-9.8,0
-END
-hierjoin -q strand.join -o strand.hier
+strand
 
 # A strand is tilted as the groove is; the next one is 55 Å further and 27.2° round, as every second actin. The last step leads from one
 # groove to the other.

@@ -13,14 +13,8 @@
 needs paper/actin_filament_28mer_for_2w4u_derived.pdb.gz paper/1su4.pdb.gz
 
 pdb2hier -q --hydrogens drop --select '//A' "$data/paper/actin_filament_28mer_for_2w4u_derived.pdb.gz" -o actin_1.hier
-pdb2hier -q --select '//A/740-778' "$data/paper/1su4.pdb.gz" -o helix.hier
 pdb2hier -q "$data/paper/1su4.pdb.gz" -o head.hier
-
-cat >strand.join <<'END'
-join 1
-piece helix.hier chains=A:Tm matrix=-0.98448,0,-0.17551,54.693,0.09038,0.8572,-0.50699,-7.174,0.15044,-0.51498,-0.8439,15.333 lattice=1,2,1,0,-9.8,0
-END
-hierjoin -q strand.join -o strand.hier
+strand
 
 cat >lattice_filament.join <<'END'
 join 1

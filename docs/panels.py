@@ -215,19 +215,19 @@ def scale_bar(renderer):
     renderer.AddActor2D(text(f"{length:g} Å", (width - 12 - across / 2, 17), 13, centred=True))
 
 
-def colour_bar(renderer, words, low, high, shade):
-    """At the lower left; `shade`: from values to colours."""
+def colour_bar(renderer, words, low, high, shade, unit="°", ticks=range(0, 181, 20)):
+    """At the lower left; `shade`: from values to colours; `ticks`: those besides the ends that have room."""
     width, steps = 200, 100
     for i in range(steps):
         colour = shade(np.array([low + (high - low) * (i + 0.5) / steps]))[0] / 255
         renderer.AddActor2D(rectangle(16 + i * width / steps, 24, width / steps + 1, 10, colour))
-    for value in [low, *(v for v in range(0, 181, 20) if low + 5 < v < high), high]:
-        renderer.AddActor2D(text(f"{value:g}°", (16 + (value - low) / (high - low) * width, 8), 12, centred=True))
+    for value in [low, *(v for v in ticks if low + (high - low) / 14 < v < high), high]:
+        renderer.AddActor2D(text(f"{value:g}{unit}", (16 + (value - low) / (high - low) * width, 8), 12, centred=True))
     renderer.AddActor2D(text(words, (12, 39), 13))
 
 
 def draw(panels, image, columns=None, size=(440, 420), bar=None):
-    """Panels row by row, into a PNG. bar: the colour bar of the first one, (words, low, high, shade)."""
+    """Panels row by row, into a PNG. bar: the colour bar of the first one, what colour_bar takes."""
     columns = columns or len(panels)
     rows = -(-len(panels) // columns)
     window = vtk.vtkRenderWindow()

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # pictures.sh BIN [FOLDER [NAME…]] — the pictures of the documents, by the programs in BIN, into FOLDER (here); or these alone.
 #
-# Those of 1TII come from tests/data/1tii.pdb. The paper's figures (figure1 to figure11) need public structures: MOLMESH_TEST_DATA names
+# Those of 1TII come from tests/data/1tii.pdb, the potential from tests/data/1l2y.pqr (and FreeFEM). The paper's figures (figure1 to figure11) need public structures: MOLMESH_TEST_DATA names
 # their folder, and without it they are left as they are.
 # Needs VTK's Python module (Debian: python3-vtk9); without a display also xvfb-run (xvfb, xauth). pngquant, where it is, makes them smaller.
 set -eu
 docs=$(cd "$(dirname "$0")" && pwd)
-PATH=$(realpath "$1"):$PATH
+bin=$(realpath "$1") PATH=$(realpath "$1"):$PATH
 folder=$(realpath "${2:-$docs}")
 shift $(($# < 2 ? $# : 2))
 asked=" $* "
@@ -122,6 +122,11 @@ domains() {
   draw figures.py domains.png joined.vtu surface 'P_D 0.1' apart.vtu surface 'P_D 1' --same --view=-90,65,20 --size 400,390 \
     --colour domain:pentamer=$red --rest $green --legend "pentamer=$red" --legend "A=$green"
 }
+potential() { # by FreeFEM
+  cp "$docs/../tests/data/1l2y.pqr" .
+  make -s -f "$docs/../Makefile.pipeline" BIN="$bin" HIER2DENSITY_FLAGS='--surface ses --spacing 0.35' 1l2y.energy
+  draw potential.py 1l2y.potential.vtu potential.png
+}
 
 # The paper's figures: docs/figures.md says what stands for what.
 
@@ -209,6 +214,7 @@ picture spacings 32
 picture labels 128
 picture chains 64
 picture domains 64
+picture potential 128
 if [ -n "$data" ]; then
   picture figure1 96
   picture figure3 64

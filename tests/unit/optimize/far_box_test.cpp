@@ -1,40 +1,20 @@
 // far_box_test.cpp — walls so far away that elements there are larger than tetsmooth's parts.
-#include "contour/contour.hpp"
-#include "density/density.hpp"
+#include "boxed_mesh.hpp"
 #include "optimize/optimize.hpp"
 #include "optimize/schedule/schedule.hpp"
 #include "push_off.hpp"
 #include "recovery_pass.hpp"
-#include "unit/contour/checked.hpp"
 #include <catch2/catch.hpp>
 
 using namespace molmesh;
-namespace {
-
-BlockGrid density_of(const Hierarchy& h, double spacing) {
-  density::Options options;
-  options.spacing = spacing;
-  density::Counts counts;
-  return to_block_grid(density::compute(h, options, counts), 1);
-}
-
-TetMesh mesh_of(const BlockGrid& grid, contour::Options::Meshed meshed, double scale) {
-  contour::Options options;
-  options.meshed = meshed;
-  options.box.kind = contour::BoxRequest::factor;
-  options.box.scale = scale;
-  return test::mesh_of(grid, options);
-}
-
-} // namespace
 
 TEST_CASE("in a far box elements larger than parts are improved too") {
   Hierarchy h;
   h.atom = {{{0.1, 0.2, 0.3}, 1.7}, {{1.3, 0.9, -0.4}, 1.5}, {{-0.6, 1.1, 1.2}, 1.8}};
-  const BlockGrid grid = density_of(h, 0.5);
+  const BlockGrid grid = test::density_of(h, 0.5);
   const double scale = GENERATE(150., 400., 1000.);
   CAPTURE(scale);
-  TetMesh mesh = mesh_of(grid, contour::Options::exterior, scale);
+  TetMesh mesh = test::mesh_within(grid, contour::Options::exterior, contour::BoxRequest::factor, scale);
   const optimize::Result result = optimize::improve(mesh, &grid, {});
   CHECK(result.before.above_140 > 0);
   CHECK(result.after.above_140 == 0);
@@ -47,8 +27,8 @@ TEST_CASE("in a far box most points off the isosurface come back in one pass") {
   Hierarchy h;
   for (int i = 0; i < 27; ++i)
     h.atom.push_back({{12. * (i % 3), 12. * (i / 3 % 3), 12. * (i / 9)}, 2});
-  const BlockGrid grid = density_of(h, 1);
-  TetMesh mesh = mesh_of(grid, contour::Options::both, 60);
+  const BlockGrid grid = test::density_of(h, 1);
+  TetMesh mesh = test::mesh_within(grid, contour::Options::both, contour::BoxRequest::factor, 60);
   optimize::improve(mesh, &grid, {});
   optimize::DynamicMesh m = optimize::build(mesh, 180, 1);
   const Isosurface surface(grid, 1);

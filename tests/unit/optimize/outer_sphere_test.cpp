@@ -1,30 +1,13 @@
 // outer_sphere_test.cpp — the outer sphere of a mesh: its points slide on it, its triangles stay flat on it.
-#include "contour/contour.hpp"
-#include "density/density.hpp"
+#include "boxed_mesh.hpp"
 #include "optimize/acceptance/sag.hpp"
 #include "optimize/optimize.hpp"
-#include "unit/contour/checked.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 using namespace molmesh;
 namespace {
-
-BlockGrid density_of(const Hierarchy& h, double spacing) {
-  density::Options options;
-  options.spacing = spacing;
-  density::Counts counts;
-  return to_block_grid(density::compute(h, options, counts), 1);
-}
-
-TetMesh within_sphere(const BlockGrid& grid, contour::Options::Meshed meshed, double scale) {
-  contour::Options options;
-  options.meshed = meshed;
-  options.box.kind = contour::BoxRequest::sphere_factor;
-  options.box.scale = scale;
-  return test::mesh_of(grid, options);
-}
 
 double largest_sag_of(const TetMesh& m) {
   double most = 0;
@@ -40,12 +23,12 @@ double largest_sag_of(const TetMesh& m) {
 TEST_CASE("points of the outer sphere stay on it while elements get good", "[slow]") {
   Hierarchy h;
   h.atom = {{{0.1, 0.2, 0.3}, 1.7}, {{1.3, 0.9, -0.4}, 1.5}, {{-0.6, 1.1, 1.2}, 1.8}};
-  const BlockGrid grid = density_of(h, 0.5);
+  const BlockGrid grid = test::density_of(h, 0.5);
   const double scale = GENERATE(2., 7., 100.);
   for (const auto meshed : {contour::Options::exterior, contour::Options::both})
     for (const bool with_density : {true, false}) {
       CAPTURE(scale, int(meshed), with_density);
-      TetMesh mesh = within_sphere(grid, meshed, scale);
+      TetMesh mesh = test::mesh_within(grid, meshed, contour::BoxRequest::sphere_factor, scale);
       const Sphere sphere = *mesh.sphere;
       optimize::Options options;
       options.sharp = 180;
@@ -65,7 +48,8 @@ TEST_CASE("points of the outer sphere stay on it while elements get good", "[slo
 TEST_CASE("what lies on the sphere is round, and of another label or off it is not") {
   Hierarchy h;
   h.atom = {{{0, 0, 0}, 3}};
-  TetMesh mesh = within_sphere(density_of(h, 0.5), contour::Options::exterior, 2);
+  TetMesh mesh = test::mesh_within(test::density_of(h, 0.5), contour::Options::exterior,
+                                   contour::BoxRequest::sphere_factor, 2);
   std::vector<uint8_t> on(mesh.point.size(), 0);
   for (size_t t = 0; t < mesh.tri.size(); ++t)
     for (const int32_t v : mesh.tri[t])
