@@ -1,5 +1,6 @@
 // plan.hpp — what the programs tell before they work: sizes, memory, seconds, and the spacing that would fit.
 #pragma once
+#include "base/grouped.hpp"
 #include "cli/plan.hpp"
 #include "contour/plan.hpp"
 #include "density/plan.hpp"
@@ -46,6 +47,13 @@ std::string fitting_spacing(double h, int64_t limit, Need need) {
   return "no spacing fits";
 }
 
+/// Says before the work what a few bytes of input become: over 256 MB, and over a thousand times what came in.
+inline void say_growth(const cli::Run& run, const std::string& what, int64_t memory, int64_t bytes_in) {
+  if (memory > int64_t{256} << 20 && memory / 1000 > bytes_in)
+    run.note(what + ", about " + cli::size_text(memory) +
+             " of memory, from little: --plan tells more, --max-mem limits it");
+}
+
 inline void add_mesh(cli::Value& plan, const contour::Plan& p, double speed) {
   plan.add(
       {{"elements", p.elements}, {"points", p.points}, {"memory_bytes", p.memory}, {"seconds", p.seconds / speed}});
@@ -64,8 +72,15 @@ inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, 
   const int64_t limit = p.memory_limit();
   if (!p.plan) { // a bound first: most runs need no plan
     density::GridSize most;
-    most.active_points = int64_t(std::min(24 * double(atoms) / (d.spacing * d.spacing), 1e17));
-    if (limit < 0 || (d.grid_points == 0 && density::cost(most, atoms).memory <= limit))
+    most.active_points = int64_t(std::min(density::most_active_points(h) / (d.spacing * d.spacing), 1e17));
+    const int64_t bound = density::cost(most, atoms).memory;
+    if (d.grid_points == 0 && d.tile.whole()) {
+      say_growth(run, "a density of up to " + grouped(most.active_points) + " points", bound, 50 * atoms);
+      if (double(most.active_points) * d.spacing * d.spacing >
+          100 * double(atoms)) // great balls: no count for them
+        cli::require_memory(p, bound / 2, "a density at " + cli::length_text(d.spacing), "a larger --spacing fits");
+    }
+    if (limit < 0 || (d.grid_points == 0 && bound <= limit))
       return false;
   }
   density::Plan plan = density::plan(h, d);
@@ -119,7 +134,14 @@ bool mesh_is_planned(const cli::Common& o, const cli::PlanOptions& p, const cont
                      options.sizes.empty() && most_elements == 0;
   Chain chain{size, contour::expected_leaves(size.spacing, size.active_points)};
   if (!p.plan) {
+    if (options.box.kind == contour::BoxRequest::tight) { // as fine as the grid at all of the walls
+      const Vec3i n = grid().frame.points;
+      chain.leaves.all += 4. / 3 * (double(n.x) * n.y + double(n.y) * n.z + double(n.z) * n.x);
+    }
     const int64_t expected = chain.mesh(options.meshed).memory;
+    if (most_elements == 0)
+      say_growth(run, "a mesh of up to " + grouped(chain.mesh(options.meshed).elements) + " elements", expected,
+                 5 * size.active_points + 600 * size.blocks);
     if (limit < 0 || (usual && 2 * expected < limit))
       return false;
     if (usual && 2 * expected > 3 * limit)

@@ -17,6 +17,10 @@ constexpr Grown grown[] = {{0.125, 0.44, 0.65},   {0.25, 0.275, 0.55},  {0.375, 
                            {0.5, 0.126, 0.321},   {0.75, 0.054, 0.128}, {1, 0, 0},
                            {1.5, -0.109, -0.135}, {2, -0.213, -0.174},  {3, -0.403, -0.223}};
 
+constexpr double points_of_atom = 24;   // at 1 Å, no more
+constexpr double points_of_sphere = 45; // for each Å² of its radius squared
+constexpr double largest_radius = 6;    // Å, of beads that stand for groups of atoms
+
 /// Between two spacings along ln h, beyond the table as between its last two.
 double interpolated(double Grown::*ln, double spacing) {
   size_t i = 1;
@@ -86,9 +90,15 @@ GridSize part_of(const Plan& plan, Tile tile) {
   return s;
 }
 
+double most_active_points(const Hierarchy& hierarchy) {
+  double n = 0;
+  for (const Atom& a : hierarchy.atom)
+    n += a.radius > largest_radius ? points_of_sphere * a.radius * a.radius : points_of_atom;
+  return n;
+}
+
 Plan plan(const Hierarchy& hierarchy, const Options& options) {
   constexpr double countable = 3e6, coarsest = 1.5;
-  constexpr double active_points_of_atom = 24; // at 1 Å, no more
   Options o = options;
   o.progress = {};
   o.take = {};
@@ -116,7 +126,7 @@ Plan plan(const Hierarchy& hierarchy, const Options& options) {
   }
   o.spacing = spacing;
   while (o.spacing * 2 <= coarsest &&
-         active_points_of_atom * static_cast<double>(hierarchy.atom.size()) / (o.spacing * o.spacing) > countable)
+         points_of_atom * static_cast<double>(hierarchy.atom.size()) / (o.spacing * o.spacing) > countable)
     o.spacing *= 2;
   count();
   p.size = at_spacing(p.counted, spacing);

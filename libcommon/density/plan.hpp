@@ -16,6 +16,10 @@ struct GridSize {
 /// The same structure on a grid of another spacing. Exact for the spacing that was counted.
 GridSize at_spacing(const GridSize& counted, double spacing);
 
+/// Times h²: what the active points of a grid of h seldom exceed. 24 for an atom among others, and the whole sphere
+/// of one that is larger than atoms are.
+double most_active_points(const Hierarchy& hierarchy);
+
 /// Of hier2density on a grid of that size: bytes at the peak, and seconds of one core of the machine of
 /// docs/benchmarks.md.
 struct Cost {
