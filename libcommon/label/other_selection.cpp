@@ -1,0 +1,49 @@
+// other_selection.cpp — compares a mesh's surface with the atoms that should have made it.
+#include "label/other_selection.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace molmesh::label {
+namespace {
+
+constexpr double most_share = 0.05;
+
+/// Share of the triangles where G is not near the isovalue of any surface: e^-25 is 3.6 Å beyond a carbon atom.
+double share_bare(const TetMesh& mesh, const Places& places, const Labels& labels) {
+  const auto first = labels.ln_field.begin() + places.tets, last = labels.ln_field.end();
+  const auto bare =
+      std::count_if(first, last, [&](double ln) { return !(std::fabs(ln - std::log(mesh.isovalue)) <= 25); });
+  return first == last ? 0 : double(bare) / double(last - first);
+}
+
+/// Share of the atoms beyond the box of the mesh's molecule. Parts that density2tet drops are few atoms.
+double share_beyond(const Hierarchy& h, const Places& places) {
+  constexpr double room = 3; // Å
+  if (places.centroid.empty() || h.atom.empty())
+    return 0;
+  Vec3d lo = places.centroid[0], hi = lo;
+  for (const Vec3d& p : places.centroid)
+    for (int k = 0; k < 3; ++k)
+      lo[k] = std::min(lo[k], p[k]), hi[k] = std::max(hi[k], p[k]);
+  const auto beyond = std::count_if(h.atom.begin(), h.atom.end(), [&](const Atom& a) {
+    bool out = false;
+    for (int k = 0; k < 3; ++k)
+      out = out || a.center[k] < lo[k] - room || a.center[k] > hi[k] + room;
+    return out;
+  });
+  return double(beyond) / double(h.atom.size());
+}
+
+} // namespace
+
+std::string other_selection(const Hierarchy& h, const TetMesh& mesh, const Places& places, const Labels& labels) {
+  if (h.source.empty() || h.source != mesh.source)
+    return "";
+  const double bare = share_bare(mesh, places, labels), beyond = share_beyond(h, places);
+  if (std::max(bare, beyond) <= most_share)
+    return "";
+  return std::to_string(std::lround(100 * std::max(bare, beyond))) +
+         (bare >= beyond ? " % of the surface is far from its atoms" : " % of its atoms lie beyond the mesh");
+}
+
+} // namespace molmesh::label
