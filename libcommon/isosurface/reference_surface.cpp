@@ -2,10 +2,13 @@
 #include "isosurface/reference_surface.hpp"
 #include "geom/morton.hpp"
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace molmesh {
 namespace {
+
+constexpr int most_looked_at = 48; // triangles for one closest point, usually
 
 // Closest point of triangle a b c to p, by the regions of its corners, edges and face (Ericson 2005, 5.1.5).
 Vec3d closest_on(Vec3d a, Vec3d b, Vec3d c, Vec3d p) {
@@ -45,6 +48,8 @@ double typical(const std::vector<double>& edges) {
 } // namespace
 
 ReferenceSurface::ReferenceSurface(const TetMesh& mesh, const std::vector<uint8_t>& take) {
+  static std::atomic<uint64_t> surfaces{0};
+  number_ = ++surfaces;
   std::vector<double> edges;
   for (size_t t = 0; t < mesh.tri.size(); ++t) {
     if (!take[t])
@@ -84,13 +89,41 @@ void ReferenceSurface::sort_along_curve() {
     triangle_[t] = sorted[t].second;
 }
 
+/// Answers at places where many triangles are near: the same place is asked for again and again.
+struct ReferenceSurface::Answer {
+  uint64_t surface = 0; ///< its number; 0: none
+  Vec3d from, point;
+  double reach = 0;
+  const Triangle* nearest = nullptr;
+};
+
+ReferenceSurface::Answer& ReferenceSurface::kept_answer(Vec3d p, double reach) {
+  constexpr int bits = 14;
+  thread_local std::vector<Answer> kept(size_t{1} << bits);
+  uint64_t h = 0;
+  for (const double x : {p.x, p.y, p.z, reach})
+    h = (h ^ std::bit_cast<uint64_t>(x)) * 0x9E3779B97F4A7C15u, h ^= h >> 29;
+  return kept[h * 0xFF51AFD7ED558CCDu >> (64 - bits)];
+}
+
 const ReferenceSurface::Triangle* ReferenceSurface::closest(Vec3d p, double reach, Vec3d& point) const {
+  const bool many = many_.load(std::memory_order_relaxed);
+  if (many) {
+    const Answer& a = kept_answer(p, reach);
+    if (a.surface == number_ && a.from == p && a.reach == reach) {
+      if (a.nearest)
+        point = a.point;
+      return a.nearest;
+    }
+  }
+  int looked_at = 0;
   double best = reach * reach;
   const double rounding = 1e-9 * best + 1e-20 * edge_ * edge_;
   const Triangle* nearest = nullptr;
   if (tree_)
     tree_->near(p, best, [&](size_t i) {
       const Triangle& t = triangle_[i];
+      ++looked_at;
       const double off = dot(p - t.a, t.normal); // from its plane, of which no place is nearer
       if (off * off > best + rounding)
         return best;
@@ -100,6 +133,10 @@ const ReferenceSurface::Triangle* ReferenceSurface::closest(Vec3d p, double reac
         best = d, point = q, nearest = &t;
       return best;
     });
+  if (looked_at > most_looked_at) {
+    many_.store(true, std::memory_order_relaxed);
+    kept_answer(p, reach) = {number_, p, nearest ? point : p, reach, nearest};
+  }
   return nearest;
 }
 

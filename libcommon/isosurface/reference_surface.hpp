@@ -3,6 +3,7 @@
 #include "isosurface/target.hpp"
 #include "mesh/box_tree.hpp"
 #include "mesh/tet_mesh.hpp"
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -22,11 +23,15 @@ private:
     Vec3d a, b, c, normal;
     int32_t index; ///< in the mesh: of equally near ones the first counts
   };
+  struct Answer;
+  static Answer& kept_answer(Vec3d p, double reach);
   void sort_along_curve();
   const Triangle* closest(Vec3d p, double reach, Vec3d& point) const;
   std::vector<Triangle> triangle_; ///< along a curve that keeps near ones together
   std::unique_ptr<BoxTree> tree_;
-  double edge_ = 1, spacing_ = 1; ///< typical length of an edge, Å
+  uint64_t number_ = 0;                    ///< of this surface among all
+  mutable std::atomic<bool> many_ = false; ///< many triangles were looked at for a closest point
+  double edge_ = 1, spacing_ = 1;          ///< typical length of an edge, Å
 };
 
 } // namespace molmesh
