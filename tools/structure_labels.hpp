@@ -5,6 +5,7 @@
 #include "formats/hier/hier.hpp"
 #include "formats/vtu/names.hpp"
 #include "label/mesh_labels.hpp"
+#include "label/other_selection.hpp"
 #include "mesh/same_source.hpp"
 #include <cmath>
 #include <sstream>
@@ -18,10 +19,15 @@ inline void require_same_structure(const Hierarchy& h, const std::string& file, 
     fail_input(file + ": the structure is of " + h.source + ", expected the mesh's " + mesh.source + or_else);
 }
 
-/// A note where the places of the surface are far from the isosurface.
+/// A note where the places of the surface are far from the isosurface. file: of the hierarchy; Error(bad_input)
+/// where its atoms are another selection than the mesh's. Empty: any will do.
 inline label::Labels labels_at(const label::Places& places, const Hierarchy& h, const TetMesh& mesh, double decay,
-                               int threads, const cli::Run& run) {
+                               int threads, const cli::Run& run, const std::string& file,
+                               const std::string& or_else = "") {
   label::Labels labels = label::find_labels(h, places.centroid, {decay, mesh.isovalue, threads});
+  if (const std::string shown = label::other_selection(h, mesh, places, labels); !file.empty() && !shown.empty())
+    fail_input(file + ": another selection of " + h.source.substr(0, h.source.find(' ')) + ", " + shown +
+               ": expected the atoms of the mesh" + or_else);
   if (const double off = label::median_offset(places, labels, mesh.isovalue); std::fabs(off) > std::log(3.)) {
     std::ostringstream factor;
     factor.precision(3);
@@ -41,7 +47,7 @@ inline void label_surface(TetMesh& mesh, const std::string& file, int threads, c
   places.cell.erase(places.cell.begin(), places.cell.begin() + places.tets);
   places.centroid.erase(places.centroid.begin(), places.centroid.begin() + places.tets);
   places.tets = 0;
-  label::Labels labels = labels_at(places, h, mesh, mesh.decay > 0 ? mesh.decay : 1, threads, run);
+  label::Labels labels = labels_at(places, h, mesh, mesh.decay > 0 ? mesh.decay : 1, threads, run, input.name());
   label::remove_labels(mesh);
   label::add_labels(mesh, places, std::move(labels));
   formats::add_level_names(mesh, h);

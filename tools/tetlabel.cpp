@@ -4,7 +4,6 @@
 #include "cli/text.hpp"
 #include "formats/pdb/hier_selection.hpp"
 #include "formats/vtu/vtu.hpp"
-#include "label/other_selection.hpp"
 #include "molecule/words.hpp"
 #include "tools/structure_labels.hpp"
 #include <algorithm>
@@ -74,13 +73,10 @@ Status run_tool(const Options& o, cli::Run& run) {
   const label::Places places = label::places_of(mesh, o.resolved_threads());
   if (places.cell.empty())
     fail_input(input.name() + ": no tetrahedron of region 1 and no triangle of boundary 1, expected a molecule");
-  label::Labels labels = labels_at(places, h, mesh, decay_of(o, asked_decay, mesh), o.resolved_threads(), run);
+  label::Labels labels = labels_at(places, h, mesh, decay_of(o, asked_decay, mesh), o.resolved_threads(), run,
+                                   o.other_structure ? "" : structure.name(), ", or --other-structure");
   run.counts["tetrahedra"] = places.tets;
   run.counts["triangles"] = static_cast<int64_t>(places.cell.size()) - places.tets;
-  if (const std::string shown = label::other_selection(h, mesh, places, labels);
-      !o.other_structure && !shown.empty())
-    fail_input(structure.name() + ": another selection of " + h.source.substr(0, h.source.find(' ')) + ", " +
-               shown + ": expected the atoms of the mesh, or --other-structure");
   label::remove_labels(mesh);
   label::Patches patches;
   if (!boundary.empty()) { // else those of a former run stay
