@@ -43,7 +43,7 @@ failed() { status=1; echo "gpu.sh: FAILED: $*"; }
 sources() { # of the driver. What needs Highway, nanoflann or METIS is not used by it, or stands in alone/.
   (cd "$root" && ls cuda/*/*.cu cuda/*/*.cpp libcommon/*/*.cpp libcommon/*/*/*.cpp \
     formats/hier/{hier_reader,text}.cpp tests/gpu/*.cpp tests/gpu/alone/*.cpp tests/gpu/*.cu 2>/dev/null |
-    grep -vE '_simd.cpp|kd_tree.cpp|partition.cpp|attribute_transfer.cpp|libcommon/label/')
+    grep -vE '_simd.cpp|kd_tree.cpp|partition.cpp|attribute_transfer.cpp|nearest_points.cpp|libcommon/label/')
 }
 
 build() { # build DRIVER FLAGS: cuda/ and libcommon/ with nvcc and the standard library alone
