@@ -153,7 +153,9 @@ std::string wrong_kind(const Table& table, const std::string& message) {
       const bool reads = std::any_of(files.begin(), last, is_read); // the first is the input's
       const bool here = table.program == "pdb2hier" && kind.ending == "structure";
       if (!kind.ending.empty() && !reads && !here)
-        return " (this is " + kind.what + ": " + kind.advice + ')';
+        return " (this is " + kind.what + ": " +
+               (table.program == "densityjoin" && kind.ending == ".vdb" ? "name it with --piece" : kind.advice) +
+               ')';
     }
   return {};
 }

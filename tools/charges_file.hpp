@@ -5,12 +5,12 @@
 
 namespace molmesh {
 
-/// file: the hierarchy's. Throws Error(bad_input) where it is of another structure.
-inline void write_charges_file(std::ostream& out, const std::string& file, const TetMesh& m) {
+/// Returns how many. file: the hierarchy's. Throws Error(bad_input) where it is of another structure.
+inline int64_t write_charges_file(std::ostream& out, const std::string& file, const TetMesh& m) {
   cli::InputFile input(file);
   const Hierarchy h = formats::read_hier(input.stream(), input.name());
   require_same_structure(h, input.name(), m);
-  formats::write_charges(out, h, m);
+  return formats::write_charges(out, h, m);
 }
 
 } // namespace molmesh

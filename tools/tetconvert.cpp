@@ -84,7 +84,7 @@ int64_t write_mesh(cli::Run& run, Outputs& outputs, const Options& o, const std:
      : format == "ply" ? formats::write_ply
                        : formats::write_off)(out, m, input);
   if (!o.charges.empty())
-    write_charges_file(outputs.back().stream(), o.charges, m);
+    run.made = ", " + cli::counted(write_charges_file(outputs.back().stream(), o.charges, m), "charge", "charges");
   for (cli::OutputFile& output : outputs) // the last gets its name first: no .xdmf is without its .h5
     run.complete(output);
   return unplaced;
@@ -130,7 +130,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   const int64_t unplaced = write_mesh(run, outputs, o, format, mesh, input.name());
   note_losses(run, format, mesh, unplaced);
   run.made = format + ": " + cli::counted(std::ssize(mesh.tet), "tetrahedron", "tetrahedra") + ", " +
-             cli::counted(std::ssize(mesh.tri), "triangle", "triangles");
+             cli::counted(std::ssize(mesh.tri), "triangle", "triangles") + run.made;
   return Status::good;
 }
 

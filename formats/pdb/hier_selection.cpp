@@ -68,7 +68,7 @@ std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& text, c
     fail_input(where + ": found selection " + in_quotes(text) + ", expected " + expected);
   };
   if (s.beyond_hierarchy())
-    refuse("chains, residues and atoms alone: a .hier holds nothing else");
+    refuse("chains, residues and atoms alone, as '//D/45,57': a .hier holds nothing else");
   std::vector<uint8_t> chosen(h.atom.size(), 1);
   const size_t chain = find_level(h, "chain"), residue = find_level(h, "residue");
   if (s.names_chains()) {

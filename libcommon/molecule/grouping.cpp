@@ -157,7 +157,8 @@ std::string chains_there(const std::vector<std::string>& names) {
     text += (i > 0 ? ", " : "") + distinct[i];
   if (distinct.size() > most)
     text += " and " + std::to_string(distinct.size() - most) + " more";
-  return text + " (for example '//" + distinct[0] + "', '//" + distinct[0] + "/45-60')";
+  const std::string first = "'//" + distinct[0];
+  return text + " (for example " + first + "', " + first + "/45-60', " + first + "/(HEM)')";
 }
 
 } // namespace molmesh

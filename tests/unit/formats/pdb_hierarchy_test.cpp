@@ -71,7 +71,8 @@ TEST_CASE("rules set exponents in order, on all that they touch") {
   CHECK(exponents(convert(structure(), with_rules({"//B/2/CA P_R=0.9", "//A,B P_R=0.1"})).hierarchy) ==
         "A=1(0.1 0.1) B=1(0.1 0.1) ");
   CHECK(refusal(structure(), with_rules({"//C P_R=0.9"})) ==
-        "-r: found no atom in selection '//C', expected some; chains here: A, B (for example '//A', '//A/45-60')");
+        "-r: found no atom in selection '//C', expected some; chains here: A, B (for example '//A', '//A/45-60', "
+        "'//A/(HEM)')");
   CHECK(refusal(structure(), with_rules({"//A[ P_R=0.9"})).substr(0, 3) == "-r:");
 }
 
@@ -196,7 +197,7 @@ TEST_CASE("gaps, overlaps and torn residues or chains name an atom") {
             .find("found chain B in domains 'two' (B/GLY:1/N) and 'one' (B/GLY:2/N)") != std::string::npos);
   CHECK(refusal(structure(), with_domains("one *\ntwo //C\n", levels)) ==
         "D:2: found no atom in '//C', expected some in domain 'two'; chains here: A, B (for example '//A', "
-        "'//A/45-60')");
+        "'//A/45-60', '//A/(HEM)')");
 }
 
 TEST_CASE("an assembly of the PDB format: copies with unique names") {

@@ -168,7 +168,7 @@ TEST_CASE("waters, hydrogens, hetero atoms and selections drop what they say, an
   o.select = "//Q";
   CHECK(refusal(text, o) ==
         "x.pdb: found no atom that is kept (dropped: 2 of waters, 4 outside --select), expected at least one; "
-        "chains here: A, _ (for example '//A', '//A/45-60')");
+        "chains here: A, _ (for example '//A', '//A/45-60', '//A/(HEM)')");
   o.select = "//A//[C";
   CHECK(refusal(text, o, "x.pdb", Status::usage).find("syntax") != std::string::npos);
 }
