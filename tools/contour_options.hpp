@@ -4,6 +4,7 @@
 #include "cli/text.hpp"
 #include "contour/options.hpp"
 #include "tools/box_request.hpp"
+#include "tools/element_limit.hpp"
 #include "tools/options/density2tet.hpp"
 #include <optional>
 #include <string>
@@ -21,9 +22,7 @@ inline std::optional<double> parse_adapt(const std::string& text) {
 
 inline contour::Options contour_options(const Options& o) {
   contour::Options options;
-  options.meshed = o.region == "interior"   ? contour::Options::interior
-                   : o.region == "exterior" ? contour::Options::exterior
-                                            : contour::Options::both;
+  options.meshed = meshed_of(o.region);
   options.box = parse_box(o.box);
   if (options.box.is_sphere() && options.meshed == contour::Options::interior)
     fail(Status::usage, "--box: found '" + o.box +

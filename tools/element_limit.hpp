@@ -12,6 +12,13 @@
 
 namespace molmesh {
 
+/// Of a --region.
+inline contour::Options::Meshed meshed_of(const std::string& region) {
+  return region == "interior"   ? contour::Options::interior
+         : region == "exterior" ? contour::Options::exterior
+                                : contour::Options::both;
+}
+
 /// The finest spacing, from `least` on in steps of 3 %, of whose mesh with the default tolerance nine tenths of
 /// `most` elements are planned; 0: none up to 20 Å.
 inline double spacing_for(const BlockGrid& grid, contour::Options options, int64_t most, double least) {
@@ -26,11 +33,17 @@ inline double spacing_for(const BlockGrid& grid, contour::Options options, int64
   return 0;
 }
 
-/// "hier2density --spacing 1.3 fits".
-inline std::string fitting_spacing(double s) {
-  char text[64];
-  std::snprintf(text, sizeof text, "hier2density --spacing %.3g fits", s);
-  return s > 0 ? text : "no spacing fits";
+/// "hier2density --elements 100000 --region both makes a grid that fits, of about 1.3 Å".
+inline std::string fitting_grid(const BlockGrid& grid, const contour::Options& options, int64_t most,
+                                double least) {
+  const double s = spacing_for(grid, options, most, least);
+  if (!(s > 0))
+    return "no spacing fits";
+  return "hier2density --elements " + std::to_string(most) +
+         (options.meshed == contour::Options::both       ? " --region both"
+          : options.meshed == contour::Options::exterior ? " --region exterior"
+                                                         : "") +
+         " makes a grid that fits, of about " + cli::length_text(s);
 }
 
 [[noreturn]] inline void refuse_elements(const BlockGrid& grid, const contour::Options& options, int64_t most,
@@ -38,8 +51,7 @@ inline std::string fitting_spacing(double s) {
   fail(Status::usage,
        "elements: found " + std::to_string(most) + ", expected at least about " +
            std::to_string(std::llround(least.elements)) + " for this surface at a spacing of " +
-           cli::length_text(grid.frame.spacing) + ": " +
-           fitting_spacing(spacing_for(grid, options, most, grid.frame.spacing)),
+           cli::length_text(grid.frame.spacing) + ": " + fitting_grid(grid, options, most, grid.frame.spacing),
        {"elements"});
 }
 
@@ -65,9 +77,8 @@ inline TetMesh limited_mesh(const contour::LeafCounter& counter, const BlockGrid
   run.counts["layers"] = fit.fineness.layers;
   run.counts["surface_error"] = cli::Value{{"worst", error.worst}, {"rms", error.rms}};
   if (fit.finest && 10 * std::ssize(mesh.tet) < 7 * most)
-    run.note("this grid has " + grouped(std::ssize(mesh.tet)) + " elements at the most (--elements " +
-             std::to_string(most) + "): for more, " +
-             fitting_spacing(spacing_for(grid, options, most, grid.frame.spacing / 16)));
+    run.note("this grid has " + grouped(std::ssize(mesh.tet)) +
+             " elements at the most: " + fitting_grid(grid, options, most, grid.frame.spacing / 16));
   char text[96];
   std::snprintf(text, sizeof text, "surface off by %.2g Å at the most, %.2g Å rms, ", error.worst, error.rms);
   cost = text;

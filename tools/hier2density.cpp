@@ -29,6 +29,10 @@ density::Options density_options(const Options& o) {
     fail(Status::usage, "--grid: found " + std::to_string(o.grid) + ", expected 4 or more");
   if (o.grid > 0 && o.spacing)
     fail(Status::usage, "--spacing excludes --grid, expected one of them");
+  if (o.elements > 0 && (o.grid > 0 || o.spacing))
+    fail(Status::usage, "--elements excludes --spacing and --grid, expected one of them");
+  if (o.elements == 0 && o.region != "interior")
+    fail(Status::usage, "--region: found " + o.region + " without --elements, expected both or neither");
   d.spacing = o.spacing.value_or(0.5);
   d.grid_points = o.grid;
   if (o.margin != "auto") {
@@ -68,6 +72,7 @@ std::optional<distance::Body> body_of(const Options& o) {
   refuse("--search full", o.search == "full", gaussian);
   refuse("--atoms", o.atoms != "bvh", gaussian);
   refuse("--plan", o.plan, gaussian);
+  refuse("--elements", o.elements > 0, gaussian);
   refuse("--mode cuda", o.on_device(), "--mode omp: distances are computed on the host");
   return distance::Body{o.surface == "ses"   ? Surface::solvent_excluded
                         : o.surface == "sas" ? Surface::solvent_accessible
@@ -89,6 +94,8 @@ Status run(const Options& o, cli::Run& r) {
     fail(Status::mode_unavailable, in.name() + ": found bodies without atoms, expected --mode omp or seq for them");
   if (body && !h.body.empty())
     fail_input(in.name() + ": found bodies without atoms, expected --surface gaussian for them");
+  if (o.elements > 0)
+    d.spacing = plans::spacing_of_elements(h, d, o.elements, o.region);
   if (!body && plans::density_is_planned(o, o, d, h, r))
     return Status::good;
   formats::Leaves leaves(o.resolved_threads());

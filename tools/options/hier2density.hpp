@@ -12,9 +12,9 @@ struct Options : cli::Common, cli::PlanOptions {
     machine_limits = true;
   }
   std::optional<double> spacing;
-  int64_t grid = 0;
+  int64_t grid = 0, elements = 0;
   std::string margin = "auto";
-  std::string surface = "gaussian";
+  std::string surface = "gaussian", region = "interior";
   std::optional<double> probe, decay, isovalue;
   double tolerance = 1e-4;
   std::string tile = "1/1";
@@ -26,6 +26,12 @@ inline void describe(cli::Table& t, Options& o) {
   t.add("--spacing", o.spacing, "grid spacing h").unit("Å").positive().shown_default("0.5");
   t.add("--grid", o.grid, "points along the longest axis, 4 or more, instead of --spacing; 0: use --spacing")
       .within(0, 1 << 29);
+  t.add("--elements", o.elements,
+        "the spacing of which density2tet's default mesh has about nine tenths of so many elements, instead of "
+        "--spacing; then density2tet --elements takes the rest; 0: use --spacing")
+      .within(0, 1 << 30);
+  t.add("--region", o.region, "with --elements: what density2tet will mesh")
+      .one_of({"interior", "exterior", "both"});
   t.add("--margin", o.margin,
         "grid beyond the outermost atom centres, 0 or more; auto: as far as the surface and its band can reach")
       .unit("Å");
@@ -64,6 +70,7 @@ inline void describe(cli::Table& t, Options& o) {
   t.page.examples = {
       {"hier2density --spacing 1 1tii.hier -o 1tii.vdb", "the density at a spacing of 1 Å"},
       {"hier2density --grid 257 1tii.hier -o 1tii.vdb", "257 grid points along the longest axis"},
+      {"hier2density --elements 100000 1tii.hier -o 1tii.vdb", "a grid whose mesh has about so many tetrahedra"},
       {"hier2density --surface ses 1tii.hier -o 1tii.vdb", "the solvent-excluded surface, probe 1.4 Å"},
       {"pdb2hier 1tii.pdb | hier2density --decay 0.5 -o 1tii.vdb", "a softer surface, from a pipe"}};
   t.page.files = {{".hier", "molecular hierarchy, read: formats/hier/HIERv1.md"},
