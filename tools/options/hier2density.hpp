@@ -26,19 +26,16 @@ inline void describe(cli::Table& t, Options& o) {
   t.add("--spacing", o.spacing, "grid spacing h").unit("Å").positive().shown_default("0.5");
   t.add("--grid", o.grid, "points along the longest axis, 4 or more, instead of --spacing; 0: use --spacing")
       .within(0, 1 << 29);
-  t.add("--elements", o.elements,
-        "the spacing of which density2tet's default mesh has about nine tenths of so many elements, instead of "
-        "--spacing; then density2tet --elements takes the rest; 0: use --spacing")
-      .within(0, 1 << 30);
-  t.add("--region", o.region, "with --elements: what density2tet will mesh")
-      .one_of({"interior", "exterior", "both"});
+  t.add("--elements", o.elements, "spacing for so many elements, if > 0").within(0, 1e9);
+  t.add("--region", o.region, "of --elements").one_of({"interior", "exterior", "both"});
   t.add("--margin", o.margin,
         "grid beyond the outermost atom centres, 0 or more; auto: as far as the surface and its band can reach")
       .unit("Å");
   t.group("surface");
   t.add("--surface", o.surface,
-        "gaussian: the isosurface of the density; ses: solvent-excluded, where no probe reaches; sas: "
-        "solvent-accessible, the atoms' spheres larger by the probe; vdw: van der Waals, the atoms' spheres")
+        "gaussian: the density's; ses: solvent-excluded, where no probe reaches; sas: solvent-accessible, of "
+        "spheres "
+        "larger by the probe; vdw: van der Waals")
       .one_of({"gaussian", "ses", "sas", "vdw"});
   t.add("--probe", o.probe, "radius of the probe of ses and sas").unit("Å").within(0, 1e3).shown_default("1.4");
   t.group("density");
@@ -49,8 +46,7 @@ inline void describe(cli::Table& t, Options& o) {
   t.add("--isovalue", o.isovalue, "the value of the field at the surface; of gaussian alone")
       .positive()
       .shown_default("1");
-  t.add("--band", o.band, "limits of the band to keep, in multiples of the isovalue, 0 < LO < 1 < HI")
-      .unit("LO,HI");
+  t.add("--band", o.band, "band to keep, in isovalues, 0 < LO < 1 < HI").unit("LO,HI");
   t.add("--tolerance", o.tolerance, "largest error of G in units of max(1, G)").within(1e-6, 1e-2);
   t.group("search");
   t.add("--search", o.search, "neighbor: only near the surface, full: every grid point")
@@ -66,11 +62,13 @@ inline void describe(cli::Table& t, Options& o) {
       "exp(-κ(d² - r²)), κ being the decay rate; the surface is where the density has the isovalue. Every stored "
       "value is within the tolerance of that sum, and every grid cell that the surface crosses is in the file. "
       "With --surface ses, sas or vdw the field is exp(d / 1 Å), where d is the signed distance to that surface of "
-      "the atoms' balls, positive inside: groups and exponents have no effect.";
+      "the atoms' balls, positive inside: groups and exponents have no effect. With --elements the grid has "
+      "the spacing of which density2tet's default mesh has nine tenths of so many elements, for that --region; "
+      "density2tet "
+      "--elements takes the rest.";
   t.page.examples = {
       {"hier2density --spacing 1 1tii.hier -o 1tii.vdb", "the density at a spacing of 1 Å"},
       {"hier2density --grid 257 1tii.hier -o 1tii.vdb", "257 grid points along the longest axis"},
-      {"hier2density --elements 100000 1tii.hier -o 1tii.vdb", "a grid whose mesh has about so many tetrahedra"},
       {"hier2density --surface ses 1tii.hier -o 1tii.vdb", "the solvent-excluded surface, probe 1.4 Å"},
       {"pdb2hier 1tii.pdb | hier2density --decay 0.5 -o 1tii.vdb", "a softer surface, from a pipe"}};
   t.page.files = {{".hier", "molecular hierarchy, read: formats/hier/HIERv1.md"},
