@@ -117,7 +117,8 @@ const Guard fitting{40, 0.24, 0.5, 0};
 // Coarsening: elements may fall to this share of the goal's sine, sizes on the surface are those of triangles that
 // are off by so many spacings (the guard keeps them nearer), and after some times little is left to remove.
 constexpr double coarsening_share = 0.5, coarsening_tolerance = 0.2;
-constexpr int coarsenings = 3;
+constexpr int coarsenings = 3, wide_searches = 3;
+constexpr double wider = 8; // are the cubes of these
 const Guard coarse{32, 0.1, 0.5, 0};
 
 // Points off the isosurface come back where elements can be repaired after. Rows are tried in turn while nothing
@@ -214,6 +215,18 @@ public:
       isosurface_->set_offset(isosurface_->offset() +
                               chord_offset(m_, *isosurface_, options_.threads, most_coarse_offset));
       count(schedule_.project(at_least(FaultCount::share * usual_), strict));
+    }
+  }
+
+  /// Far from the surface coarse elements are long: what searches look at is too small for them.
+  void search_widely() {
+    for (int k = 0; repairs_ && k < wide_searches && schedule_.worst() < FaultCount::share * goal_; ++k) {
+      for (Strategy s : for_elements) {
+        s.goal = goal_;
+        s.most_elements = course_.most_elements;
+        s.part_size *= wider;
+        count(schedule_.search(s));
+      }
     }
   }
 
@@ -405,8 +418,10 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     run.run_rounds(flow_here);
   }
   run.search();
-  if (options.coarsen)
+  if (options.coarsen) {
+    run.search_widely();
     run.put_further_out();
+  }
   if (result.counts.total() == 0 || run.is_worse()) { // the file that came in, in its own order
     result.rejected = result.counts.total() > 0;
     result.counts = {};
