@@ -70,7 +70,7 @@ def main():
                 name, before = "", improvement["counts"]["elements"]
     text = "\n".join(("## Smaller meshes: tetsmooth --coarsen\n",
                       "*`tests/bench/coarsening_figures.md` holds this section; `tests/bench/coarsening.py` makes it.* Volume: what the isosurface",
-                      "encloses beyond the mesh. Points off are counted from where points are put: up to 0.06 h outside with `--coarsen`. Solutions by",
+                      "encloses beyond the mesh. Points off are over 0.02 h from the isosurface, or over 0.0625 h where `--coarsen` puts them further out. Solutions by",
                       "FreeFEM with quadratic elements: Born's energy beside the exact one, and the rate of diffusion to the whole surface.\n",
                       *lines)) + "\n"
     if o.page:

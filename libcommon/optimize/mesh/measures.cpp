@@ -191,8 +191,7 @@ Fidelity measure_fidelity(const DynamicMesh& m, const Isosurface& surface, int t
       },
       [](double a, double b) { return a + b; });
   const bool coarse = std::abs(surface.offset()) > most_offset * surface.spacing();
-  const double most_off =
-      coarse ? std::abs(surface.offset()) + 0.0025 * surface.spacing() : 0.02 * surface.spacing();
+  const double most_off = (coarse ? most_coarse_offset + 0.0025 : 0.02) * surface.spacing();
   std::vector<uint8_t> in_cavity(m.point.size());
   for (const int32_t v : regions.cavity)
     in_cavity[v] = 1;

@@ -21,8 +21,7 @@ std::string text(const Angles& a);
 struct Fidelity {
   int64_t points = 0; ///< free ones: where the surface touches itself or labels meet they stay as they came
   int64_t triangles = 0;
-  int64_t points_off =
-      0; ///< further than 0.02 spacings from it, or than the offset where that is larger, or not known
+  int64_t points_off = 0;           ///< by over 0.02 spacings, or 0.0625 if they are put further out; or not known
   int64_t points_off_cavity = 0;    ///< of these, on closed cavities: where one is smaller than the grid can show
   int64_t points_off_wall = 0;      ///< and in walls that cut the surface
   int64_t centroids_off = 0;        ///< further than 0.25 spacings, or not known

@@ -118,6 +118,39 @@ TEST_CASE("coarsening halves a mesh and keeps regions, walls, surface, topology 
   }
 }
 
+TEST_CASE("coarsening keeps a named boundary and the points of its border") {
+  const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  TetMesh mesh = lattice_mesh(three_atoms, {0, 0, 0}, h, n);
+  constexpr int32_t site = 8;
+  for (size_t t = 0; t < mesh.tri.size(); ++t)
+    if (mesh.boundary[t] == surface && mesh.point[mesh.tri[t][0]].x > 5)
+      mesh.boundary[t] = site;
+  const auto border = [](const TetMesh& m) {
+    std::map<int32_t, int> labels;
+    for (size_t t = 0; t < m.tri.size(); ++t)
+      for (const int32_t v : m.tri[t])
+        labels[v] |= m.boundary[t] == surface ? 1 : m.boundary[t] == site ? 2 : 0;
+    std::set<std::tuple<double, double, double>> points;
+    for (const auto& [v, met] : labels)
+      if (met == 3)
+        points.emplace(m.point[v].x, m.point[v].y, m.point[v].z);
+    return points;
+  };
+  const auto points = border(mesh);
+  const auto before = areas(mesh);
+  const size_t elements = mesh.tet.size();
+  REQUIRE(points.size() > 10);
+  optimize::Options options;
+  options.coarsen = true;
+  optimize::improve(mesh, &grid, options);
+  CHECK(2 * mesh.tet.size() < elements);
+  CHECK(border(mesh) == points);
+  const auto after = areas(mesh);
+  REQUIRE(after.size() == before.size());
+  for (const auto& [label, area] : before)
+    CHECK(after.at(label) == Approx(area).epsilon(label == surface || label == site ? 0.03 : 1e-12));
+}
+
 TEST_CASE("sizes grow by shortest paths from the surface, and are at most 1.5 apart along edges that they allow") {
   const optimize::DynamicMesh m = optimize::build(lattice_mesh(three_atoms, {0, 0, 0}, h, n), 180, 1);
   const std::vector<float> size = optimize::target_sizes(m, nullptr, 0, 1);
