@@ -60,7 +60,8 @@ inline void describe(cli::Table& t, Options& o) {
        "status 5 below 20°, and what is nearest to the elements that miss it"},
       {"tetsmooth --parts 64 --density 1tii.vdb 1tii.tet.vtu -o 1tii.vtu",
        "elements in 64 parts for a parallel solver"},
-      {"tetsmooth --coarsen --density 1tii.vdb 1tii.tet.vtu -o 1tii.vtu", "less than half as many elements"}};
+      {"tetsmooth --coarsen --density 1tii.vdb 1tii.tet.vtu -o 1tii.vtu",
+       "a smaller mesh of the same angles and volume"}};
   t.page.files = {{".vtu", "mesh (VTK), read and written: formats/vtu/VTUv1.md"},
                   {".msh, .mesh, .vtk", "meshes of other programs, read: formats/mesh/MESH.md"},
                   {".vdb", "density grid (OpenVDB), read: formats/vdb/VDBv1.md"},
