@@ -65,7 +65,29 @@ private:
   V low_, high_;
   float polynomial_[PowerTable::terms];
 };
+class TabledExactly {
+public:
+  explicit TabledExactly(double p) : t_(exact_power_table(p)) {}
+  HWY_INLINE hn::Vec<Tag<double>> operator()(Tag<double> d, hn::Vec<Tag<double>> x) const {
+    const auto bits = _mm512_castpd_si512(x.raw);
+    const auto of_16 = [&](const double* table, unsigned shift) {
+      return hn::Vec<Tag<double>>{
+          _mm512_permutex2var_pd(_mm512_load_pd(table), _mm512_srli_epi64(bits, shift), _mm512_load_pd(table + 8))};
+    };
+    const hn::Vec<Tag<double>> m{_mm512_getmant_pd(x.raw, _MM_MANT_NORM_1_2, _MM_MANT_SIGN_zero)},
+        high{_mm512_permutexvar_pd(_mm512_srli_epi64(bits, 60), _mm512_load_pd(t_.high))};
+    const auto r = hn::MulSub(m, of_16(t_.inverse, 48), hn::Set(d, 1.0));
+    return hn::Mul(hn::Mul(polynomial(d, r, t_.polynomial), of_16(t_.middle, 48)),
+                   hn::Mul(hn::Mul(high, of_16(t_.mid, 56)), of_16(t_.low, 52)));
+  }
+
+private:
+  const ExactPowerTable& t_;
+};
 #else
+struct TabledExactly : Any<double> {
+  explicit TabledExactly(double exponent) : Any<double>{exponent} {}
+};
 /// Narrower vectors have no tables of 16 numbers.
 struct Tabled : Any<float> {
   static bool holds(float) { return false; }
@@ -80,7 +102,7 @@ HWY_INLINE void with_power(float p, Use&& use) {
 }
 template <class Use>
 HWY_INLINE void with_power(double p, Use&& use) {
-  use(Any<double>{p});
+  Tabled::holds(static_cast<float>(p)) && p < 1 ? use(TabledExactly(p)) : use(Any<double>{p});
 }
 
 /// put(i, v, t): t = `least` + Σ x·yz over n rows, at point i of x and the points of yz from v on. x: [8·n] factors
@@ -287,7 +309,10 @@ void raise_group_simd(float p, float shift, float* from, float* to) {
     raise(Shifted<float>{p, shift}, from, to);
 }
 void raise_exact_group_simd(double p, double shift, double* from, double* to) {
-  raise(Shifted<double>{p, shift}, from, to);
+  if (shift == 0 && Tabled::holds(static_cast<float>(p)) && p < 1)
+    raise(TabledExactly(p), from, to);
+  else
+    raise(Shifted<double>{p, shift}, from, to);
 }
 
 float rough_root_error_simd() {

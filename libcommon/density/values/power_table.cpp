@@ -34,11 +34,35 @@ void make(PowerTable& t, float exponent) {
   t.p = exponent;
 }
 
+void make(ExactPowerTable& t, double p) {
+  for (int i = 0; i < 16; ++i) {
+    const double c = 1 + (i + 0.5) / 16;
+    t.inverse[i] = 1 / c;
+    t.middle[i] = std::pow(c, p);
+    t.low[i] = std::exp2(p * i);
+    t.mid[i] = std::exp2(p * 16 * i);
+  }
+  for (int i = 0; i < 8; ++i)
+    t.high[i] = std::exp2(p * (256 * i - 1023));
+  t.polynomial[0] = 1;
+  for (size_t k = 1; k < ExactPowerTable::terms; ++k)
+    t.polynomial[k] = t.polynomial[k - 1] * (p - double(k) + 1) / double(k);
+  t.p = p;
+}
+
 } // namespace
 
 const PowerTable& power_table(float p) {
   thread_local std::array<PowerTable, 64> kept;
   PowerTable& t = kept[std::bit_cast<uint32_t>(p) * 0x9e3779b9u >> 26];
+  if (t.p != p)
+    make(t, p);
+  return t;
+}
+
+const ExactPowerTable& exact_power_table(double p) {
+  thread_local std::array<ExactPowerTable, 32> kept;
+  ExactPowerTable& t = kept[std::bit_cast<uint64_t>(p) * 0x9e3779b97f4a7c15u >> 59];
   if (t.p != p)
     make(t, p);
   return t;
