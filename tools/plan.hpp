@@ -76,9 +76,10 @@ inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, 
     const int64_t bound = density::cost(most, atoms).memory;
     if (d.grid_points == 0 && d.tile.whole()) {
       say_growth(run, "a density of up to " + grouped(most.active_points) + " points", bound, 50 * atoms);
-      if (double(most.active_points) * d.spacing * d.spacing >
-          100 * double(atoms)) // great balls: no count for them
+      if (double(most.active_points) * d.spacing * d.spacing > 100 * double(atoms)) { // great balls: no count
         cli::require_memory(p, bound / 2, "a density at " + cli::length_text(d.spacing), "a larger --spacing fits");
+        return false;
+      }
     }
     if (limit < 0 || (d.grid_points == 0 && bound <= limit))
       return false;
