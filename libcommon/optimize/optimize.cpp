@@ -61,17 +61,18 @@ struct Round {
   double cell; // of the schedule
   bool worst_first;
   const Guard& guard;
-  double least_step = finest_step; // where many elements are below the goal
+  double least_step = finest_step; // where many elements are below the goal; a coarser one: not thorough
   bool fits_surface = false;       // bent triangles are made to fit after it
 };
 // The surface is made to fit while elements may still be bad: what stands on it is repaired later, but a bent
-// triangle between good elements has nowhere to go. The last round is repeated.
+// triangle between good elements has nowhere to go. Merges and splits come when few elements are left: they
+// cost most, and less than one in thirty helps. The last round is repeated.
 const std::vector<Round> rounds_to_good{
     {0.35, false, 1, true, strict, 0.1},
     {0.6, false, 1, true, strict, 0.1, true},
-    {0.8, true, 1, true, strict, 0.1, true},
-    {0.9, true, 2, true, strict, 0.1, true},
-    {1, true, 2, false, strict, 0.03, true},
+    {0.8, false, 1, true, strict, 0.1, true},
+    {0.9, false, 2, true, strict, 0.1, true},
+    {1, false, 2, false, strict, 0.03, true},
     {1, true, 8, true, strict},
     {0.8, true, 8, true, relaxed},
     {1, true, 8, false, relaxed},
@@ -341,6 +342,7 @@ private:
     pass.cell = round.cell;
     pass.worst_first = round.worst_first;
     pass.least_step = many_ ? round.least_step : finest_step;
+    pass.thorough = round.least_step == finest_step;
     pass.in_mesh_order = pass.least_step > finest_step;
     pass.guard = isosurface_ || round.guard.lift == 0 ? round.guard : may_leave_slightly;
     return pass;

@@ -42,6 +42,7 @@ struct Acceptance {
   float goal = 1;                  ///< elements of less quality count in the deficit
   bool worst_first = true;         ///< deficit()
   bool may_bend = false;           ///< the surface may bend beyond the guard
+  bool thorough = true;            ///< improve_element() tries edges that seldom help, too
   bool off_target = false;         ///< surface vertices move anywhere near enough to the target, not on it alone
   double least_step = finest_step; ///< pattern_search()
   /// Contractions of tiny edges may lower the worst element to this share where the deficit falls by a tenth.

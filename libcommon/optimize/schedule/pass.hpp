@@ -13,6 +13,7 @@ struct Pass {
   /// Elements in the mesh's order, those under half of the goal before the others; else the worst ones first.
   bool in_mesh_order = false;
   double least_step = finest_step; ///< of searches for a vertex's place, pattern_search()
+  bool thorough = true;            ///< Acceptance::thorough
   bool merges_and_splits = false;  ///< operations that cost more
   float tiny_share = 1;            ///< Acceptance::tiny_share
   Guard guard;

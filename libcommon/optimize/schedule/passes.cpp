@@ -30,6 +30,7 @@ Acceptance acceptance_of(const Pass& pass) {
   a.worst_first = pass.worst_first;
   a.tiny_share = pass.tiny_share;
   a.least_step = pass.least_step;
+  a.thorough = pass.thorough;
   return a;
 }
 
