@@ -16,10 +16,12 @@ double share_bare(const TetMesh& mesh, const Places& places, const Labels& label
   return first == last ? 0 : double(bare) / double(last - first);
 }
 
-/// Share of the atoms beyond the box of the mesh's molecule. Parts that density2tet drops are few atoms.
-double share_beyond(const Hierarchy& h, const Places& places) {
+/// Share of the atoms beyond the box of the mesh's molecule; 0 where the mesh has walls, which may cut it. Parts
+/// that density2tet drops are few atoms.
+double share_beyond(const Hierarchy& h, const TetMesh& mesh, const Places& places) {
   constexpr double room = 3; // Å
-  if (places.centroid.empty() || h.atom.empty())
+  if (places.centroid.empty() || h.atom.empty() ||
+      std::any_of(mesh.boundary.begin(), mesh.boundary.end(), [](int32_t b) { return b != Boundary::surface; }))
     return 0;
   Vec3d lo = places.centroid[0], hi = lo;
   for (const Vec3d& p : places.centroid)
@@ -39,7 +41,7 @@ double share_beyond(const Hierarchy& h, const Places& places) {
 std::string other_selection(const Hierarchy& h, const TetMesh& mesh, const Places& places, const Labels& labels) {
   if (h.source.empty() || h.source != mesh.source)
     return "";
-  const double bare = share_bare(mesh, places, labels), beyond = share_beyond(h, places);
+  const double bare = share_bare(mesh, places, labels), beyond = share_beyond(h, mesh, places);
   if (std::max(bare, beyond) <= most_share)
     return "";
   return std::to_string(std::lround(100 * std::max(bare, beyond))) +
