@@ -7,7 +7,9 @@
 #include "mesh/validity.hpp"
 #include "optimize/optimize.hpp"
 #include "unit/contour/sample_grid.hpp"
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <map>
 
 using namespace molmesh;
 
@@ -104,10 +106,18 @@ TEST_CASE("Three domains stay manifolds when their mesh is improved, and meet wh
         pair.push_back(i.group);
       }
     const auto at = shares.at(on_interface);
-    double worst = 0; // distance from equal shares: |ln a/b| over its gradient, 2 κ |a - b|
+    // Distances from equal shares: |ln a/b| over its gradient, 2 κ |a - b|. A point of the line where all three
+    // meet stays on two interfaces; what it is off the third then follows.
+    std::map<std::array<double, 3>, std::vector<double>> off;
     for (size_t i = 0; i < at.size(); ++i)
-      worst = std::max(worst, std::abs(at[i].ln_of(pair[i][0]) - at[i].ln_of(pair[i][1])) /
-                                  (2 * bodies.decay * norm(bodies.center[pair[i][0]] - bodies.center[pair[i][1]])));
+      off[{on_interface[i].x, on_interface[i].y, on_interface[i].z}].push_back(
+          std::abs(at[i].ln_of(pair[i][0]) - at[i].ln_of(pair[i][1])) /
+          (2 * bodies.decay * norm(bodies.center[pair[i][0]] - bodies.center[pair[i][1]])));
+    double worst = 0;
+    for (auto& [place, distance] : off) {
+      std::sort(distance.begin(), distance.end());
+      worst = std::max(worst, distance[std::min<size_t>(distance.size() - 1, 1)]);
+    }
     CHECK(worst < 0.0205 * h); // ln of the ratio is linear here
   }
 }
