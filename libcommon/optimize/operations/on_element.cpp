@@ -9,7 +9,7 @@ namespace molmesh::optimize {
 
 namespace {
 
-/// What an element lacks says which of its edges may help.
+/// The shape of a bad element says which of its edges may help.
 struct Shape {
   std::array<size_t, 6> order{0, 1, 2, 3, 4, 5}; ///< of `edges`: by_length: the shortest first
   std::array<bool, 6> acute{};                   ///< the dihedral angle there is, by far: such edges seldom go
