@@ -22,17 +22,25 @@ piece actin_1.hier P_R=0.5 P_C=0.3 chains=A:actin translate=0,0,-55 rotate=0,0,1
 piece strand.hier  P_R=0.5 P_C=0.3 rotate=1,0,0,-19 translate=40,0,-27.5 rotate=0,0,1,70.8 helix=17,55,27.2 helix=2,27.5,-166.4
 piece head.hier    P_R=0.7 P_C=0.4 chains=A:head matrix=0.92989,0,0.36784,-65.613,0.11395,0.95081,-0.28806,-29.342,-0.34975,0.30978,0.88415,-16.161 rotate=0,1,0,50 translate=92,0,68 rotate=0,0,1,30 helix=6,136.5,60
 END
-cat >lattice_cylinder.join <<'END'
-join 1
-body cylinder cylinder from=0,0,-80 to=0,0,900 radius=80 P_R=0.5 P_C=0.3
-END
 spacing=$(spacing 819.2)
-for part in filament cylinder; do
-  hierjoin -q lattice_$part.join -o lattice_$part.hier
-  density lattice_$part --spacing "$spacing"
-done
+# cylinder X Y Z: a thick filament, moved by so much
+cylinder() {
+  awk -v x="$1" -v y="$2" -v z="$3" 'BEGIN {
+    printf "join 1\nbody cylinder cylinder from=%.9f,%.9f,%.9f to=%.9f,%.9f,%.9f radius=80 P_R=0.5 P_C=0.3\n", x, y, z - 80, x, y, z + 900
+  }' >lattice_cylinder.join
+  hierjoin -q lattice_cylinder.join -o lattice_cylinder.hier
+  density lattice_cylinder --spacing "$spacing"
+}
+# origin NAME: the first point of its grid, a coordinate a line
+origin() { awk '/"origin"/ { on = 1; next } on && /\]/ { exit } on { gsub(/[ ,]/, ""); print }' "$1.vdb.json"; }
+hierjoin -q lattice_filament.join -o lattice_filament.hier
+density lattice_filament --spacing "$spacing"
+# Each grid begins where its atoms do. Cylinders go half a spacing at most, so that their points are the filament's, some whole spacings
+# away; and places are whole spacings apart: all pieces are copied bit for bit.
+cylinder 0 0 0
+cylinder $(paste <(origin lattice_filament) <(origin lattice_cylinder) |
+  awk -v h="$spacing" '{ d = ($1 - $2) / h; printf "%.9f ", h * (d - sprintf("%.0f", d)) }')
 
-# Places are whole spacings apart, so that filaments are copied bit for bit; cylinders lie on a grid of their own and are resampled.
 filaments=(224,-128 672,128 224,128 448,256 0,256 448,512)
 cylinders=(0,0 448,0 224,384 672,384)
 # plan ENDING: a plan of the pieces lattice_filament.ENDING and lattice_cylinder.ENDING; names for what has atoms

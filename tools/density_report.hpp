@@ -10,6 +10,8 @@ inline void report(cli::Run& r, const Band& band, const formats::Leaves& leaves,
   const Vec3i n = band.frame.points;
   r.counts["atoms"] = band.info.atoms;
   r.counts["grid_points"] = std::vector{n.x, n.y, n.z};
+  const Vec3d first = band.frame.position(band.frame.lower);
+  r.counts["origin"] = std::vector{first.x, first.y, first.z};
   r.counts["spacing"] = band.frame.spacing;
   r.counts["margin"] = counts.margin;
   r.counts["analyzed_points"] = band.info.analyzed_points;
