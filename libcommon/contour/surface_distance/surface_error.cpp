@@ -1,4 +1,4 @@
-// surface_error.cpp — projects each centroid; sums are added up chunk by chunk, in order.
+// surface_error.cpp — projects each centroid, and adds up in a fixed order.
 #include "contour/surface_distance/surface_error.hpp"
 #include "contour/surface_distance/nearer_items.hpp"
 #include "geom/tet_measures.hpp"
@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <vector>
 
 namespace molmesh::contour {
 namespace {
@@ -38,30 +37,21 @@ double off(const IsosurfaceView& view, Vec3d middle, const std::array<Vec3d, 3>&
 } // namespace
 
 SurfaceError surface_error(const TetMesh& mesh, const BlockGrid& grid, int threads) {
-  constexpr int64_t chunk = 1 << 12;
   const Isosurface isosurface(grid, threads);
   const IsosurfaceView view = isosurface.view();
-  const int64_t n = std::ssize(mesh.tri);
-  std::vector<Sum> sums(static_cast<size_t>((n + chunk - 1) / chunk));
-  par::for_n(std::ssize(sums), threads, 1, [&](int64_t c) {
-    Sum& sum = sums[static_cast<size_t>(c)];
-    for (int64_t i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
-      if (mesh.boundary[static_cast<size_t>(i)] != surface)
-        continue;
-      const Tri& t = mesh.tri[static_cast<size_t>(i)];
-      const Vec3d a = mesh.point[t[0]], b = mesh.point[t[1]], d = mesh.point[t[2]];
-      const double distance = off(view, (a + b + d) / 3., {a, b, d}), area = tri_area(a, b, d);
-      sum.worst = std::max(sum.worst, distance);
-      sum.squares += area * distance * distance;
-      sum.area += area;
-    }
-  });
-  Sum all;
-  for (const Sum& s : sums) {
-    all.worst = std::max(all.worst, s.worst);
-    all.squares += s.squares;
-    all.area += s.area;
-  }
+  const Sum all = par::reduce(
+      std::ssize(mesh.tri), threads, Sum{},
+      [&](int64_t i) {
+        if (mesh.boundary[static_cast<size_t>(i)] != surface)
+          return Sum{};
+        const Tri& t = mesh.tri[static_cast<size_t>(i)];
+        const Vec3d a = mesh.point[t[0]], b = mesh.point[t[1]], d = mesh.point[t[2]];
+        const double distance = off(view, (a + b + d) / 3., {a, b, d}), area = tri_area(a, b, d);
+        return Sum{distance, area * distance * distance, area};
+      },
+      [](const Sum& a, const Sum& b) {
+        return Sum{std::max(a.worst, b.worst), a.squares + b.squares, a.area + b.area};
+      });
   return {all.worst, all.area > 0 ? std::sqrt(all.squares / all.area) : 0};
 }
 
