@@ -124,6 +124,35 @@ void check_against(const BlockGrid& g, Exact&& exact_at, bool of_bands = false) 
   CHECK(missing == 0);
 }
 
+/// At random places, some `spread` Å from atoms, that lie beyond the tail's depth: the density is within its bound.
+void check_tail(const Piece& p, const Hierarchy& h, unsigned seed, double spread) {
+  const BlockIndex index(p.grid);
+  std::vector<Vec3d> body; // grid points that are inside or active
+  const Vec3i n = p.grid.frame.points;
+  for (int x = 0; x < n.x; ++x)
+    for (int y = 0; y < n.y; ++y)
+      for (int z = 0; z < n.z; ++z) {
+        const Vec3i q = p.grid.frame.lower + Vec3i{x, y, z};
+        if (is_active(p.grid, index, q) || value_at(p.grid, index, q) > 0)
+          body.push_back(p.grid.frame.position(q));
+      }
+  std::mt19937 random(seed);
+  std::normal_distribution<double> step(0, spread);
+  int beyond = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3d x = h.atom[random() % h.atom.size()].center + Vec3d{step(random), step(random), step(random)};
+    double nearest2 = 1e300;
+    for (const Vec3d& b : body)
+      nearest2 = std::min(nearest2, norm2(x - b));
+    const double distance = std::sqrt(nearest2);
+    if (distance < p.tail.depth)
+      continue;
+    CHECK(exact_density(h, p.grid.info.decay, x) <= p.tail.bound(distance) * (1 + 1e-9));
+    ++beyond;
+  }
+  CHECK(beyond > 10);
+}
+
 } // namespace
 
 TEST_CASE("a piece by itself is copied bit for bit, wherever it is moved to") {
@@ -180,31 +209,7 @@ TEST_CASE("what a file says of a field far from its surface holds, with weights 
       if (!p.tail.known())
         continue;
       ++known;
-      const BlockIndex index(p.grid);
-      std::vector<Vec3d> body; // grid points that are inside or active
-      const Vec3i n = p.grid.frame.points;
-      for (int x = 0; x < n.x; ++x)
-        for (int y = 0; y < n.y; ++y)
-          for (int z = 0; z < n.z; ++z) {
-            const Vec3i q = p.grid.frame.lower + Vec3i{x, y, z};
-            if (is_active(p.grid, index, q) || value_at(p.grid, index, q) > 0)
-              body.push_back(p.grid.frame.position(q));
-          }
-      std::mt19937 random(seed);
-      std::normal_distribution<double> step(0, 5);
-      int beyond = 0;
-      for (int i = 0; i < 300; ++i) {
-        const Vec3d x = h.atom[random() % h.atom.size()].center + Vec3d{step(random), step(random), step(random)};
-        double nearest2 = 1e300;
-        for (const Vec3d& b : body)
-          nearest2 = std::min(nearest2, norm2(x - b));
-        const double distance = std::sqrt(nearest2);
-        if (distance < p.tail.depth)
-          continue;
-        CHECK(exact_density(h, p.grid.info.decay, x) <= p.tail.bound(distance) * (1 + 1e-9));
-        ++beyond;
-      }
-      CHECK(beyond > 10);
+      check_tail(p, h, seed, 5);
     }
   CHECK(known >= 8);
 }
@@ -216,31 +221,7 @@ TEST_CASE("what a file says of a field with bodies without atoms holds, and thei
       const double spacing = 0.8 + 0.1 * seed;
       const Piece p = make(h, spacing);
       REQUIRE(p.tail.known());
-      const BlockIndex index(p.grid);
-      std::vector<Vec3d> body;
-      const Vec3i n = p.grid.frame.points;
-      for (int x = 0; x < n.x; ++x)
-        for (int y = 0; y < n.y; ++y)
-          for (int z = 0; z < n.z; ++z) {
-            const Vec3i q = p.grid.frame.lower + Vec3i{x, y, z};
-            if (is_active(p.grid, index, q) || value_at(p.grid, index, q) > 0)
-              body.push_back(p.grid.frame.position(q));
-          }
-      std::mt19937 random(seed);
-      std::normal_distribution<double> step(0, 9);
-      int beyond = 0;
-      for (int i = 0; i < 300; ++i) {
-        const Vec3d x = h.atom[random() % h.atom.size()].center + Vec3d{step(random), step(random), step(random)};
-        double nearest2 = 1e300;
-        for (const Vec3d& b : body)
-          nearest2 = std::min(nearest2, norm2(x - b));
-        const double distance = std::sqrt(nearest2);
-        if (distance < p.tail.depth)
-          continue;
-        CHECK(exact_density(h, p.grid.info.decay, x) <= p.tail.bound(distance) * (1 + 1e-9));
-        ++beyond;
-      }
-      CHECK(beyond > 10);
+      check_tail(p, h, seed, 9);
       h.body[1].skin = 0.5 * spacing; // less than half the diagonal of a cell: it may slip through
       h.atom[static_cast<size_t>(h.body[1].atom)].radius = h.body[1].skin;
       CHECK_FALSE(density::tail(h, 1, 1, p.grid.frame).known());
