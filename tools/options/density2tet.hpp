@@ -53,18 +53,15 @@ inline void describe(cli::Table& t, Options& o) {
   t.page.about =
       "Meshes the isosurface of a density grid by dual contouring on an octree: the inside of the molecule, "
       "its surroundings up to a box or a sphere, or both in one conforming mesh. The mesh is valid by "
-      "construction: positive volumes, every face in one or two tetrahedra, every region's boundary a "
-      "closed manifold. Cells are larger where the surface is flat. Regions of tetrahedra are 1 the "
-      "molecule, 2 outside and 3 closed cavities; boundaries of triangles are 1 the molecular surface and 2 "
-      "to 7 the walls of the box, or 2 the outer sphere. With --regions the groups of a level are regions "
-      "4, 5, … in the order of the .hier, and the faces between two of them have boundaries 8, 9, …; the "
-      "file has the names of all. With --elements the mesh has at most so many tetrahedra, and 0.7 of them where "
-      "the "
-      "grid has so many; the summary line says how far the surface is from the isosurface for it. With --size no "
-      "cell "
-      "near the atoms is larger, from the grid's spacing on; sizes above twice the spacing let the surface's cells "
-      "be "
-      "larger there; cells double with the distance from there.";
+      "construction: positive volumes, every face in one or two tetrahedra, every region's boundary a closed "
+      "manifold. Cells are larger where the surface is flat. Regions of tetrahedra are 1 the molecule, 2 "
+      "outside and 3 closed cavities; boundaries of triangles are 1 the molecular surface and 2 to 7 the walls "
+      "of the box, or 2 the outer sphere. With --regions the groups of a level are regions 4, 5, … in the "
+      "order of the .hier, and the faces between two of them have boundaries 8, 9, …; the file has the names "
+      "of all. With --elements the mesh has at most so many tetrahedra, and 0.7 of them where the grid has so "
+      "many; the summary line says how far the surface is from the isosurface for it. With --size no cell near "
+      "the atoms is larger, from the grid's spacing on; sizes above twice the spacing let the surface's cells "
+      "be larger there; cells double with the distance from there.";
   t.page.examples = {
       {"density2tet 1tii.vdb -o 1tii.tet.vtu", "the molecule alone"},
       {"density2tet --region both --box 3x 1tii.vdb -o 1tii.tet.vtu",

@@ -37,20 +37,15 @@ inline void describe(cli::Table& t, Options& o) {
         "0.9")
       .unit("LO,HI");
   t.page.about =
-      "Joins densities of hier2density into one, as the paper assembles a lattice of filaments (its section 6): "
-      "the "
-      "pieces, with their copies, stand in a plan, one line each. A piece that is moved by whole spacings is "
-      "copied "
-      "bit for bit. Any other motion resamples it, by a fit of quadratic polynomials to log G; the error is "
-      "measured by "
-      "resampling back, noted, and written into the file. All pieces have one spacing, isovalue and decay rate. "
-      "Files hold the density near their surface alone. Sums are right where the pieces are so far apart that they "
-      "do "
-      "not change each other's surface, or where they were computed with a wide band (hier2density --band "
-      "0.01,1.1); "
-      "else densityjoin refuses, and hierjoin or --combine max will do. Pieces marked 'subtract' are cut out of "
-      "all others. "
-      "Tiles of one density (hier2density --tile) become the density that one run makes.";
+      "Joins densities of hier2density into one, as the paper assembles a lattice of filaments (its section "
+      "6): the pieces, with their copies, stand in a plan, one line each. A piece that is moved by whole "
+      "spacings is copied bit for bit. Any other motion resamples it, by a fit of quadratic polynomials to log "
+      "G; the error is measured by resampling back, noted, and written into the file. All pieces have one "
+      "spacing, isovalue and decay rate. Files hold the density near their surface alone. Sums are right where "
+      "the pieces are so far apart that they do not change each other's surface, or where they were computed "
+      "with a wide band (hier2density --band 0.01,1.1); else densityjoin refuses, and hierjoin or --combine "
+      "max will do. Pieces marked 'subtract' are cut out of all others. Tiles of one density (hier2density "
+      "--tile) become the density that one run makes.";
   t.page.examples = {
       {"densityjoin --piece A.vdb --piece 'A.vdb translate=0,0,60' -o two.vdb",
        "a density and a copy 60 Å above it"},

@@ -33,9 +33,8 @@ inline void describe(cli::Table& t, Options& o) {
       .unit("Å");
   t.group("surface");
   t.add("--surface", o.surface,
-        "gaussian: the density's; ses: solvent-excluded, where no probe reaches; sas: solvent-accessible, of "
-        "spheres "
-        "larger by the probe; vdw: van der Waals")
+        "gaussian: the density's; ses: solvent-excluded, where no probe reaches; sas: "
+        "solvent-accessible, of spheres larger by the probe; vdw: van der Waals")
       .one_of({"gaussian", "ses", "sas", "vdw"});
   t.add("--probe", o.probe, "radius of the probe of ses and sas").unit("Å").within(0, 1e3).shown_default("1.4");
   t.group("density");
@@ -57,15 +56,13 @@ inline void describe(cli::Table& t, Options& o) {
   cli::add_plan_options(t, o);
   t.page.about =
       "Computes the density of a molecular hierarchy on a grid, near the surface alone. The density is the sum "
-      "over "
-      "the outermost groups of (the sum over the members)^P, where an atom of radius r at distance d is "
-      "exp(-κ(d² - r²)), κ being the decay rate; the surface is where the density has the isovalue. Every stored "
-      "value is within the tolerance of that sum, and every grid cell that the surface crosses is in the file. "
-      "With --surface ses, sas or vdw the field is exp(d / 1 Å), where d is the signed distance to that surface of "
-      "the atoms' balls, positive inside: groups and exponents have no effect. With --elements the grid has "
-      "the spacing of which density2tet's default mesh has nine tenths of so many elements, for that --region; "
-      "density2tet "
-      "--elements takes the rest.";
+      "over the outermost groups of (the sum over the members)^P, where an atom of radius r at distance d is "
+      "exp(-κ(d² - r²)), κ being the decay rate; the surface is where the density has the isovalue. Every "
+      "stored value is within the tolerance of that sum, and every grid cell that the surface crosses is in "
+      "the file. With --surface ses, sas or vdw the field is exp(d / 1 Å), where d is the signed distance to "
+      "that surface of the atoms' balls, positive inside: groups and exponents have no effect. With --elements "
+      "the grid has the spacing of which density2tet's default mesh has nine tenths of so many elements, for "
+      "that --region; density2tet --elements takes the rest.";
   t.page.examples = {
       {"hier2density --spacing 1 1tii.hier -o 1tii.vdb", "the density at a spacing of 1 Å"},
       {"hier2density --grid 257 1tii.hier -o 1tii.vdb", "257 grid points along the longest axis"},
