@@ -89,7 +89,7 @@ int finish(const Table& table, const Common& o, Run& run, OutputFile* report, St
   run.end_phase();
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const int64_t peak_rss_bytes = int64_t{usage.ru_maxrss} * 1024;
+  const int64_t peak = peak_memory(), peak_rss_bytes = peak < 0 ? int64_t{usage.ru_maxrss} * 1024 : peak;
   if (run.verbose) {
     for (const Run::Phase& p : run.phases)
       std::fprintf(stderr, "%s: %-16s %8.3f s\n", run.tool.c_str(), p.name.c_str(), p.seconds);

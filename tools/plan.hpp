@@ -21,7 +21,7 @@ struct Chain {
   density::GridSize size;
   contour::Leaves leaves;
   Chain at(double spacing) const {
-    return {density::at_spacing(size, spacing), contour::at_spacing(leaves, size.spacing, spacing)};
+    return {density::at_spacing(size, spacing), contour::at_spacing(leaves, size.spacing, spacing, size.smooth)};
   }
   contour::Plan mesh(contour::Options::Meshed meshed) const { return contour::plan(leaves, size.blocks, meshed); }
   optimize::Plan improvement(contour::Options::Meshed meshed, int iterations = 15) const {
@@ -76,7 +76,7 @@ inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, 
     const int64_t bound = density::cost(most, atoms).memory;
     if (d.grid_points == 0 && d.tile.whole()) {
       say_growth(run, "a density of up to " + grouped(most.active_points) + " points", bound, 50 * atoms);
-      if (double(most.active_points) * d.spacing * d.spacing > 100 * double(atoms)) { // great balls: no count
+      if (density::of_great_balls(h)) { // no count
         cli::require_memory(p, bound / 2, "a density at " + cli::length_text(d.spacing), "a larger --spacing fits");
         return false;
       }

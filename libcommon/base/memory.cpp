@@ -47,6 +47,18 @@ int64_t memory_at_hand(const SystemFiles& system, Swap swap) {
   return least == unknown ? -1 : least;
 }
 
+int64_t peak_memory(const SystemFiles& system) {
+  std::ifstream in(system.proc / "self" / "status");
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::string name;
+    int64_t kilobytes = 0;
+    if (words >> name >> kilobytes && name == "VmHWM:")
+      return 1024 * kilobytes;
+  }
+  return -1;
+}
+
 namespace {
 std::optional<rlimit> before_limit;
 }

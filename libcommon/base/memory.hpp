@@ -10,6 +10,10 @@ enum class Swap { counts, is_no_use }; ///< no use: to memory that stays where i
 /// Bytes that the system has at hand, or the least that a control group around this process grants. -1: not known.
 int64_t memory_at_hand(const SystemFiles& system = {}, Swap swap = Swap::counts);
 
+/// Bytes that this process had in use at the most; -1: not known. Unlike getrusage() it leaves out the process that
+/// started this one.
+int64_t peak_memory(const SystemFiles& system = {});
+
 /// From here on asking for more is std::bad_alloc, a line and a status, where the system would grant it and kill
 /// the process as it is used. The stacks of that many threads, of which little is used, come on top. Nothing
 /// happens where memory is not known or where that much is mapped already, as by a sanitizer.

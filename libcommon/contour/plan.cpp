@@ -86,10 +86,13 @@ Leaves count_leaves(const BlockGrid& grid, const Options& options) {
   return LeafCounter(grid, options).count();
 }
 
-Leaves at_spacing(const Leaves& counted, double from, double to) {
+Leaves at_spacing(const Leaves& counted, double from, double to, bool smooth) {
   Leaves l = counted;
-  l.all *= interpolated(&Measured::all, to) / interpolated(&Measured::all, from);
-  l.inside *= interpolated(&Measured::inside, to) / interpolated(&Measured::inside, from);
+  const auto factor = [&](double Measured::*x) {
+    return smooth ? (from / to) * (from / to) : interpolated(x, to) / interpolated(x, from);
+  };
+  l.all *= factor(&Measured::all);
+  l.inside *= factor(&Measured::inside);
   l.inside = std::min(l.inside, l.all);
   return l;
 }

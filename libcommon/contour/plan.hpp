@@ -39,8 +39,8 @@ private:
 Leaves count_leaves(const BlockGrid& grid, const Options& options);
 
 /// The leaves of the same structure on a grid of another spacing, with the default tolerance: within 8 % from twice
-/// or half the spacing, for 0.25 to 3 Å.
-Leaves at_spacing(const Leaves& counted, double from, double to);
+/// or half the spacing, for 0.25 to 3 Å. smooth: of a surface without atoms.
+Leaves at_spacing(const Leaves& counted, double from, double to, bool smooth = false);
 /// The leaves of a grid with so many active points, with the default tolerance and box: within a sixth for
 /// molecules of some thousand atoms and more.
 Leaves expected_leaves(double spacing, int64_t active_points);

@@ -112,7 +112,7 @@ Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const
   bool cut = false;
   const BandSink look = [&](const FieldInfo& info, std::span<const BandBlocks> runs) {
     for (const BandBlocks& blocks : runs) {
-      if (f.ln_highest > 88)
+      if (f.ln_highest > 88 && !o.any_values)
         check_values(blocks);
       cut = cut || (!derived && wall_cuts_surface(frame, info, blocks));
     }

@@ -16,7 +16,8 @@ struct Options {
   bool full_search = false;
   AtomSearch atoms = AtomSearch::bvh;
   int threads = 1;
-  Tile tile; ///< the part of the grid whose blocks are wanted; the band finder has to know of tiles
+  Tile tile;               ///< the part of the grid whose blocks are wanted; the band finder has to know of tiles
+  bool any_values = false; ///< values above a float's range stay infinite: for a count, whose grid is coarser
   std::function<void(int64_t done, int64_t total)> progress;
   BandSink take; ///< receives the band's blocks; the returned Band is then empty. Empty: the band keeps them
 };
@@ -33,7 +34,7 @@ using BandFinder = std::function<Band(const Field&, const GridFrame&, const Sear
 /// what comes from them; all else as of the whole. Atoms of radius 0 make no density. Throws Error(failed) if the
 /// wall of a grid with the caller's margin cuts the surface or no cell reaches the band (of a tile: none may),
 /// Error(usage) if the grid is too large to index, the band too narrow for the tolerance (docs/theory/field.md §5)
-/// or a value too large for a float.
+/// or, but for any_values, a value too large for a float.
 Band compute(const Hierarchy& h, const Options& options, Counts& counts, const BandFinder& find = find_band);
 
 } // namespace molmesh::density

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <span>
 
 namespace molmesh::density {
 namespace {
@@ -13,9 +15,9 @@ namespace {
 struct Grown {
   double spacing, active, blocks;
 };
-constexpr Grown grown[] = {{0.125, 0.44, 0.65},   {0.25, 0.275, 0.55},  {0.375, 0.181, 0.442},
-                           {0.5, 0.126, 0.321},   {0.75, 0.054, 0.128}, {1, 0, 0},
-                           {1.5, -0.109, -0.135}, {2, -0.213, -0.174},  {3, -0.403, -0.223}};
+constexpr Grown rows[] = {{0.125, 0.44, 0.65},   {0.25, 0.275, 0.55},  {0.375, 0.181, 0.442},
+                          {0.5, 0.126, 0.321},   {0.75, 0.054, 0.128}, {1, 0, 0},
+                          {1.5, -0.109, -0.135}, {2, -0.213, -0.174},  {3, -0.403, -0.223}};
 
 constexpr double points_of_atom = 24;   // at 1 Å, no more
 constexpr double points_of_sphere = 45; // for each Å² of its radius squared
@@ -24,18 +26,42 @@ constexpr double largest_radius = 6;    // Å, of beads that stand for groups of
 /// Between two spacings along ln h, beyond the table as between its last two.
 double interpolated(double Grown::*ln, double spacing) {
   size_t i = 1;
-  while (i + 1 < std::size(grown) && grown[i].spacing < spacing)
+  while (i + 1 < std::size(rows) && rows[i].spacing < spacing)
     ++i;
-  const Grown &a = grown[i - 1], &b = grown[i];
+  const Grown &a = rows[i - 1], &b = rows[i];
   return a.*ln + (b.*ln - a.*ln) * std::log(spacing / a.spacing) / std::log(b.spacing / a.spacing);
-}
-
-double growth(double Grown::*ln, double from, double to) {
-  return (from / to) * (from / to) * std::exp(interpolated(ln, to) - interpolated(ln, from));
 }
 
 int64_t times(int64_t n, double factor) {
   return std::llround(static_cast<double>(n) * factor);
+}
+
+/// Of active points or blocks.
+int64_t grown(int64_t n, double Grown::*ln, const GridSize& counted, double to) {
+  const double from = counted.spacing;
+  double factor = (from / to) * (from / to);
+  if (!counted.smooth)
+    factor *= std::exp(interpolated(ln, to) - interpolated(ln, from));
+  return times(n, factor);
+}
+
+/// What the run refuses while it works, as values beyond floats, which great balls have: does a second's work of
+/// it, at the grid's wall.
+void try_run(const Hierarchy& hierarchy, Options options, const GridSize& size) {
+  struct Enough {};
+  int64_t blocks = 0;
+  options.tile = {1, std::max(1, std::max({size.points.x, size.points.y, size.points.z}) / (4 * tile_layer))};
+  options.take = [&](const FieldInfo&, std::span<const BandBlocks> runs) {
+    for (const BandBlocks& r : runs)
+      blocks += std::ssize(r);
+    if (blocks > 5000)
+      throw Enough();
+  };
+  try {
+    Counts counts;
+    compute(hierarchy, options, counts);
+  } catch (const Enough&) {
+  }
 }
 
 } // namespace
@@ -48,8 +74,8 @@ GridSize at_spacing(const GridSize& counted, double spacing) {
   s.spacing = spacing;
   for (int a = 0; a < 3; ++a)
     s.points[a] = static_cast<int32_t>(std::min(std::round(counted.points[a] * finer), 536870912.0));
-  s.active_points = times(counted.active_points, growth(&Grown::active, counted.spacing, spacing));
-  s.blocks = times(counted.blocks, growth(&Grown::blocks, counted.spacing, spacing));
+  s.active_points = grown(counted.active_points, &Grown::active, counted, spacing);
+  s.blocks = grown(counted.blocks, &Grown::blocks, counted, spacing);
   s.inside_blocks = times(counted.inside_blocks, finer * finer * finer);
   return s;
 }
@@ -97,8 +123,15 @@ double most_active_points(const Hierarchy& hierarchy) {
   return n;
 }
 
+bool of_great_balls(const Hierarchy& hierarchy) {
+  return most_active_points(hierarchy) > 100 * static_cast<double>(hierarchy.atom.size());
+}
+
 Plan plan(const Hierarchy& hierarchy, const Options& options) {
-  constexpr double countable = 3e6, coarsest = 1.5;
+  constexpr double countable = 3e6;
+  const bool smooth = of_great_balls(hierarchy);
+  const double coarsest = smooth ? HUGE_VAL : 1.5;
+  const double most = smooth ? most_active_points(hierarchy) : points_of_atom * double(hierarchy.atom.size());
   Options o = options;
   o.progress = {};
   o.take = {};
@@ -107,13 +140,18 @@ Plan plan(const Hierarchy& hierarchy, const Options& options) {
   const auto count = [&] {
     Counts counts;
     p.band = compute(hierarchy, o, counts);
-    p.counted = {p.band.frame.spacing, p.band.frame.points, p.band.active_points,
-                 static_cast<int64_t>(p.band.block.size()), static_cast<int64_t>(p.band.inside.size())};
+    p.counted = {p.band.frame.spacing,
+                 p.band.frame.points,
+                 p.band.active_points,
+                 static_cast<int64_t>(p.band.block.size()),
+                 static_cast<int64_t>(p.band.inside.size()),
+                 smooth};
     p.margin = counts.margin;
   };
   double spacing = options.spacing;
   if (options.grid_points > 0) { // the spacing that so many points along the longest axis have
     o.grid_points = std::min<int64_t>(options.grid_points, 65);
+    o.any_values = o.grid_points < options.grid_points;
     count();
     if (o.grid_points == options.grid_points) {
       p.size = p.counted;
@@ -125,11 +163,17 @@ Plan plan(const Hierarchy& hierarchy, const Options& options) {
     o.grid_points = 0;
   }
   o.spacing = spacing;
-  while (o.spacing * 2 <= coarsest &&
-         points_of_atom * static_cast<double>(hierarchy.atom.size()) / (o.spacing * o.spacing) > countable)
+  while (o.spacing * 2 <= coarsest && most / (o.spacing * o.spacing) > countable)
     o.spacing *= 2;
+  o.any_values = o.spacing > spacing;
   count();
+  if (o.any_values)
+    for (LargeArray<float>& values : p.band.storage)
+      for (float& v : values)
+        v = std::min(v, std::numeric_limits<float>::max());
   p.size = at_spacing(p.counted, spacing);
+  if (smooth && o.any_values)
+    try_run(hierarchy, options, p.size);
   return p;
 }
 

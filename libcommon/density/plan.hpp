@@ -11,6 +11,7 @@ struct GridSize {
   int64_t active_points = 0; ///< in the file
   int64_t blocks = 0;        ///< of 8³ points, those with active points
   int64_t inside_blocks = 0; ///< those that lie wholly inside
+  bool smooth = false;       ///< of great balls: the surface does not grow with the resolution
 };
 
 /// The same structure on a grid of another spacing. Exact for the spacing that was counted.
@@ -19,6 +20,8 @@ GridSize at_spacing(const GridSize& counted, double spacing);
 /// Times h²: what the active points of a grid of h seldom exceed. 24 for an atom among others, and the whole sphere
 /// of one that is larger than atoms are.
 double most_active_points(const Hierarchy& hierarchy);
+/// Whether nearly all of these are of spheres far larger than atoms.
+bool of_great_balls(const Hierarchy& hierarchy);
 
 /// Of hier2density on a grid of that size: bytes at the peak, and seconds of one core of the machine of
 /// docs/benchmarks.md.
@@ -37,8 +40,8 @@ struct Plan {
 /// What a tile of the planned grid holds, as the counted band is distributed.
 GridSize part_of(const Plan& plan, Tile tile);
 
-/// Counts the band on a grid of h, 2h or 4h, the first of some three million active points, and no coarser than
-/// 1.5 Å where h is finer; throws as compute().
+/// Counts the band on a grid of h, 2h, 4h, …, the first of some three million active points, and but for great
+/// balls no coarser than 1.5 Å where h is finer; throws as compute().
 Plan plan(const Hierarchy& hierarchy, const Options& options);
 
 } // namespace molmesh::density

@@ -25,7 +25,7 @@ mkdir -p "$prefix/bin" "$prefix/share"
 cp -r "$build/share/molmesh" "$prefix/share/"
 cp "$source/tools/molmesh-array" "$prefix/bin/"
 cp "$source/Makefile.pipeline" "$prefix/share/molmesh/"
-for program in pdb2hier hier2density density2tet tetsmooth; do ln -s "$build/bin/$program" "$prefix/bin/"; done
+for program in pdb2hier hier2density densityjoin density2tet tetsmooth; do ln -s "$build/bin/$program" "$prefix/bin/"; done
 rm "$prefix/bin/hier2density" "$prefix/bin/density2tet"
 cat >"$prefix/bin/hier2density" <<END
 #!/bin/bash
@@ -68,6 +68,10 @@ gzip -c "$structures/a.pdb" >"$structures/packed.pdb.gz"
 out="$work/the out"
 "$array" -o "$out" "$structures" "${options[@]}" --throttle 6 --time 1 -- --signal=B:USR1@50 >"$work/first.txt" 2>&1 ||
   fail "the first call: status $?" "$work/first.txt"
+
+# The density in tiles. One structure is broken.
+"$array" -o "$work/tiled" "$structures/a.pdb" "$structures/b c.pdb" "$structures/broken.pdb" "${options[@]}" --tiles 3 --time 5 \
+  >"$work/tiled.txt" 2>&1 || fail "the call with tiles: status $?" "$work/tiled.txt"
 
 # Meanwhile ten arrays of four structures; in each, one process of a task is killed at a random moment.
 seed=${SEED:-$$}
@@ -114,7 +118,7 @@ expect broken pdb2hier 'failed: *'
 made=$(find "$out" -maxdepth 1 -newer "$work/second" -type f ! -name summary.tsv ! -name 'killed.*')
 [ -z "$made" ] || fail "made again: $made"
 
-# The bytes of make -j. A .vdb has a new UUID, of 36 letters, at each write.
+# The bytes of make -j, here of densities in two tiles. A .vdb has a new UUID, of 36 letters, at each write.
 same_files() { # same_files FOLDER FOLDER
   local file name
   for file in "$1"/*.hier "$1"/*.vtu "$1"/*.vdb; do
@@ -129,10 +133,16 @@ mkdir "$work/make"
 for file in "$structures"/*; do ln -s "$file" "$work/make/"; done
 goals=()
 for file in "$out"/*.vdb; do goals+=("$(basename "$file" .vdb).vtu"); done
-(cd "$work/make" && make -s -j4 -f "$prefix/share/molmesh/Makefile.pipeline" BIN="$prefix/bin" THREADS=1 \
+(cd "$work/make" && make -s -j4 -f "$prefix/share/molmesh/Makefile.pipeline" BIN="$prefix/bin" THREADS=1 TILES=2 \
   HIER2DENSITY_FLAGS='--spacing 2' TETSMOOTH_FLAGS='--iterations 3 --parts 2' -- "${goals[@]}") >"$work/make.txt" 2>&1 ||
   fail "make -j" "$work/make.txt"
 same_files "$work/make" "$out"
+
+# The same by tiles.
+[ "$(ls "$work/tiled" | grep -c -e '\.vtu$' -e '\.vdb$' -e '-of-3\.tile\.json$')" = 12 ] || fail "tiled: $(ls "$work/tiled")"
+same_files "$work/tiled" "$out"
+grep -q "^b c	hier2density	[0-9.]*	[0-9]*.*	done" "$work/tiled/summary.tsv" || fail "tiled: no row" "$work/tiled/summary.tsv"
+grep -q "^broken	hier2density	.*	not run" "$work/tiled/summary.tsv" || fail "tiled: broken" "$work/tiled/summary.tsv"
 
 # The same of the arrays that were disturbed.
 for n in $(seq 10); do

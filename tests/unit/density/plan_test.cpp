@@ -1,0 +1,54 @@
+// plan_test.cpp — a plan counts few points, and tells of many.
+#include "base/error.hpp"
+#include "density/plan.hpp"
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace molmesh;
+
+namespace {
+
+Hierarchy ball(double radius) {
+  Hierarchy h;
+  Atom a;
+  a.radius = radius;
+  h.atom.push_back(a);
+  return h;
+}
+
+} // namespace
+
+TEST_CASE("a great ball is planned by a coarser grid") {
+  density::Options o;
+  o.decay = 0.01;
+  o.spacing = 0.5;
+  const density::Plan plan = density::plan(ball(200), o);
+  CHECK(plan.counted.spacing == 1);
+  density::Counts counts;
+  int64_t blocks = 0;
+  o.take = [&](const FieldInfo&, std::span<const BandBlocks> runs) {
+    for (const BandBlocks& r : runs)
+      blocks += std::ssize(r);
+  };
+  const Band band = density::compute(ball(200), o, counts);
+  CHECK(std::abs(double(plan.size.active_points) / double(band.active_points) - 1) < 0.05);
+  CHECK(std::abs(double(plan.size.blocks) / double(blocks) - 1) < 0.05);
+  CHECK(std::abs(plan.size.points.x - band.frame.points.x) <= 8);
+}
+
+TEST_CASE("where the coarser grid of a plan has values beyond floats, they are the largest float") {
+  density::Options o;
+  o.spacing = 0.25;
+  const density::Plan plan = density::plan(ball(100), o);
+  CHECK(plan.counted.spacing > o.spacing);
+  CHECK(plan.size.active_points > 1'000'000);
+  for (const float v : to_block_grid(plan.band, 1).value)
+    if (!std::isfinite(v))
+      FAIL("found " << v);
+}
+
+TEST_CASE("a plan refuses a great ball whose values are beyond floats on the run's own grid") {
+  density::Options o;
+  o.spacing = 0.5;
+  CHECK_THROWS_WITH(density::plan(ball(1000), o), Catch::Contains("beyond the file's single precision"));
+}
