@@ -37,6 +37,7 @@ NOT_RUN = {
     (GUIDE, "make -f Makefile.pipeline deb"): "builds and installs; the tests `install: Debian …` run it",
     (GUIDE, "cmake -S . -B build"): "builds; the test `install: example` runs the installation",
     (GUIDE, "molmesh-array -o meshes structures"): "needs Slurm: the test `cluster: job arrays on Slurm`",
+    (GUIDE, "molmesh-array -o meshes big.cif.gz"): "needs Slurm: the test `cluster: job arrays on Slurm`; transcripts/pipeline.txt",
     (GUIDE, 'name=$(sed -n "${PBS_ARRAY_INDEX}p"'): "needs PBS or Grid Engine",
 }
 # Pages whose blocks are for developers: they build, or need other tools. Their options are checked.
