@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <new>
 #include <sys/resource.h>
+#include <vector>
 
 using namespace molmesh;
 using namespace molmesh::test;
@@ -50,6 +51,18 @@ TEST_CASE("the least of what the system has and what control groups grant") {
     s.says("groups/memory/memory.limit_in_bytes", "1000000\n");
     CHECK(s.at_hand() == 1000000);
   }
+}
+
+TEST_CASE("the most memory that the process had in use is what the system says of it alone") {
+  const System s;
+  CHECK(peak_memory({s.folder / "proc", {}}) == -1);
+  s.says("proc/self/status", "Name:\tx\nVmPeak:\t   900 kB\nVmHWM:\t   123 kB\nVmRSS:\t    77 kB\n");
+  CHECK(peak_memory({s.folder / "proc", {}}) == 123 * 1024);
+  const int64_t before = peak_memory();
+  CHECK(before > 1'000'000);
+  const std::vector<char> used(64 << 20, 'x');
+  CHECK(peak_memory() >= 64 << 20);
+  CHECK(used.back() == 'x');
 }
 
 TEST_CASE("the processors that control groups grant") {
