@@ -1,28 +1,18 @@
 // atom_site.cpp — what would make gemmi throw without saying where, or overflow, is refused here, by line.
 #include "formats/pdb/atom_site.hpp"
 #include "base/error.hpp"
-#include "formats/pdb/element_name.hpp"
-#include "formats/pdb/parse.hpp"
+#include "formats/pdb/model_names.hpp"
 #include "molecule/limits.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
 #include <cmath>
+#include <gemmi/mmcif.hpp>
 #include <gemmi/numb.hpp>
+#include <limits>
 
 namespace molmesh::formats {
 namespace {
 namespace cif = gemmi::cif;
-
-/// The line of a row when the rows stand one a line, otherwise the loop's.
-int64_t line_of_row(std::string_view text, int64_t loop_line, size_t tags, size_t row, const std::string& value) {
-  const int64_t guess = loop_line + static_cast<int64_t>(tags + row) + 1;
-  int64_t result = std::max<int64_t>(loop_line, 1); // JSON knows no lines
-  for_each_line(text, [&](std::string_view line, int64_t number) {
-    if (number == guess && line.find(value) != std::string_view::npos)
-      result = number;
-  });
-  return result;
-}
 
 /// gemmi's integers overflow unnoticed: nine digits at most.
 bool is_integer(std::string_view value) {
@@ -33,35 +23,221 @@ bool is_integer(std::string_view value) {
 
 } // namespace
 
-void check_coordinates(const cif::Loop& loop, const AtomColumns& columns, std::string_view text,
-                       const std::string& where, int64_t line) {
-  const size_t width = loop.width();
-  for (const char* axis : {"Cartn_x", "Cartn_y", "Cartn_z"}) {
-    const auto column = static_cast<size_t>(columns.find(axis));
-    for (size_t i = column, row = 0; i < loop.values.size(); i += width, ++row)
-      if (!(std::abs(cif::as_number(loop.values[i])) <= largest_coordinate))
-        fail_input(where + ":" + std::to_string(line_of_row(text, line, loop.tags.size(), row, loop.values[i])) +
-                   ": found " + in_quotes(loop.values[i]) + " as " + axis + ", expected a coordinate (Å)");
+bool is_category_read(std::string_view name) {
+  static constexpr std::array<std::string_view, 7> read = {"_entity",
+                                                           "_entity_poly",
+                                                           "_entity_poly_seq",
+                                                           "_struct_asym",
+                                                           "_pdbx_struct_assembly",
+                                                           "_pdbx_struct_assembly_gen",
+                                                           "_pdbx_struct_oper_list"};
+  return std::find(read.begin(), read.end(), name) != read.end();
+}
+
+std::string AtomSite::at(int64_t line) const {
+  return file_ + ":" + std::to_string(std::max<int64_t>(line, line_));
+}
+
+bool AtomSite::says(Column c) const {
+  return has(c) && !cif::is_null(value_[c]);
+}
+
+void AtomSite::complete(Column c, Column like, const char* value) {
+  if (has(c))
+    return;
+  at_[c] = at_[like];
+  value_[c] = value;
+}
+
+void AtomSite::begin(const std::vector<std::string>& tags, int64_t line) {
+  begun_ = true;
+  line_ = std::max<int64_t>(line, 1);
+  at_.fill(-1);
+  for (size_t t = tags.size(); t-- > 0;) // the first of equal ones
+    for (size_t c = 0; c < columns; ++c)
+      if (gemmi::to_lower(tags[t]) == atom_site + names[c])
+        at_[c] = static_cast<int>(t);
+  for (const auto& [c, name] : {std::pair{x, "Cartn_x"}, {y, "Cartn_y"}, {z, "Cartn_z"}})
+    if (!has(c))
+      fail_input(at(0) + ": found atoms without _atom_site." + name + ", expected coordinates");
+  if (!has(label_atom) && !has(auth_atom))
+    fail_input(at(0) + ": found atoms without _atom_site.label_atom_id, expected names");
+  used_.assign(tags.size(), 0);
+  for (const int t : at_)
+    if (t >= 0)
+      used_[static_cast<size_t>(t)] = 1;
+  chain_column_ = has(auth_chain) ? auth_chain : label_chain;
+  residue_column_ = has(auth_residue) ? auth_residue : label_residue;
+  atom_column_ = has(auth_atom) ? auth_atom : label_atom;
+  complete(symbol, symbol, "?");
+  complete(alternative, alternative, ".");
+  complete(label_chain, auth_chain, "A");
+  complete(label_residue, auth_residue, "UNK");
+  complete(label_atom, auth_atom, "");
+  complete(occupancy, occupancy, "1");
+  complete(b_factor, b_factor, "0");
+  complete(number, label_number, "1");
+}
+
+void AtomSite::check(int64_t line) {
+  const auto refuse = [&](Column c, const std::string& expected) {
+    // The format's own spelling.
+    const char* const name = c == x ? "Cartn_x" : c == y ? "Cartn_y" : c == z ? "Cartn_z" : names[c];
+    fail_input(at(line) + ": found " + in_quotes(value_[c]) + " as " + name + ", expected " + expected);
+  };
+  for (const Column c : {x, y, z})
+    if (!(std::abs(cif::as_number(value_[c])) <= largest_coordinate))
+      refuse(c, "a coordinate (Å)");
+  for (const Column c : {number, label_number}) {
+    if (!says(c))
+      continue;
+    std::string_view digits = value_[c];
+    if (c == number && digits.size() > 1 && digits.back() > '9')
+      digits.remove_suffix(1);
+    if (!is_integer(digits))
+      refuse(c, "an integer");
   }
 }
 
-void check_integers(cif::Loop& loop, const AtomColumns& columns, std::string_view text, const std::string& where,
-                    int64_t line) {
-  const auto each = [&](const char* name, auto take) {
-    if (const int column = columns.find(name); column >= 0)
-      for (size_t i = static_cast<size_t>(column), row = 0; i < loop.values.size(); i += loop.width(), ++row)
-        take(loop.values[i], row);
-  };
-  for (const char* name : {"auth_seq_id", "label_seq_id"})
-    each(name, [&](const std::string& value, size_t row) {
-      std::string_view number = value;
-      if (name[0] == 'a' && number.size() > 1 && number.back() > '9')
-        number.remove_suffix(1);
-      if (!cif::is_null(value) && !is_integer(number))
-        fail_input(where + ":" + std::to_string(line_of_row(text, line, loop.tags.size(), row, value)) +
-                   ": found " + in_quotes(value) + " as " + name + ", expected an integer");
-    });
-  each("pdbx_formal_charge", [](std::string& value, size_t) { value = "?"; });
+gemmi::Element AtomSite::element() {
+  std::string& text = value_[symbol];
+  if (const auto end = std::find_if_not(text.begin(), text.end(), is_letter); end != text.begin())
+    text.erase(end, text.end()); // "O1-": a charge behind it
+  if (!cif::is_null(text))
+    return gemmi::Element(cif::as_string(text));
+  const std::string name = cif::as_string(value_[label_atom]), of = cif::as_string(value_[label_residue]);
+  const gemmi::Element named_as = named_element(name, of);
+  guesses_.add(name, of, named_as);
+  ++named_;
+  return named_as;
+}
+
+void AtomSite::open_model() {
+  std::string& n = value_[model];
+  if (n.size() > 1 && n[0] == '0' && std::all_of(n.begin(), n.end(), is_digit))
+    n = model_number(n);
+  const std::string& name = has(model) ? n : "1";
+  if (rows_ > 0 && name == model_)
+    return;
+  close_chain();
+  model_ = name;
+  const auto [known, is_new] = model_of_name_.try_emplace(cif::as_string(name), models_.size());
+  if (is_new) {
+    if (models_.size() == most_models)
+      fail_input(at(0) + ": found more than " + std::to_string(most_models) + " models, expected fewer");
+    models_.emplace_back(known->first);
+  }
+  model_index_ = known->second;
+}
+
+void AtomSite::open_residue() {
+  const std::array<const std::string*, 3> now = {&value_[residue_column_], &value_[number], &value_[insertion]};
+  bool same = residue_open_;
+  for (size_t i = 0; i < now.size(); ++i)
+    if (residue_[i] != *now[i]) {
+      residue_[i] = *now[i];
+      same = false;
+    }
+  if (same)
+    return;
+  const gemmi::ResidueId id = gemmi::impl::make_resid(cif::as_string(residue_[0]), cif::as_string(residue_[1]),
+                                                      has(insertion) ? &residue_[2] : nullptr);
+  if (residue_open_ && residues_[residue_index_].matches(id))
+    return;
+  close_residue();
+  residue_open_ = true;
+  gemmi::Residue& fresh = residues_.emplace_back(id);
+  const auto [known, is_new] = known_.insert(residues_.size() - 1);
+  residue_index_ = *known;
+  if (!is_new) {
+    residues_.pop_back();
+    return;
+  }
+  if (says(label_number))
+    fresh.label_seq = cif::as_int(value_[label_number]);
+  fresh.subchain = cif::as_string(value_[label_chain]);
+  if (says(entity))
+    fresh.entity_id = cif::as_string(value_[entity]);
+  if (says(group))
+    for (size_t i = 0; i < 2 && i <= value_[group].size(); ++i) // the first may be a quote
+      if (const char c = gemmi::alpha_up(value_[group][i]); c == 'A' || c == 'H' || c == '\0')
+        fresh.het_flag = c;
+}
+
+void AtomSite::close_residue() {
+  if (!atoms_.empty())
+    atoms_.move_to(residues_[residue_index_].atoms);
+}
+
+void AtomSite::close_chain() {
+  if (!chain_open_)
+    return;
+  close_residue();
+  known_ = decltype(known_)(0, Hash{&residues_}, Same{&residues_}); // clear() takes as long as the largest did
+  residues_.move_to(models_[model_index_].chains.emplace_back(chain_).residues);
+  chain_open_ = residue_open_ = false;
+}
+
+void AtomSite::row(const std::vector<std::string_view>& values, int64_t line) {
+  for (size_t c = 0; c < columns; ++c)
+    if (at_[c] >= 0)
+      value_[c].assign(values[static_cast<size_t>(at_[c])]);
+  check(line);
+  try {
+    open_model();
+    if (!chain_open_ || value_[chain_column_] != chain_name_) {
+      chain_name_ = value_[chain_column_];
+      if (std::string name = cif::as_string(chain_name_); !chain_open_ || name != chain_) {
+        close_chain();
+        chain_ = std::move(name);
+        chain_open_ = true;
+      }
+    }
+    open_residue();
+    gemmi::Atom& atom = atoms_.emplace_back();
+    atom.name = cif::as_string(value_[atom_column_]);
+    atom.altloc = cif::as_char(value_[alternative], '\0');
+    atom.element = element();
+    atom.serial = static_cast<int>(rows_);
+    atom.pos = {cif::as_number(value_[x]), cif::as_number(value_[y]), cif::as_number(value_[z])};
+    atom.occ = static_cast<float>(cif::as_number(value_[occupancy], 1.0));
+    atom.b_iso = static_cast<float>(cif::as_number(value_[b_factor], 50.0));
+    if (has(deuterium) && atom.element == gemmi::El::H) {
+      gemmi::Residue residue;
+      residue.atoms.push_back(atom);
+      gemmi::impl::apply_hd_mixture(&residue, cif::as_number(value_[deuterium]));
+      atom = residue.atoms[0];
+      if (residue.atoms.size() > 1)
+        atoms_.emplace_back(residue.atoms[1]);
+    }
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) { // no fault of the file
+    throw;
+  } catch (const std::exception& e) {
+    fail_input(at(line) + ": " + std::string(e.what()).substr(0, std::string_view(e.what()).find('\n')));
+  }
+  ++rows_;
+  if (!has(charge) && !has(radius))
+    return;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const double q = has(charge) ? cif::as_number(value_[charge], none) : none,
+               r = has(radius) ? cif::as_number(value_[radius], none) : none;
+  without_radius_ += has(radius) && !(r >= 0);
+  parsed_.pqr.push_back({q, r >= 0 ? r : none});
+}
+
+void AtomSite::finish() {
+  if (rows_ == 0)
+    fail_input(at(0) + ": found an empty _atom_site category, expected atoms");
+  close_chain();
+  parsed_.structure.models = std::move(models_);
+  if (named_ > 0)
+    parsed_.notes.push_back("atoms without an element, taken from the name: " + std::to_string(named_));
+  guesses_.report(parsed_);
+  if (without_radius_ > 0)
+    parsed_.notes.push_back("atoms without a number ≥ 0 as _atom_site.pqr_radius, which have their element's: " +
+                            std::to_string(without_radius_));
 }
 
 void check_sequence(const cif::Item& item, const std::string& where) {
@@ -76,28 +252,6 @@ void check_sequence(const cif::Item& item, const std::string& where) {
     if (const int column = item.loop.find_tag(tag); column >= 0)
       for (size_t i = static_cast<size_t>(column); i < item.loop.values.size(); i += item.loop.width())
         check(item.loop.values[i]);
-}
-
-int64_t name_elements(cif::Loop& loop, const AtomColumns& columns, ElementGuesses& guesses) {
-  const auto element = static_cast<size_t>(columns.find("type_symbol"));
-  const auto residue = static_cast<size_t>(columns.find("label_comp_id"));
-  const int label = columns.find("label_atom_id");
-  const auto atom = static_cast<size_t>(label < 0 ? columns.find("auth_atom_id") : label);
-  int64_t named = 0;
-  for (size_t row = 0; row < loop.values.size(); row += loop.width()) {
-    std::string& symbol = loop.values[row + element];
-    if (const auto end = std::find_if_not(symbol.begin(), symbol.end(), is_letter); end != symbol.begin())
-      symbol.erase(end, symbol.end()); // "O1-": a charge behind it
-    if (cif::is_null(symbol)) {
-      const std::string name = cif::as_string(loop.values[row + atom]),
-                        of = cif::as_string(loop.values[row + residue]);
-      const gemmi::Element named_as = named_element(name, of);
-      guesses.add(name, of, named_as);
-      symbol = named_as.name();
-      ++named;
-    }
-  }
-  return named;
 }
 
 } // namespace molmesh::formats

@@ -1,71 +1,146 @@
-// atom_site.hpp — mmCIF's table of atoms before gemmi reads it: columns found in any case, completed, checked.
+// atom_site.hpp — mmCIF's table of atoms, row by row, becomes models: no table of texts is kept.
 #pragma once
+#include "formats/pdb/chunks.hpp"
+#include "formats/pdb/element_name.hpp"
+#include "formats/pdb/parse.hpp"
+#include <array>
 #include <cstdint>
-#include <gemmi/cifdoc.hpp>
+#include <gemmi/model.hpp>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 #include <vector>
+
+namespace gemmi::cif {
+struct Item;
+}
 
 namespace molmesh::formats {
 
 inline const std::string atom_site = "_atom_site.";
 
-class AtomColumns {
+/// Is anything of this category ("_entity") used, besides the atoms?
+bool is_category_read(std::string_view name);
+
+/// The atoms of one data block. Columns are found in any case, and completed where the file has none. Residues and
+/// chains are those that gemmi::make_structure_from_block() makes, each looked up by hash; gemmi::Atom::serial is
+/// the row.
+class AtomSite {
 public:
-  explicit AtomColumns(gemmi::cif::Loop& loop) : loop_(loop) {
-    for (std::string& tag : loop_.tags)
-      tag = canonical(tag);
-  }
+  /// Charges and radii go to parsed.pqr.
+  AtomSite(Parsed& parsed, std::string file) : parsed_(parsed), file_(std::move(file)) {}
+  AtomSite(const AtomSite&) = delete;
+  AtomSite& operator=(const AtomSite&) = delete;
 
-  int find(const std::string& name) const {
-    const auto at = std::find(loop_.tags.begin(), loop_.tags.end(), atom_site + name);
-    return at == loop_.tags.end() ? -1 : static_cast<int>(at - loop_.tags.begin());
-  }
-
-  /// Adds the column where it is missing: a copy of the first of `like` that is there, or `value`.
-  void complete(const std::string& name, const std::vector<std::string>& like, const std::string& value) {
-    if (find(name) >= 0)
-      return;
-    int from = -1;
-    for (const std::string& other : like)
-      if (from < 0)
-        from = find(other);
-    const size_t width = loop_.width(), rows = loop_.length();
-    std::vector<std::string> values;
-    values.reserve(loop_.values.size() + rows);
-    for (size_t r = 0; r < rows; ++r) {
-      for (size_t c = 0; c < width; ++c)
-        values.push_back(std::move(loop_.values[r * width + c]));
-      values.push_back(from < 0 ? value : values[values.size() - width + static_cast<size_t>(from)]);
-    }
-    loop_.tags.push_back(atom_site + name);
-    loop_.values = std::move(values);
-  }
+  /// line: of the table in the file; below 1: none. Throws Error(bad_input) "FILE:LINE: …" where a column is
+  /// missing that nothing can replace.
+  void begin(const std::vector<std::string>& tags, int64_t line);
+  bool begun() const { return begun_; }
+  /// Of the tag with this index: is its column used?
+  bool uses(size_t tag) const { return used_[tag] != 0; }
+  /// One value for each tag, as CIF writes it, quotes and all. Throws Error(bad_input) "FILE:LINE: …" where a value
+  /// is none.
+  void row(const std::vector<std::string_view>& values, int64_t line);
+  int64_t rows() const { return rows_; }
+  /// After the last row: the models into parsed.structure, and what the file lacked into parsed.notes.
+  void finish();
 
 private:
-  /// mmCIF tags are case-insensitive, gemmi's are not.
-  static std::string canonical(const std::string& tag) {
-    static const char* const known[] = {"group_PDB",      "Cartn_x",           "Cartn_y",           "Cartn_z",
-                                        "B_iso_or_equiv", "pdbx_PDB_ins_code", "pdbx_PDB_model_num"};
-    const std::string lower = gemmi::to_lower(tag);
-    for (const char* name : known)
-      if (lower == atom_site + gemmi::to_lower(name))
-        return atom_site + name;
-    return lower;
-  }
-  gemmi::cif::Loop& loop_;
+  enum Column {
+    group,
+    symbol,
+    label_atom,
+    alternative,
+    label_residue,
+    label_chain,
+    entity,
+    label_number,
+    insertion,
+    x,
+    y,
+    z,
+    occupancy,
+    b_factor,
+    number,
+    auth_residue,
+    auth_chain,
+    auth_atom,
+    model,
+    deuterium,
+    charge,
+    radius,
+    columns
+  };
+  static constexpr std::array<const char*, columns> names = {"group_pdb",
+                                                             "type_symbol",
+                                                             "label_atom_id",
+                                                             "label_alt_id",
+                                                             "label_comp_id",
+                                                             "label_asym_id",
+                                                             "label_entity_id",
+                                                             "label_seq_id",
+                                                             "pdbx_pdb_ins_code",
+                                                             "cartn_x",
+                                                             "cartn_y",
+                                                             "cartn_z",
+                                                             "occupancy",
+                                                             "b_iso_or_equiv",
+                                                             "auth_seq_id",
+                                                             "auth_comp_id",
+                                                             "auth_asym_id",
+                                                             "auth_atom_id",
+                                                             "pdbx_pdb_model_num",
+                                                             "ccp4_hd_mixture",
+                                                             "pqr_partial_charge",
+                                                             "pqr_radius"}; ///< in small letters
+
+  /// Residues of the open chain by what they are; holds indices.
+  struct Hash {
+    const Chunks<gemmi::Residue>* residues;
+    size_t operator()(size_t r) const { return std::hash<gemmi::ResidueId>()((*residues)[r]); }
+  };
+  struct Same {
+    const Chunks<gemmi::Residue>* residues;
+    bool operator()(size_t a, size_t b) const { return (*residues)[a].matches((*residues)[b]); }
+  };
+
+  std::string at(int64_t line) const;
+  bool has(Column c) const { return at_[c] >= 0; }
+  bool says(Column c) const; ///< the column is there, and its value is not null
+  void complete(Column c, Column like, const char* value);
+  void open_model();
+  void open_residue();
+  void close_residue();
+  void close_chain();
+  gemmi::Element element();
+  void check(int64_t line);
+
+  Parsed& parsed_;
+  std::string file_;
+  int64_t line_ = 1, rows_ = 0;
+  bool begun_ = false;
+  std::vector<uint8_t> used_; ///< by tag
+  std::array<int, columns> at_{};
+  std::array<std::string, columns> value_; ///< of the row
+  std::array<std::string, 3> residue_;     ///< of the row before: name, number, insertion code
+  std::string model_, chain_name_;         ///< of the row before
+  Column chain_column_ = label_chain, residue_column_ = label_residue, atom_column_ = label_atom;
+
+  std::vector<gemmi::Model> models_;
+  std::unordered_map<std::string, size_t> model_of_name_;
+  size_t model_index_ = 0;
+  bool chain_open_ = false, residue_open_ = false;
+  std::string chain_;               ///< name of the open one
+  Chunks<gemmi::Residue> residues_; ///< of the open chain
+  std::unordered_set<size_t, Hash, Same> known_{0, Hash{&residues_}, Same{&residues_}};
+  size_t residue_index_ = 0;
+  Chunks<gemmi::Atom> atoms_; ///< of the open residue, since it has been opened
+  ElementGuesses guesses_;
+  int64_t named_ = 0, without_radius_ = 0;
 };
 
-/// Coordinates are finite. Throws Error(bad_input) "WHERE:LINE: …"; line: where the table begins in `text`.
-void check_coordinates(const gemmi::cif::Loop& loop, const AtomColumns& columns, std::string_view text,
-                       const std::string& where, int64_t line);
-/// Residue numbers are integers, perhaps with the letter of an insertion behind; what is not used but would be read
-/// is cleared.
-void check_integers(gemmi::cif::Loop& loop, const AtomColumns& columns, std::string_view text,
-                    const std::string& where, int64_t line);
-/// If `item` is _entity_poly_seq: its places are integers.
+/// If `item` is _entity_poly_seq: its places are integers. Throws Error(bad_input) "WHERE: …".
 void check_sequence(const gemmi::cif::Item& item, const std::string& where);
-/// Elements that the file does not give, told by the names; returns how many. Wants type_symbol and label_comp_id.
-int64_t name_elements(gemmi::cif::Loop& loop, const AtomColumns& columns, class ElementGuesses& guesses);
 
 } // namespace molmesh::formats

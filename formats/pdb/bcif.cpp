@@ -2,6 +2,7 @@
 // D. Sehnal et al., PLoS Comput. Biol. 16 (2020) e1008247.
 #include "formats/pdb/bcif.hpp"
 #include "base/error.hpp"
+#include "formats/pdb/atom_site.hpp"
 #include "formats/pdb/msgpack.hpp"
 #include "formats/pdb/parse.hpp"
 #include <algorithm>
@@ -135,51 +136,93 @@ std::string written(double v, bool is_float) {
   return is_float ? print(static_cast<float>(v)) : print(v);
 }
 
-/// One text for each row.
-std::vector<std::string> texts(const Value& data, size_t rows) {
-  const Value& encodings = data["encoding"];
-  const std::string_view bytes = data["data"].text;
-  std::vector<std::string> out;
-  if (!encodings.array.empty() && encodings.array[0]["kind"].text == "StringArray") {
-    const Value& e = encodings.array[0];
-    const std::string_view all = e["stringData"].text;
-    const std::vector<double> at = decode(e["offsets"].text, e["offsetEncoding"], all.size() + 2).number;
-    for (const double i : decode(bytes, e["dataEncoding"], rows).number) {
-      if (i < 0) {
-        out.emplace_back(".");
-        continue;
-      }
-      if (i + 1 >= static_cast<double>(at.size()))
-        wrong("text beyond a column's");
-      const double begin = at[static_cast<size_t>(i)], end = at[static_cast<size_t>(i) + 1];
-      if (!(begin >= 0 && begin <= end && end <= static_cast<double>(all.size())))
-        wrong("text beyond a column's");
-      out.push_back(
-          cif::quote(std::string(all.substr(static_cast<size_t>(begin), static_cast<size_t>(end - begin)))));
+/// A column in as few bytes as its values allow; text(row) is the value as CIF writes it.
+class ColumnTexts {
+public:
+  ColumnTexts(const Value& column, size_t rows) {
+    const Value& data = column["data"];
+    const Value& encodings = data["encoding"];
+    Column values;
+    if (!encodings.array.empty() && encodings.array[0]["kind"].text == "StringArray") {
+      const Value& e = encodings.array[0];
+      is_text_ = true;
+      all_ = e["stringData"].text;
+      at_ = decode(e["offsets"].text, e["offsetEncoding"], all_.size() + 2).number;
+      values = decode(data["data"].text, e["dataEncoding"], rows);
+      for (const double i : values.number)
+        check_text(i);
+    } else {
+      values = decode(data["data"].text, encodings, rows);
+      is_float_ = values.is_float;
     }
-  } else {
-    const Column column = decode(bytes, encodings, rows);
-    for (const double v : column.number)
-      out.push_back(written(v, column.is_float));
+    if (values.number.size() != rows)
+      wrong("a column of " + std::to_string(values.number.size()) + " rows in a category of " +
+            std::to_string(rows));
+    if (std::all_of(values.number.begin(), values.number.end(),
+                    [](double v) { return std::abs(v) < 2e9 && v == std::floor(v); }))
+      integer_.assign(values.number.begin(), values.number.end());
+    else
+      real_ = std::move(values.number);
+    if (const Value& mask = column["mask"]; mask.kind == Value::Kind::map) {
+      const std::vector<double> absent = decode(mask["data"].text, mask["encoding"], rows).number;
+      if (absent.size() != rows)
+        wrong("a mask of another length than its column");
+      for (const double a : absent)
+        absent_.push_back(a == 0 ? '\0' : a == 1 ? '.' : '?');
+    }
   }
-  if (out.size() != rows)
-    wrong("a column of " + std::to_string(out.size()) + " rows in a category of " + std::to_string(rows));
-  return out;
+
+  std::string text(size_t row) const {
+    if (!absent_.empty() && absent_[row] != '\0')
+      return std::string(1, absent_[row]);
+    const double v = real_.empty() ? integer_[row] : real_[row];
+    if (!is_text_)
+      return written(v, is_float_);
+    if (v < 0)
+      return ".";
+    const double begin = at_[static_cast<size_t>(v)], end = at_[static_cast<size_t>(v) + 1];
+    return cif::quote(std::string(all_.substr(static_cast<size_t>(begin), static_cast<size_t>(end - begin))));
+  }
+
+private:
+  void check_text(double i) const {
+    if (i < 0)
+      return;
+    if (!(i + 1 < static_cast<double>(at_.size())))
+      wrong("text beyond a column's");
+    const double begin = at_[static_cast<size_t>(i)], end = at_[static_cast<size_t>(i) + 1];
+    if (!(begin >= 0 && begin <= end && end <= static_cast<double>(all_.size())))
+      wrong("text beyond a column's");
+  }
+
+  bool is_text_ = false, is_float_ = false;
+  std::string_view all_;
+  std::vector<double> at_;
+  std::vector<int32_t> integer_; ///< or
+  std::vector<double> real_;
+  std::vector<char> absent_; ///< what CIF writes for no value; empty: all are there
+};
+
+/// Row by row: no more texts are kept than those of one row.
+void read_atoms(const Value& columns, size_t rows, const std::vector<std::string>& tags, AtomSite& atoms) {
+  atoms.begin(tags, 0);
+  std::vector<ColumnTexts> column;
+  std::vector<size_t> at;
+  for (size_t c = 0; c < tags.size(); ++c)
+    if (atoms.uses(c)) {
+      column.emplace_back(columns.array[c], rows);
+      at.push_back(c);
+    }
+  std::vector<std::string> text(column.size());
+  std::vector<std::string_view> row(tags.size());
+  for (size_t r = 0; r < rows; ++r) {
+    for (size_t c = 0; c < column.size(); ++c)
+      row[at[c]] = text[c] = column[c].text(r);
+    atoms.row(row, 0);
+  }
 }
 
-bool is_wanted(std::string_view category) {
-  static constexpr std::array<std::string_view, 8> wanted = {"_atom_site",
-                                                             "_entity",
-                                                             "_entity_poly",
-                                                             "_entity_poly_seq",
-                                                             "_struct_asym",
-                                                             "_pdbx_struct_assembly",
-                                                             "_pdbx_struct_assembly_gen",
-                                                             "_pdbx_struct_oper_list"};
-  return std::find(wanted.begin(), wanted.end(), category) != wanted.end();
-}
-
-void read_category(const Value& category, size_t largest, cif::Block& block) {
+void read_category(const Value& category, size_t largest, cif::Block& block, AtomSite& atoms) {
   const std::string name(category["name"].text);
   const Value& columns = category["columns"];
   const int64_t rows = category["rowCount"].integer;
@@ -189,23 +232,19 @@ void read_category(const Value& category, size_t largest, cif::Block& block) {
     wrong("a category " + in_quotes(name) + " of more rows than the file has bytes");
   cif::Item item{cif::LoopArg{}};
   cif::Loop& loop = item.loop;
-  const bool wanted = is_wanted(name);
-  const size_t n = static_cast<size_t>(rows), width = wanted ? columns.array.size() : 1;
+  const size_t n = static_cast<size_t>(rows), width = columns.array.size();
   for (size_t c = 0; c < width; ++c)
     loop.tags.push_back(name + "." + std::string(columns.array[c]["name"].text));
-  loop.values.resize(wanted ? n * width : 1, "?");
-  for (size_t c = 0; wanted && c < width; ++c) {
-    std::vector<std::string> column = texts(columns.array[c]["data"], n);
-    if (const Value& mask = columns.array[c]["mask"]; mask.kind == Value::Kind::map) {
-      const std::vector<double> absent = decode(mask["data"].text, mask["encoding"], n).number;
-      if (absent.size() != n)
-        wrong("a mask of another length than its column");
+  if (gemmi::to_lower(name) + "." == atom_site) {
+    if (!atoms.begun())
+      read_atoms(columns, n, loop.tags, atoms);
+  } else if (is_category_read(name)) {
+    loop.values.resize(n * width);
+    for (size_t c = 0; c < width; ++c) {
+      const ColumnTexts column(columns.array[c], n);
       for (size_t r = 0; r < n; ++r)
-        if (absent[r] != 0)
-          column[r] = absent[r] == 1 ? "." : "?";
+        loop.values[r * width + c] = column.text(r);
     }
-    for (size_t r = 0; r < n; ++r)
-      loop.values[r * width + c] = std::move(column[r]);
   }
   block.items.push_back(std::move(item));
 }
@@ -222,15 +261,17 @@ bool looks_like_bcif(std::string_view bytes) {
           (head.find("encoder") != std::string_view::npos && head.find("version") != std::string_view::npos));
 }
 
-cif::Document read_bcif(const std::string& bytes, const std::string& file) {
+cif::Document read_bcif(const std::string& bytes, const std::string& file, AtomSite& atoms) {
   cif::Document document;
   try {
     const Value root = msgpack::parse(bytes);
     for (const Value& block : root["dataBlocks"].array) {
       cif::Block& b = document.blocks.emplace_back(std::string(block["header"].text));
       for (const Value& category : block["categories"].array)
-        read_category(category, bytes.size(), b);
+        read_category(category, bytes.size(), b, atoms);
     }
+  } catch (const Error&) {
+    throw;
   } catch (const std::runtime_error& e) {
     fail_input(file + ": found " + e.what() + ", expected BinaryCIF");
   }

@@ -5,7 +5,10 @@
 
 namespace molmesh::formats {
 
-/// The categories of atoms, entities and assemblies; of others the name alone. Throws Error(bad_input) "FILE: …".
-gemmi::cif::Document read_bcif(const std::string& bytes, const std::string& file);
+class AtomSite;
+
+/// The categories of entities and assemblies; of others the name alone. The atoms of the first block that has them
+/// go to `atoms`. Throws Error(bad_input) "FILE: …".
+gemmi::cif::Document read_bcif(const std::string& bytes, const std::string& file, AtomSite& atoms);
 
 } // namespace molmesh::formats

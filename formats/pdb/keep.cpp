@@ -176,8 +176,9 @@ int64_t keep_conformers(gemmi::Structure& st, const std::string& altloc) {
   int64_t dropped = 0;
   for (gemmi::Model& model : st.models)
     for (gemmi::Chain& chain : model.chains)
-      for (const Place& place : places(chain))
-        dropped += keep_conformer(place, altloc);
+      if (std::any_of(chain.residues.begin(), chain.residues.end(), has_alternatives))
+        for (const Place& place : places(chain))
+          dropped += keep_conformer(place, altloc);
   prune(st);
   return dropped;
 }

@@ -1,21 +1,18 @@
-// mmcif.cpp — mmCIF and mmJSON through gemmi: only the categories that matter, missing columns filled in.
+// mmcif.cpp — mmCIF and mmJSON through gemmi: the atoms row by row, of other categories only those that matter.
 #include "base/error.hpp"
 #include "formats/pdb/atom_site.hpp"
 #include "formats/pdb/bcif.hpp"
-#include "formats/pdb/chains.hpp"
-#include "formats/pdb/element_name.hpp"
 #include "formats/pdb/mmcif_assembly.hpp"
 #include "formats/pdb/mmjson.hpp"
-#include "formats/pdb/model_names.hpp"
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/structure_builder.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <exception>
 #include <gemmi/cif.hpp>
 #include <gemmi/mmcif.hpp>
-#include <limits>
+#include <set>
+#include <unordered_map>
 #include <unordered_set>
 
 namespace molmesh::formats {
@@ -42,24 +39,6 @@ std::string one_line(const std::string& file, std::string what) {
   return file + ": " + (starts_with(what, (file + ": ").c_str()) ? what.substr(number + 1) : what);
 }
 
-/// And models' numbers without zeros before them.
-void check_models(cif::Loop& loop, const AtomColumns& columns, const std::string& where) {
-  const int column = columns.find("pdbx_PDB_model_num");
-  std::unordered_set<std::string> models;
-  std::string before; // nearly always the same
-  for (auto i = static_cast<size_t>(std::max(column, 0)); column >= 0 && i < loop.values.size();
-       i += loop.width()) {
-    std::string& number = loop.values[i];
-    if (number.size() > 1 && number[0] == '0' && std::all_of(number.begin(), number.end(), is_digit))
-      number = model_number(number);
-    if (number == before)
-      continue;
-    models.insert(before = number);
-    if (models.size() > most_models)
-      fail_input(where + ": found more than " + std::to_string(most_models) + " models, expected fewer");
-  }
-}
-
 const std::string& tag_of(const cif::Item& item) {
   static const std::string none;
   if (item.type == cif::ItemType::Pair)
@@ -75,61 +54,70 @@ bool has_atoms(const cif::Block& block) {
   });
 }
 
-/// A category that has its rows as name-value pairs has one row: gemmi reads both, here only loops remain.
-cif::Item* atom_loop(cif::Block& block) {
-  cif::Item loop{cif::LoopArg{}};
-  loop.line_number = 0;
-  for (cif::Item& item : block.items) {
+/// Of the category of atoms: the first loop, or else the pairs of names and values, which are one row.
+struct AtomItems {
+  std::vector<std::string> tags;
+  std::vector<std::string_view> values; ///< of pairs
+  int line = 1;
+};
+
+AtomItems atom_items(const cif::Block& block) {
+  AtomItems pairs;
+  for (const cif::Item& item : block.items) {
     if (!starts_with(gemmi::to_lower(tag_of(item)), atom_site.c_str()))
       continue;
     if (item.type == cif::ItemType::Loop)
-      return &item;
-    if (loop.line_number == 0)
-      loop.line_number = item.line_number;
-    loop.loop.tags.push_back(item.pair[0]);
-    loop.loop.values.push_back(item.pair[1]);
-    item.erase();
+      return {item.loop.tags, {}, item.line_number};
+    if (pairs.tags.empty())
+      pairs.line = item.line_number;
+    pairs.tags.push_back(item.pair[0]);
+    pairs.values.emplace_back(item.pair[1]);
   }
-  block.items.push_back(std::move(loop));
-  return &block.items.back();
+  return pairs;
 }
 
-/// Of other categories nothing is used.
-bool is_read(const std::string& tag) {
-  static constexpr std::array<const char*, 5> read = {"_atom_site.", "_entity.", "_entity_poly.",
-                                                      "_entity_poly_seq.", "_struct_asym."};
-  return std::any_of(read.begin(), read.end(), [&](const char* category) { return starts_with(tag, category); });
+/// Categories that gemmi's structure is made of.
+bool is_of_structure(const std::string& tag) {
+  return tag.compare(0, 8, "_entity.") == 0 || tag.compare(0, 13, "_entity_poly.") == 0 ||
+         tag.compare(0, 17, "_entity_poly_seq.") == 0 || tag.compare(0, 13, "_struct_asym.") == 0;
 }
 
-void number_rows(cif::Loop& loop, const AtomColumns& columns) {
-  const auto id = static_cast<size_t>(columns.find("id"));
-  for (size_t row = 0, i = id; i < loop.values.size(); ++row, i += loop.width())
-    loop.values[i] = std::to_string(row);
-}
-
-/// Charges and radii of PDB2PQR's mmCIF.
-void read_charges(const cif::Loop& loop, const AtomColumns& columns, Parsed& parsed) {
-  const int charge = columns.find("pqr_partial_charge"), radius = columns.find("pqr_radius");
-  if (charge < 0 && radius < 0)
-    return;
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  const auto number = [&](size_t row, int column) {
-    return column < 0 ? none : cif::as_number(loop.val(row, static_cast<size_t>(column)), none);
-  };
-  int64_t without = 0;
-  for (size_t row = 0; row < loop.length(); ++row) {
-    const Parsed::Values values{number(row, charge), number(row, radius)};
-    without += radius >= 0 && !(values.radius >= 0);
-    parsed.pqr.push_back({values.charge, values.radius >= 0 ? values.radius : none});
+/// What gemmi does with atoms in hand: names the subchains of entities where the file does not, and the kinds of
+/// residues.
+void set_entity_types(gemmi::Structure& st, bool subchains_are_named) {
+  if (!subchains_are_named && !st.models.empty()) {
+    std::unordered_map<std::string, gemmi::Entity*> of_name;
+    for (gemmi::Entity& entity : st.entities)
+      of_name.try_emplace(entity.name, &entity);
+    std::set<std::pair<gemmi::Entity*, std::string>> known;
+    for (const gemmi::Chain& chain : st.models[0].chains)
+      for (const gemmi::ConstResidueSpan& sub : chain.subchains()) {
+        const auto entity = of_name.find(sub.front().entity_id);
+        if (entity != of_name.end() && known.emplace(entity->second, sub.front().subchain).second)
+          entity->second->subchains.push_back(sub.front().subchain);
+      }
   }
-  if (without > 0)
-    parsed.notes.push_back("atoms without a number ≥ 0 as _atom_site.pqr_radius, which have their element's: " +
-                           std::to_string(without));
+  std::unordered_map<std::string, gemmi::EntityType> of_subchain;
+  for (const gemmi::Entity& entity : st.entities)
+    for (const std::string& subchain : entity.subchains)
+      of_subchain.try_emplace(subchain, entity.entity_type);
+  for (gemmi::Model& model : st.models)
+    for (gemmi::Chain& chain : model.chains)
+      for (gemmi::ResidueSpan& sub : chain.subchains()) {
+        const auto known = sub[0].subchain.empty() ? of_subchain.end() : of_subchain.find(sub[0].subchain);
+        gemmi::EntityType type = known == of_subchain.end() ? gemmi::EntityType::Unknown : known->second;
+        if (type == gemmi::EntityType::Unknown)
+          type = sub[0].is_water()  ? gemmi::EntityType::Water
+                 : sub.length() > 1 ? gemmi::EntityType::Polymer
+                                    : gemmi::EntityType::NonPolymer;
+        for (gemmi::Residue& residue : sub)
+          residue.entity_type = type;
+      }
 }
 
-Parsed from_document(cif::Document& document, std::string_view text, const std::string& file, const char* format,
-                     const std::string& assembly) {
-  Parsed parsed;
+/// atoms: those of the first block that has them as a loop; document: all else, and of that loop the tags.
+Parsed from_document(cif::Document& document, AtomSite& atoms, Parsed& parsed, std::string_view text,
+                     const std::string& file, const char* format, const std::string& assembly) {
   parsed.format = format;
   std::vector<cif::Block>& blocks = document.blocks;
   const auto block = std::find_if(blocks.begin(), blocks.end(), has_atoms);
@@ -140,90 +128,183 @@ Parsed from_document(cif::Document& document, std::string_view text, const std::
   }
   if (const auto more = std::count_if(block + 1, blocks.end(), has_atoms); more > 0)
     parsed.notes.push_back("further data blocks with atoms, not read: " + std::to_string(more));
-  cif::Item* item = atom_loop(*block);
-  const std::string where = file + ":" + std::to_string(std::max(item->line_number, 1));
-  cif::Loop& loop = item->loop;
-  AtomColumns columns(loop);
-  for (const char* name : {"Cartn_x", "Cartn_y", "Cartn_z"})
-    if (columns.find(name) < 0)
-      fail_input(where + ": found atoms without _atom_site." + name + ", expected coordinates");
-  if (columns.find("label_atom_id") < 0 && columns.find("auth_atom_id") < 0)
-    fail_input(where + ": found atoms without _atom_site.label_atom_id, expected names");
-  if (loop.length() == 0)
-    fail_input(where + ": found an empty _atom_site category, expected atoms");
-  check_coordinates(loop, columns, text, file, item->line_number);
-  check_integers(loop, columns, text, file, item->line_number);
-  check_models(loop, columns, where);
-  columns.complete("id", {}, "1");
-  number_rows(loop, columns); // gemmi::Atom::serial is the row then
-  columns.complete("type_symbol", {}, "?");
-  columns.complete("label_alt_id", {}, ".");
-  columns.complete("label_asym_id", {"auth_asym_id"}, "A");
-  columns.complete("label_comp_id", {"auth_comp_id"}, "UNK");
-  ElementGuesses guesses;
-  if (const int64_t named = name_elements(loop, columns, guesses); named > 0)
-    parsed.notes.push_back("atoms without an element, taken from the name: " + std::to_string(named));
-  guesses.report(parsed);
-  read_charges(loop, columns, parsed);
-  columns.complete("occupancy", {}, "1");
-  columns.complete("B_iso_or_equiv", {}, "0");
-  columns.complete("auth_seq_id", {"label_seq_id"}, "1");
-
-  const bool divided = divide_long_chains(loop, columns);
+  if (!atoms.begun()) {
+    const AtomItems items = atom_items(*block);
+    atoms.begin(items.tags, items.line);
+    if (!items.values.empty())
+      atoms.row(items.values, items.line);
+  }
+  atoms.finish();
 
   const std::vector<gemmi::Assembly> assemblies = read_assemblies(*block, assembly, file);
   for (const cif::Item& other : block->items)
-    if (const std::string& tag = tag_of(other); !tag.empty() && !is_read(tag))
+    if (const std::string& tag = tag_of(other);
+        !tag.empty() && !is_of_structure(tag) && !starts_with(gemmi::to_lower(tag), atom_site.c_str()))
       ++parsed.passed_over[tag.substr(0, tag.find('.'))];
   // Other categories cost time and can only fail: _atom_site_anisotrop, _struct_conn, _pdbx_sifts_…
   cif::Block needed(block->name);
   for (cif::Item& other : block->items) {
-    const std::string& tag = tag_of(other);
-    if (is_read(tag)) {
+    if (is_of_structure(tag_of(other))) {
       check_sequence(other, file + ":" + std::to_string(std::max(other.line_number, 1)));
       needed.items.push_back(std::move(other));
     }
   }
+  std::vector<gemmi::Model> models = std::move(parsed.structure.models);
   try {
     parsed.structure = gemmi::make_structure_from_block(needed);
   } catch (const std::bad_alloc&) { // no fault of the file
     throw;
   } catch (const std::exception& e) {
-    fail_input(where + ": " + std::string(e.what()).substr(0, std::string_view(e.what()).find('\n')));
+    fail_input(file + ": " + std::string(e.what()).substr(0, std::string_view(e.what()).find('\n')));
   }
-  if (divided) {
-    join_divided_chains(parsed.structure);
-    gemmi::impl::fill_residue_entity_type(parsed.structure); // it looks at whole chains
-  }
+  parsed.structure.models = std::move(models);
+  set_entity_types(parsed.structure, needed.find("_struct_asym.", {"id", "entity_id"}).ok());
   if (const int64_t restarted = part_restarted(parsed.structure); restarted > 0)
     parsed.notes.push_back("residues whose number has started again, kept apart: " + std::to_string(restarted));
   parsed.structure.assemblies = assemblies; // gemmi 0.5.7 reads no products of operators
-  return parsed;
+  return std::move(parsed);
 }
+
+/// What gemmi's grammar finds: loops that are not used are counted alone, the atoms' go to AtomSite row by row.
+struct Reading : cif::Document {
+  Reading(AtomSite& sink, std::string_view text) : end(text.data() + text.size()), atoms(sink) {}
+  const char* end; ///< of the text
+  enum class Values { undecided, kept, counted, rows } values = Values::undecided;
+  size_t count = 0; ///< of the loop's values that are not kept
+  std::vector<std::string_view> row;
+  int64_t row_line = 0;
+  AtomSite& atoms;
+  std::exception_ptr wrong;
+
+  /// What is wrong with an atom is told when all is read: where the table lacks a value, that is the cause.
+  template <class Action>
+  void or_later(Action action) {
+    try {
+      action();
+    } catch (const Error&) {
+      wrong = std::current_exception();
+      values = Values::counted;
+    }
+  }
+
+  void decide() {
+    const cif::Item& item = items_->back();
+    const std::string& tag = item.loop.tags[0];
+    const bool in_frame = items_ != &blocks.back().items;
+    if (!in_frame && starts_with(gemmi::to_lower(tag), atom_site.c_str()) && !atoms.begun() &&
+        std::none_of(blocks.begin(), blocks.end() - 1, has_atoms)) {
+      values = Values::rows;
+      or_later([&] { atoms.begin(item.loop.tags, item.line_number); });
+    } else {
+      values = !in_frame && is_category_read(std::string_view(tag).substr(0, tag.find('.'))) ? Values::kept
+                                                                                             : Values::counted;
+    }
+  }
+};
+
+/// gemmi's check takes longer the more blocks there are, for each of them: block by block it does not.
+void check_for_duplicates(cif::Document& document) {
+  std::unordered_set<std::string> names;
+  for (const cif::Block& block : document.blocks)
+    if (!names.insert(gemmi::to_lower(block.name)).second && !block.name.empty())
+      gemmi::fail(document.source + ": duplicate block name: " + block.name);
+  cif::Document one;
+  one.source = document.source;
+  for (cif::Block& block : document.blocks) {
+    one.blocks.push_back(std::move(block));
+    cif::check_for_duplicates(one);
+    block = std::move(one.blocks[0]);
+    one.blocks.clear();
+  }
+}
+
+template <class Rule>
+struct Taken : cif::Action<Rule> {};
+
+template <>
+struct Taken<cif::rules::str_loop> {
+  template <class Input>
+  static void apply(const Input& in, Reading& out) {
+    cif::Action<cif::rules::str_loop>::apply(in, out);
+    out.values = Reading::Values::undecided;
+    out.count = 0;
+    out.row.clear();
+  }
+};
+
+template <>
+struct Taken<cif::rules::loop_value> {
+  template <class Input>
+  static void apply(const Input& in, Reading& out) {
+    if (out.values == Reading::Values::undecided)
+      out.decide();
+    if (out.values == Reading::Values::kept) {
+      // At once for as many as may come: a table that grows has twice its memory.
+      if (std::vector<std::string>& all = out.items_->back().loop.values;
+          all.size() == all.capacity() && all.size() >= 4096)
+        all.reserve(all.size() + static_cast<size_t>(out.end - in.begin() + 1) / 2);
+      return cif::Action<cif::rules::loop_value>::apply(in, out);
+    }
+    ++out.count;
+    if (out.values != Reading::Values::rows)
+      return;
+    if (out.row.empty())
+      out.row_line = static_cast<int64_t>(in.iterator().line);
+    out.row.emplace_back(in.begin(), in.size());
+    if (out.row.size() == out.items_->back().loop.tags.size()) {
+      out.or_later([&] { out.atoms.row(out.row, out.row_line); });
+      out.row.clear();
+    }
+  }
+};
+
+template <>
+struct Taken<cif::rules::loop> {
+  template <class Input>
+  static void apply(const Input& in, Reading& out) {
+    cif::Action<cif::rules::loop>::apply(in, out);
+    if (out.count % out.items_->back().loop.tags.size() != 0)
+      throw cif::pegtl::parse_error("Wrong number of values in the loop", in);
+  }
+};
 
 } // namespace
 
 Parsed parse_mmcif(std::string_view text, const std::string& file, const std::string& assembly) {
-  cif::Document document;
+  Parsed parsed;
+  AtomSite atoms(parsed, file);
+  Reading document(atoms, text);
+  document.source = file;
   try {
-    document = cif::read_memory(text.data(), text.size(), file.c_str());
+    cif::pegtl::memory_input<> in(text.data(), text.size(), file);
+    cif::pegtl::parse<cif::rules::file, Taken, cif::Errors>(in, document);
+    cif::check_for_missing_values(document);
+    check_for_duplicates(document);
+    if (document.wrong)
+      std::rethrow_exception(document.wrong);
+  } catch (const Error&) {
+    throw;
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& e) {
     fail_input(one_line(file, e.what()));
   }
-  return from_document(document, text, file, "mmCIF", assembly);
+  return from_document(document, atoms, parsed, text, file, "mmCIF", assembly);
 }
 
 Parsed parse_bcif(const std::string& bytes, const std::string& file, const std::string& assembly) {
-  cif::Document document = read_bcif(bytes, file);
-  return from_document(document, {}, file, "BinaryCIF", assembly);
+  Parsed parsed;
+  AtomSite atoms(parsed, file);
+  cif::Document document = read_bcif(bytes, file, atoms);
+  return from_document(document, atoms, parsed, {}, file, "BinaryCIF", assembly);
 }
 
 Parsed parse_mmjson(std::string& text, const std::string& file, const std::string& assembly) {
+  Parsed parsed;
+  AtomSite atoms(parsed, file);
   cif::Document document;
   try {
-    document = read_mmjson(text, file);
+    document = read_mmjson(text, file, atoms);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -231,7 +312,7 @@ Parsed parse_mmjson(std::string& text, const std::string& file, const std::strin
   } catch (const std::exception&) {
     fail_input(file + ":1: found a value that is an array or an object, expected numbers, text or null in mmJSON");
   }
-  return from_document(document, {}, file, "mmJSON", assembly);
+  return from_document(document, atoms, parsed, {}, file, "mmJSON", assembly);
 }
 
 } // namespace molmesh::formats

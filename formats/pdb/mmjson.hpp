@@ -5,8 +5,10 @@
 
 namespace molmesh::formats {
 
-/// Changes `text`. gemmi's own reader of mmJSON runs off its memory on empty columns. Throws Error(bad_input)
-/// "FILE:LINE: …".
-gemmi::cif::Document read_mmjson(std::string& text, const std::string& file);
+class AtomSite;
+
+/// The atoms of the first block that has them go to `atoms`. Changes `text`. gemmi's own reader of mmJSON runs off
+/// its memory on empty columns. Throws Error(bad_input) "FILE:LINE: …".
+gemmi::cif::Document read_mmjson(std::string& text, const std::string& file, AtomSite& atoms);
 
 } // namespace molmesh::formats

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <unordered_set>
 
 namespace molmesh::formats {
 namespace {
@@ -36,8 +37,9 @@ bool is_rotation(const gemmi::Mat33& m) {
 std::vector<int64_t> generated(const Flat& flat, const Flat::Chain& chain, const gemmi::Assembly::Gen& gen) {
   std::vector<int64_t> residues;
   const bool whole = gemmi::in_vector(chain.source->name, gen.chains);
+  const std::unordered_set<std::string> subchains(gen.subchains.begin(), gen.subchains.end());
   for (int64_t r = chain.begin; r < chain.end; ++r)
-    if (whole || gemmi::in_vector(flat.residue[r].source->subchain, gen.subchains))
+    if (whole || subchains.count(flat.residue[r].source->subchain) > 0)
       residues.push_back(r);
   return residues;
 }
@@ -55,6 +57,18 @@ Vec3d Placed::position(Vec3d p) const {
 
 Flat flatten(const Parsed& parsed, const std::string& file, const PdbOptions& options, PdbReport& report) {
   Flat flat;
+  size_t atoms = 0, residues = 0, chains = 0;
+  for (const gemmi::Model& model : parsed.structure.models) {
+    chains += model.chains.size();
+    for (const gemmi::Chain& chain : model.chains) {
+      residues += chain.residues.size();
+      for (const gemmi::Residue& residue : chain.residues)
+        atoms += residue.atoms.size();
+    }
+  }
+  flat.chain.reserve(chains);
+  flat.residue.reserve(residues);
+  flat.atom.reserve(atoms);
   std::string refused;
   for (const gemmi::Model& model : parsed.structure.models)
     for (const gemmi::Chain& chain : model.chains) {
@@ -98,8 +112,10 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
                           const std::string& assembly, PdbReport& report) {
   std::vector<Placed> placed;
   if (assembly == "none") {
+    placed.reserve(flat.chain.size());
     for (size_t c = 0; c < flat.chain.size(); ++c) {
       auto residues = std::make_shared<std::vector<int64_t>>();
+      residues->reserve(static_cast<size_t>(flat.chain[c].end - flat.chain[c].begin));
       for (int64_t r = flat.chain[c].begin; r < flat.chain[c].end; ++r)
         residues->push_back(r);
       placed.push_back({c, 1, false, {}, residues});
@@ -177,6 +193,7 @@ std::vector<std::string> chain_names(const Flat& flat, const std::vector<Placed>
     if (n == 1)
       taken.insert(name);
   std::vector<std::string> names;
+  names.reserve(placed.size());
   for (const Placed& p : placed) {
     const std::string& name = flat.chain[p.chain].source->name;
     std::string unique = name;

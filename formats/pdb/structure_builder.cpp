@@ -40,14 +40,14 @@ void StructureBuilder::add(std::string_view name, const gemmi::ResidueId& id, bo
     close_residue();
     open_chain(name);
   }
-  const bool begins_again = !has_number && !run_.atoms.empty() && label(run_.atoms[0]) == label(atom);
+  const bool begins_again = !has_number && !atoms_.empty() && label(atoms_[0]) == label(atom);
   if (begins_again || !run_.matches(id))
     close_residue();
-  if (run_.atoms.empty()) {
+  if (atoms_.empty()) {
     static_cast<gemmi::ResidueId&>(run_) = id;
     run_.het_flag = hetero ? 'H' : 'A';
   }
-  run_.atoms.push_back(std::move(atom));
+  atoms_.emplace_back(std::move(atom));
 }
 
 bool StructureBuilder::repeats(Slot& slot) const {
@@ -56,22 +56,22 @@ bool StructureBuilder::repeats(Slot& slot) const {
     for (const gemmi::Atom& a : structure_.models.back().chains.back().residues[slot.residue].atoms)
       slot.atoms->insert(label(a));
   }
-  return std::any_of(run_.atoms.begin(), run_.atoms.end(),
-                     [&](const gemmi::Atom& a) { return slot.atoms->count(label(a)) != 0; });
+  for (size_t a = 0; a < atoms_.size(); ++a)
+    if (slot.atoms->count(label(atoms_[a])) != 0)
+      return true;
+  return false;
 }
 
 void StructureBuilder::close_residue() {
-  if (run_.atoms.empty())
+  if (atoms_.empty())
     return;
   std::vector<gemmi::Residue>& residues = chain().residues;
   const auto [found, is_new] = slot_.try_emplace(run_, Slot{residues.size(), nullptr});
   Slot& slot = found->second;
   if (!is_new && !repeats(slot)) {
-    for (gemmi::Atom& a : run_.atoms) {
-      slot.atoms->insert(label(a));
-      residues[slot.residue].atoms.push_back(std::move(a));
-    }
-    run_.atoms.clear();
+    for (size_t a = 0; a < atoms_.size(); ++a)
+      slot.atoms->insert(label(atoms_[a]));
+    atoms_.move_to(residues[slot.residue].atoms);
     return;
   }
   if (!is_new) {
@@ -81,6 +81,7 @@ void StructureBuilder::close_residue() {
   if (after_ter_)
     run_.entity_type = run_.is_water() ? gemmi::EntityType::Water : gemmi::EntityType::NonPolymer;
   residues.push_back(std::move(run_));
+  atoms_.move_to(residues.back().atoms);
   run_ = gemmi::Residue();
 }
 

@@ -1,5 +1,6 @@
 // structure_builder.hpp — atoms, one after the other, become models, chains and residues.
 #pragma once
+#include "formats/pdb/chunks.hpp"
 #include <cstdint>
 #include <gemmi/model.hpp>
 #include <memory>
@@ -44,7 +45,8 @@ private:
   bool chain_open_ = false, after_ter_ = false;
   std::unordered_map<std::string, size_t> chains_; ///< of the model: the first of each name
   std::unordered_map<gemmi::ResidueId, Slot> slot_;
-  gemmi::Residue run_; ///< consecutive atoms of one residue
+  gemmi::Residue run_;        ///< consecutive atoms of one residue
+  Chunks<gemmi::Atom> atoms_; ///< these
   int64_t restarted_ = 0;
 };
 

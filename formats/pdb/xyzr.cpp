@@ -57,6 +57,7 @@ Parsed parse_xyzr(std::string_view text, const std::string& file) {
   parsed.format = "XYZR";
   StructureBuilder builder(parsed.structure);
   builder.open_model("1");
+  parsed.pqr.reserve(static_cast<size_t>(std::count(text.begin(), text.end(), '\n')));
   int64_t last = 1;
   bool named = false;
   for_each_line(text, [&](std::string_view line, int64_t number) {
