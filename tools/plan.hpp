@@ -24,13 +24,15 @@ struct Chain {
     return {density::at_spacing(size, spacing), contour::at_spacing(leaves, size.spacing, spacing, size.smooth)};
   }
   contour::Plan mesh(contour::Options::Meshed meshed) const { return contour::plan(leaves, size.blocks, meshed); }
-  optimize::Plan improvement(contour::Options::Meshed meshed, int iterations = 15) const {
+  optimize::Plan improvement(contour::Options::Meshed meshed, int threads) const {
     const contour::Plan m = mesh(meshed);
-    return optimize::plan(m.elements, m.triangles, size.blocks, iterations);
+    optimize::Work work{m.elements, m.triangles, m.split, size.blocks};
+    work.threads = threads;
+    return optimize::plan(work);
   }
   /// Of density2tet and tetsmooth, the larger.
-  int64_t memory(contour::Options::Meshed meshed) const {
-    return std::max(mesh(meshed).memory, improvement(meshed).memory);
+  int64_t memory(contour::Options::Meshed meshed, int threads) const {
+    return std::max(mesh(meshed).memory, improvement(meshed, threads).memory);
   }
 };
 
@@ -114,7 +116,7 @@ inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, 
   for (const auto& [region, meshed] :
        {std::pair{"interior", Options::interior}, std::pair{"both", Options::both}}) {
     add_mesh(v["density2tet"][region], chain.mesh(meshed), p.speed);
-    add_improvement(v["tetsmooth"][region], chain.improvement(meshed), p.speed);
+    add_improvement(v["tetsmooth"][region], chain.improvement(meshed, d.threads), p.speed);
   }
   cli::write_plan(o, p, run, v);
   return true;
@@ -148,9 +150,10 @@ bool mesh_is_planned(const cli::Common& o, const cli::PlanOptions& p, const cont
                      const density::GridSize& size, int64_t most_elements, const cli::Run& run, Unpack grid) {
   const int64_t limit = p.memory_limit();
   const auto refuse = [&](const Chain& chain) {
-    cli::require_memory(
-        p, chain.mesh(options.meshed).memory, "a mesh at " + cli::length_text(size.spacing),
-        fitting_spacing(size.spacing, limit, [&](double s) { return chain.at(s).memory(options.meshed); }));
+    cli::require_memory(p, chain.mesh(options.meshed).memory, "a mesh at " + cli::length_text(size.spacing),
+                        fitting_spacing(size.spacing, limit, [&](double s) {
+                          return chain.at(s).memory(options.meshed, options.threads);
+                        }));
   };
   const bool usual = !options.adapt && options.box.kind == contour::BoxRequest::automatic && !options.owners &&
                      options.sizes.empty() && most_elements == 0;
@@ -186,7 +189,7 @@ bool mesh_is_planned(const cli::Common& o, const cli::PlanOptions& p, const cont
   if (most_elements > 0)
     v.add({{"adapt", fit.fineness.adapt}, {"layers", fit.fineness.layers}});
   add_mesh(v, chain.mesh(options.meshed), p.speed);
-  add_improvement(v["tetsmooth"], chain.improvement(options.meshed), p.speed);
+  add_improvement(v["tetsmooth"], chain.improvement(options.meshed, options.threads), p.speed);
   cli::write_plan(o, p, run, v);
   return true;
 }
@@ -205,11 +208,22 @@ inline BlockGrid planned_grid(const cli::Common& o, const cli::PlanOptions& p, c
   return grid ? std::move(*grid) : BlockGrid();
 }
 
-/// tetsmooth: as above. blocks: of the density's grid, 0 without.
-inline bool improvement_is_planned(const cli::Common& o, const cli::PlanOptions& p, int64_t elements,
-                                   int64_t triangles, int64_t blocks, int iterations, optimize::Effort effort,
+/// For the plan of tetsmooth: as in contour::Leaves; -1 where no mesh of the grid can be made.
+inline int64_t split_cells(const BlockGrid& grid, int threads) {
+  contour::Options options;
+  options.threads = threads;
+  try {
+    return contour::LeafCounter(grid, options).split();
+  } catch (const Error&) {
+    return -1;
+  }
+}
+
+/// tetsmooth: as above.
+inline bool improvement_is_planned(const cli::Common& o, const cli::PlanOptions& p, const optimize::Work& work,
                                    const cli::Run& run) {
-  const optimize::Plan plan = optimize::plan(elements, triangles, blocks, iterations, effort);
+  const int64_t elements = work.elements;
+  const optimize::Plan plan = optimize::plan(work);
   if (p.plan) {
     cli::Value v;
     v["elements_before"] = elements;

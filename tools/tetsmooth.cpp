@@ -45,8 +45,15 @@ Status run_tool(const Options& o, cli::Run& run) {
   TetMesh mesh = read_mesh(run, input, o.mesh, formats::CellArrays::keep, notes);
   if (grid)
     require_same_source(mesh, !notes.isovalue_missing, grid->info, density->name());
-  if (plans::improvement_is_planned(o, o, std::ssize(mesh.tet), std::ssize(mesh.tri),
-                                    grid ? std::ssize(grid->corner) : 0, o.iterations, o.chosen(), run))
+  optimize::Work work;
+  work.elements = std::ssize(mesh.tet);
+  work.triangles = std::ssize(mesh.tri);
+  work.split = grid && o.plan ? plans::split_cells(*grid, threads) : -1;
+  work.blocks = grid ? std::ssize(grid->corner) : 0;
+  work.iterations = o.iterations;
+  work.effort = o.chosen();
+  work.threads = threads;
+  if (plans::improvement_is_planned(o, o, work, run))
     return Status::good;
   const std::string level = formats::region_level(mesh);
   const AttributeTransfer arrays(mesh);

@@ -1,9 +1,12 @@
 // plan.cpp — counts leaves; elements, memory and time for each leaf are measured (docs/benchmarks.md, Plans).
 #include "contour/plan.hpp"
 #include "contour/outer_sphere/outer_sphere.hpp"
+#include "contour/surface/ambiguous_cell.hpp"
 #include "par/par.hpp"
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <iterator>
 
@@ -31,6 +34,33 @@ double interpolated(double Measured::*x, double spacing) {
   return a.*x * std::pow(spacing / a.spacing, std::log(b.*x / a.*x) / std::log(b.spacing / a.spacing));
 }
 
+/// Cells with two pieces of the surface or more.
+int64_t count_split(const Surface& surface, float isovalue, int threads) {
+  std::array<bool, 256> may_split{}; // by the corners inside
+  for (unsigned inside = 0; inside < 256; ++inside) {
+    double value[8];
+    for (int c = 0; c < 8; ++c)
+      value[c] = (inside >> c & 1) != 0 ? 1 : -1;
+    const CellTopology t = cell_topology(value);
+    may_split[inside] = t.split() || std::any_of(t.diagonal.begin(), t.diagonal.end(),
+                                                 [](Diagonal d) { return d != Diagonal::none; });
+  }
+  std::atomic<int64_t> n{0};
+  par::for_n(std::ssize(surface.cells), threads, 4096, [&](int64_t i) {
+    const SurfaceCell& cell = surface.cells[i];
+    unsigned inside = 0;
+    for (int c = 0; c < 8; ++c)
+      inside |= unsigned{cell.value[c] > isovalue} << c;
+    if (!may_split[inside])
+      return;
+    double value[8];
+    for (int c = 0; c < 8; ++c)
+      value[c] = over_isovalue(cell.value[c], isovalue);
+    n.fetch_add(cell_topology(value).split(), std::memory_order_relaxed);
+  });
+  return n;
+}
+
 } // namespace
 
 LeafCounter::LeafCounter(const BlockGrid& grid, const Options& options) : options_(options) {
@@ -39,6 +69,7 @@ LeafCounter::LeafCounter(const BlockGrid& grid, const Options& options) : option
   lattice_.emplace(finer_.grid ? *finer_.grid : grid, options_.box, options.meshed != Options::interior,
                    options.threads);
   surface_ = find_surface(*lattice_, options.threads);
+  split_ = count_split(surface_, lattice_->isovalue, options.threads);
   refine_ = refine_options(*lattice_, options_, grid.frame.spacing, finer_.halvings);
 }
 
@@ -61,24 +92,28 @@ Leaves LeafCounter::count(const RefineOptions& refine) const {
   leaves.adapt = list.adapt / (1 << finer_.halvings);
   const Octree octree(lattice.cells, std::move(list), options.threads);
   const OctreeView& tree = octree.view();
-  std::atomic<int64_t> corners{0}, beyond{0}; // inside the surface; beyond an outer sphere
+  std::atomic<int64_t> corners{0}, crossed{0}, beyond{0}; // inside the surface; leaves; beyond an outer sphere
   par::for_n(tree.size(), options.threads, 4096, [&](int64_t i) {
     const auto leaf = static_cast<int32_t>(i);
     const Vec3i p = tree.corner(leaf);
     const int32_t edge = tree.extent(leaf);
-    int64_t n = 0, far = 0;
+    int64_t far = 0;
+    unsigned inside = 0; // by corner
     for (int c = 0; c < 8; ++c) {
       Vec3i q = p + edge * Vec3i{c & 1, c >> 1 & 1, c >> 2};
       for (int a = 0; a < 3; ++a)
         q[a] = std::min(q[a], lattice.cells[a]);
-      n += lattice.value(q) > lattice.isovalue;
+      inside |= unsigned{lattice.value(q) > lattice.isovalue} << c;
       far += options.box.is_sphere() && options.box.outer.height(lattice.position(q)) > 0;
     }
     beyond.fetch_add(far, std::memory_order_relaxed);
-    corners.fetch_add(n, std::memory_order_relaxed);
+    corners.fetch_add(std::popcount(inside), std::memory_order_relaxed);
+    crossed.fetch_add(inside != 0 && inside != 255, std::memory_order_relaxed);
   });
   leaves.all = tree.size() - static_cast<double>(beyond) / 8;
   leaves.inside = static_cast<double>(corners) / 8;
+  leaves.surface = static_cast<double>(crossed);
+  leaves.split = static_cast<double>(split_);
   return leaves;
 }
 
@@ -94,6 +129,7 @@ Leaves at_spacing(const Leaves& counted, double from, double to, bool smooth) {
   l.all *= factor(&Measured::all);
   l.inside *= factor(&Measured::inside);
   l.inside = std::min(l.inside, l.all);
+  l.surface *= factor(&Measured::all);
   return l;
 }
 
@@ -101,6 +137,8 @@ Leaves expected_leaves(double spacing, int64_t active_points) {
   Leaves l;
   l.all = static_cast<double>(active_points) * interpolated(&Measured::of_active, spacing);
   l.inside = 0.49 * l.all * interpolated(&Measured::inside, spacing) / interpolated(&Measured::all, spacing);
+  l.surface = 0.4 * l.all;
+  l.split = 0.004 * l.all / interpolated(&Measured::all, spacing);
   return l;
 }
 
@@ -112,9 +150,17 @@ Plan plan(const Leaves& leaves, int64_t blocks, Options::Meshed meshed) {
   Plan p;
   p.elements = std::llround(elements);
   p.points = std::llround(elements / (meshed == Options::both ? 5.6 : 4.6));
-  p.triangles = std::llround(1.15 * leaves.all);
-  p.memory = std::llround(1.04 * (14e6 + 4500 * double(blocks) + 640 * leaves.all + 26 * elements));
-  p.seconds = 0.05 + 3.7e-6 * leaves.all + 2e-7 * elements;
+  // Split cells are where leaves are small beside larger ones, up to a point.
+  const double thin = leaves.surface > 0 ? leaves.split / leaves.surface : 0;
+  const double of_box = meshed == Options::interior ? 0 : 1100; // walls
+  const double triangles = leaves.surface * (2.6 + std::min(42 * thin, 0.5 + 8 * thin)) + of_box;
+  p.triangles = std::llround(triangles);
+  p.split = std::llround(leaves.split);
+  p.memory =
+      std::llround(1.1 * (12e6 + 4500 * double(blocks) + 231 * leaves.all + 29.4 * elements + 264 * triangles));
+  // Small meshes stay in the cache.
+  const double far = 0.4 + 0.6 * std::min(1., leaves.all / 45'000);
+  p.seconds = 0.005 + far * (5.7e-6 * leaves.all + 2e-7 * elements);
   return p;
 }
 

@@ -13,6 +13,8 @@ struct Leaves {
   double all = 0, inside = 0; ///< inside: by the share of a leaf's corners that are
   int halvings = 0;           ///< as in Summary
   double adapt = 0;           ///< the tolerance that chords allowed, in grid spacings
+  double surface = 0;         ///< those whose corners lie on both sides
+  double split = 0;           ///< fine cells with two pieces of the surface: at its thinnest places
 };
 
 /// The octrees of one grid. Throws as contour().
@@ -25,6 +27,7 @@ public:
   /// As the options say; or with another tolerance and other layers.
   Leaves count() const;
   Leaves count(double adapt, int layers) const;
+  int64_t split() const { return split_; } ///< as in Leaves
 
 private:
   Leaves count(const RefineOptions& refine) const;
@@ -32,6 +35,7 @@ private:
   FinerGrid finer_;
   std::optional<Lattice> lattice_;
   Surface surface_;
+  int64_t split_ = 0;
   RefineOptions refine_;
 };
 
@@ -47,6 +51,7 @@ Leaves expected_leaves(double spacing, int64_t active_points);
 
 struct Plan {
   int64_t elements = 0, points = 0, triangles = 0;
+  int64_t split = 0;  ///< as in Leaves
   int64_t memory = 0; ///< bytes at the peak of density2tet
   double seconds = 0; ///< of one core of the machine of docs/benchmarks.md
 };

@@ -1,16 +1,38 @@
-// plan.cpp — memory and time for each element and triangle are measured (docs/benchmarks.md, Plans).
+// plan.cpp — memory and time for each element, triangle and thin place are measured (docs/benchmarks.md, Plans).
 #include "optimize/plan.hpp"
 #include <cmath>
 
 namespace molmesh::optimize {
+namespace {
 
-Plan plan(int64_t elements, int64_t triangles, int64_t blocks, int iterations, Effort effort) {
-  const auto n = static_cast<double>(elements), surface = static_cast<double>(triangles);
+/// Seconds for each element and triangle, and for each split cell: where the surface is thin, points and elements
+/// are searched for that no single operation improves. Bytes that such a search saves, in each thread.
+struct Effect {
+  double element, triangle, split, states;
+};
+Effect effect_of(Effort effort) {
+  switch (effort) {
+  case Effort::fast:
+    return {0.4e-6, 3e-6, 0.004, 14e6};
+  case Effort::best:
+    return {1.6e-6, 15e-6, 0.028, 65e6};
+  default:
+    return {1.6e-6, 0, 0.012, 14e6};
+  }
+}
+
+} // namespace
+
+Plan plan(const Work& work) {
+  const auto n = static_cast<double>(work.elements), surface = static_cast<double>(work.triangles);
+  const double split = work.split < 0 ? 0.003 * surface : static_cast<double>(work.split);
+  const Effect e = effect_of(work.effort);
+  const bool improves = work.iterations > 0;
   Plan p;
-  p.elements = iterations > 0 ? std::llround(1.025 * n) : elements;
-  p.memory = std::llround(1.06 * (18.7e6 + 61.4 * n + 722 * surface + 2200 * static_cast<double>(blocks)));
-  const double share = effort == Effort::fast ? 0.2 : effort == Effort::good ? 1 : 2; // of good's time
-  p.seconds = 0.05 + 5e-7 * n + (iterations > 0 ? share * 4.5e-5 * surface : 0);
+  p.elements = work.elements;
+  p.memory = std::llround(13.5e6 + 70 * n + 720 * surface + 2200 * static_cast<double>(work.blocks) +
+                          (improves ? e.states * work.threads : 0));
+  p.seconds = 0.03 + 3e-7 * n + (improves ? e.element * n + e.triangle * surface + e.split * split : 0);
   return p;
 }
 

@@ -11,8 +11,16 @@ struct Plan {
   double seconds = 0;   ///< of one core of the machine of docs/benchmarks.md
 };
 
-/// elements, triangles: of the mesh that comes in; blocks: of the density's grid, 0: none. iterations: 0 leaves the
-/// mesh as it is.
-Plan plan(int64_t elements, int64_t triangles, int64_t blocks, int iterations, Effort effort = Effort::good);
+/// What comes in, and how it is improved.
+struct Work {
+  int64_t elements = 0, triangles = 0;
+  int64_t split = -1;  ///< cells of the grid with two pieces of the surface; -1: not known, as many as usual
+  int64_t blocks = 0;  ///< of the density's grid, 0: none
+  int iterations = 15; ///< 0 leaves the mesh as it is
+  Effort effort = Effort::good;
+  int threads = 1;
+};
+
+Plan plan(const Work& work);
 
 } // namespace molmesh::optimize

@@ -1,60 +1,101 @@
 #!/usr/bin/env python3
 """plans.py BIN DATA OUT.md: the plans of the programs beside what the runs took, one thread, as a table.
 
-DATA holds typical/, paper/ and large/. --spacing H (1 by default), --region R, --most N: tetsmooth up to N elements.
+DATA holds typical/, paper/ and large/. --spacing H (1 by default), --region R, --most N: meshes planned larger are left
+out; --improve N: tetsmooth up to N elements; --raw FILE: all figures, a line of JSON a structure.
+
+Memory is that of the run reports. Seconds are those of the processor, put right for what else the machine does: a small
+run before and after each tells how fast the machine is just then, and the fastest of all is the idle machine (--idle
+SECONDS where that is known). Of runs under half a second there are three: the least seconds, and the median of the memory.
 """
 import argparse, glob, json, os, subprocess, tempfile
 
 
-def run(command):
-    """Processor seconds and peak memory in bytes; None where it fails."""
+def once(command):
+    """Processor seconds; None where it fails."""
     process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
     _, status, usage = os.wait4(process.pid, 0)
-    return (usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024) if status == 0 else None
+    return usage.ru_utime + usage.ru_stime if status == 0 else None
 
 
 def main():
     p = argparse.ArgumentParser(description=__doc__)
     p.add_argument("bin"), p.add_argument("data"), p.add_argument("out")
     p.add_argument("--spacing", default="1"), p.add_argument("--region", default="both")
-    p.add_argument("--most", type=float, default=3e6)
+    p.add_argument("--most", type=float, default=6e6), p.add_argument("--improve", type=float, default=1.5e6)
+    p.add_argument("--idle", type=float, default=float("inf")), p.add_argument("--raw", default=os.devnull)
     o = p.parse_args()
-    tool = lambda name: os.path.join(o.bin, name)
+    tool = lambda name: [os.path.join(o.bin, name), "-q", "-t", "1"]
     work = tempfile.mkdtemp()
     at = lambda name: os.path.join(work, name)
     read = lambda name: json.load(open(at(name)))
-    rows = []
+    reference, speeds = [], []
+
+    def speed():
+        speeds.append(once(reference))
+        return speeds[-1]
+
+    def run(command, output):
+        """(bytes, seconds, seconds of the reference around it), None where it fails."""
+        command, before, runs = command + ["-o", at(output), "--report", at("r.json")], speed(), []
+        while len(runs) < (3 if not runs or runs[0][0] < 0.5 else 1):
+            took = once(command)
+            if took is None:
+                return None
+            runs.append((took, read("r.json")["peak_rss_bytes"]))
+        return sorted(r[1] for r in runs)[len(runs) // 2], min(runs)[0], (before + speed()) / 2
+
+    rows, seen = [], set()
     files = [f for folder in ("typical", "paper", "large") for f in glob.glob(os.path.join(o.data, folder, "*"))]
-    seen = set()
-    for file in sorted(files, key=os.path.getsize):
+    files.sort(key=os.path.getsize)
+    made = [files[0]] + [at("ref" + ending) for ending in (".hier", ".vdb", ".vtu")]
+    for name, before, after in zip(["pdb2hier", "hier2density", "density2tet"], made, made[1:]):
+        once(tool(name) + [before, "-o", after])
+    reference += tool("tetsmooth") + ["--effort", "fast", "--density", at("ref.vdb"), at("ref.vtu"), "-o", os.devnull]
+    for file in files:
         name = os.path.basename(file).split(".")[0]
-        if name in seen or run([tool("pdb2hier"), "-q", file, "-o", at("a.hier")]) is None:
+        if name in seen or once(tool("pdb2hier") + [file, "-o", at("a.hier")]) is None:
             continue
         seen.add(name)
         grid = ["--spacing", o.spacing, at("a.hier")]
-        planning = run([tool("hier2density"), "-t", "1", "--plan", "--json"] + grid + ["-o", at("p.json")])
-        took = {"hier2density": run([tool("hier2density"), "-q", "-t", "1"] + grid + ["-o", at("a.vdb")])}
-        run([tool("density2tet"), "-t", "1", "--plan", "--json", "--region", o.region, at("a.vdb"), "-o", at("m.json")])
-        took["density2tet"] = run([tool("density2tet"), "-q", "-t", "1", "--region", o.region, at("a.vdb"), "-o",
-                                   at("a.tet.vtu"), "--report", at("r.json")])
-        if None in took.values() or planning is None:
+        planning = once(tool("hier2density") + ["--plan", "--json"] + grid + ["-o", at("p.json")])
+        if planning is None or read("p.json")["density2tet"][o.region]["elements"] > o.most:
             continue
-        plan, mesh, elements = read("p.json"), read("m.json"), read("r.json")["counts"]["tetrahedra"]
-        planned = {"hier2density": plan, "density2tet": mesh, "tetsmooth": mesh["tetsmooth"]}
-        if elements <= o.most:
-            took["tetsmooth"] = run([tool("tetsmooth"), "-q", "-t", "1", "--density", at("a.vdb"), at("a.tet.vtu"), "-o",
-                                     at("a.vtu")])
-        cells = [name, "{:,}".format(plan["atoms"]), "{:,}".format(elements),
-                 "%.2f" % (plan["density2tet"][o.region]["elements"] / elements), "%.2f" % (mesh["elements"] / elements)]
-        for k, unit in ((1, "memory_bytes"), (0, "seconds")):
-            cells += ["%.2f" % (planned[t][unit] / took[t][k]) if took.get(t) else "–" for t in planned]
-        rows.append(cells + ["%.1f" % planning[0]])
-        print(rows[-1], flush=True)
-    head = ["structure", "atoms", "elements", "planned from atoms", "from the grid", "memory: hier2density", "density2tet",
-            "tetsmooth", "seconds: hier2density", "density2tet", "tetsmooth", "seconds to plan"]
+        plan, took = read("p.json"), {}
+        took["hier2density"] = run(tool("hier2density") + grid, "a.vdb")
+        mesh_of = tool("density2tet") + ["--region", o.region, at("a.vdb")]
+        once(mesh_of + ["--plan", "--json", "-o", at("m.json")])
+        took["density2tet"] = run(mesh_of, "a.tet.vtu")
+        if None in took.values():
+            continue
+        mesh, elements = read("m.json"), read("r.json")["counts"]["tetrahedra"]
+        planned = {"hier2density": plan, "density2tet": mesh}
+        for effort in ["good", "fast", "best"] if elements <= o.improve / 8 else ["good"] if elements <= o.improve else []:
+            improve = tool("tetsmooth") + ["--effort", effort, "--density", at("a.vdb"), at("a.tet.vtu")]
+            once(improve + ["--plan", "--json", "-o", at("s.json")])
+            key = "tetsmooth" if effort == "good" else "--effort " + effort
+            planned[key] = mesh["tetsmooth"] if effort == "good" else read("s.json")
+            took[key] = run(improve, "a.vtu")
+        rows.append({"name": name, "atoms": plan["atoms"], "elements": elements, "planning": planning, "took": took,
+                     "from_atoms": plan["density2tet"][o.region]["elements"], "from_grid": mesh["elements"],
+                     "planned": {k: (v["memory_bytes"], v["seconds"]) for k, v in planned.items()}})
+        print(json.dumps(rows[-1]), file=open(o.raw, "a"))
+        print(name, elements, took, flush=True)
+
+    idle = min(speeds + [o.idle])
+    programs = ["hier2density", "density2tet", "tetsmooth", "--effort fast", "--effort best"]
+    head = ["structure", "atoms", "elements", "elements, from atoms", "from the grid"]
+    head += ["memory: " + programs[0]] + programs[1:] + ["seconds: " + programs[0]] + programs[1:] + ["seconds to plan"]
     with open(o.out, "w") as out:
-        for row in [head, ["---"] * len(head)] + rows:
+        for row in [head, ["---"] * len(head)]:
             out.write("| " + " | ".join(row) + " |\n")
+        for r in sorted(rows, key=lambda r: r["elements"]):
+            cells = [r["name"], "{:,}".format(r["atoms"]), "{:,}".format(r["elements"])]
+            cells += ["%.2f" % (r[k] / r["elements"]) for k in ("from_atoms", "from_grid")]
+            of = lambda key, true: "%.2f" % true(r["planned"][key], r["took"][key]) if r["took"].get(key) else "–"
+            cells += [of(k, lambda p, t: p[0] / t[0]) for k in programs]
+            cells += [of(k, lambda p, t: p[1] * t[2] / (t[1] * idle)) for k in programs]
+            out.write("| " + " | ".join(cells + ["%.1f" % r["planning"]]) + " |\n")
 
 
 if __name__ == "__main__":

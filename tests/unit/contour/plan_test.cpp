@@ -32,19 +32,21 @@ BlockGrid ball_of_atoms(double spacing) {
 
 } // namespace
 
-TEST_CASE("the octree tells the elements of a mesh within 15 %") {
+TEST_CASE("the octree tells the elements of a mesh within 15 %, and its triangles") {
   for (const double spacing : {0.5, 0.8}) {
     const BlockGrid grid = ball_of_atoms(spacing);
     for (const auto meshed : {contour::Options::interior, contour::Options::exterior, contour::Options::both}) {
       contour::Options options;
       options.meshed = meshed;
       contour::Summary summary;
-      const auto true_elements =
-          double(contour::contour(grid, options, summary, [](const std::string&) {}).tet.size());
+      const TetMesh mesh = contour::contour(grid, options, summary, [](const std::string&) {});
+      const auto true_elements = double(mesh.tet.size()), true_triangles = double(mesh.tri.size());
       const contour::Leaves leaves = contour::count_leaves(grid, options);
       const contour::Plan plan = contour::plan(leaves, std::ssize(grid.corner), meshed);
       CAPTURE(spacing, int(meshed), plan.elements, true_elements);
       CHECK(std::abs(double(plan.elements) - true_elements) <= 0.15 * true_elements);
+      CHECK(std::abs(double(plan.triangles) - true_triangles) <= 0.25 * true_triangles);
+      CHECK(plan.split == summary.split_cells);
     }
   }
 }

@@ -1,0 +1,29 @@
+// plan_test.cpp — a plan of the improvement grows with what makes it longer.
+#include "optimize/plan.hpp"
+#include <catch2/catch.hpp>
+
+using namespace molmesh;
+using optimize::Effort;
+
+TEST_CASE("effort, thin places and threads make an improvement larger; without rounds nothing is searched for") {
+  optimize::Work work;
+  work.elements = 1'000'000;
+  work.triangles = 80'000;
+  work.split = 240; // as many as usual
+  const optimize::Plan plan = optimize::plan(work);
+  const auto changed = [&](auto change) {
+    optimize::Work w = work;
+    change(w);
+    return optimize::plan(w);
+  };
+  CHECK(plan.elements == work.elements);
+  CHECK(changed([](auto& w) { w.split = -1; }).seconds == Approx(plan.seconds));
+  CHECK(changed([](auto& w) { w.split = 2000; }).seconds > 2 * plan.seconds);
+  CHECK(changed([](auto& w) { w.effort = Effort::fast; }).seconds < 0.6 * plan.seconds);
+  CHECK(changed([](auto& w) { w.effort = Effort::best; }).seconds > 2 * plan.seconds);
+  CHECK(changed([](auto& w) { w.threads = 9; }).memory == plan.memory + 8 * 14'000'000);
+  CHECK(changed([](auto& w) { w.blocks = 1000; }).memory == plan.memory + 2'200'000);
+  const optimize::Plan none = changed([](auto& w) { w.iterations = 0; });
+  CHECK(none.seconds < 0.1 * plan.seconds);
+  CHECK(none.memory < plan.memory);
+}
