@@ -5,6 +5,7 @@
 #include "par/par.hpp"
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace molmesh::formats {
 namespace {
@@ -42,8 +43,15 @@ private:
   int along_[3] = {}; ///< the map's axis of columns, rows and sections
 };
 
-/// The order in which the mode and the number of columns are small numbers.
+/// What the machine stamp (word 54) says; where it says nothing, that in which the mode and the number of columns
+/// are small numbers.
 void Reader::find_order() {
+  const std::string_view stamp = bytes_.substr(212, 2);
+  if (stamp == "\x44\x44" || stamp == "\x44\x41" || stamp == "\x11\x11") {
+    swap_ = stamp == "\x11\x11";
+    if (word(4) >= 0 && word(4) < 256)
+      return;
+  }
   const auto likely = [&](bool swap) {
     swap_ = swap;
     return word(4) >= 0 && word(4) < 256 && word(1) > 0 && word(1) < 1 << 24;
@@ -99,6 +107,18 @@ void Reader::read_axes(compose::DenseMap& map) {
   }
 }
 
+/// IEEE 754's binary16.
+struct Half {
+  uint16_t bits;
+  explicit operator float() const {
+    const int exponent = bits >> 10 & 31, fraction = bits & 1023;
+    const float sign = bits >> 15 ? -1.0f : 1.0f;
+    if (exponent == 31)
+      return fraction ? std::numeric_limits<float>::quiet_NaN() : sign * std::numeric_limits<float>::infinity();
+    return sign * std::ldexp(static_cast<float>(exponent ? fraction + 1024 : fraction), std::max(exponent, 1) - 25);
+  }
+};
+
 template <class T>
 void Reader::read_values(compose::DenseMap& map, const char* from, int threads) const {
   const int64_t columns = map.points[along_[0]], rows = map.points[along_[1]], sections = map.points[along_[2]];
@@ -125,9 +145,9 @@ compose::DenseMap Reader::run(int threads) {
   find_order();
   compose::DenseMap map;
   const int32_t mode = word(4);
-  const size_t size = mode == 0 ? 1 : mode == 1 || mode == 6 ? 2 : mode == 2 ? 4 : 0;
+  const size_t size = mode == 0 ? 1 : mode == 1 || mode == 6 || mode == 12 ? 2 : mode == 2 ? 4 : 0;
   if (size == 0)
-    refuse("M2: mode " + std::to_string(mode) + ", expected 0, 1, 2 or 6");
+    refuse("M2: mode " + std::to_string(mode) + ", expected 0, 1, 2, 6 or 12");
   double n = 1;
   for (int a = 0; a < 3; ++a) {
     if (word(1 + a) < 2 || word(1 + a) > 1 << 24)
@@ -153,6 +173,9 @@ compose::DenseMap Reader::run(int threads) {
     break;
   case 6:
     read_values<uint16_t>(map, from, threads);
+    break;
+  case 12:
+    read_values<Half>(map, from, threads);
     break;
   default:
     read_values<float>(map, from, threads);

@@ -224,6 +224,7 @@ void AtomSite::row(const std::vector<std::string_view>& values, int64_t line) {
   const double q = has(charge) ? cif::as_number(value_[charge], none) : none,
                r = has(radius) ? cif::as_number(value_[radius], none) : none;
   without_radius_ += has(radius) && !(r >= 0);
+  large_ += r > believed_radius;
   parsed_.pqr.push_back({q, r >= 0 ? r : none});
 }
 
@@ -238,6 +239,8 @@ void AtomSite::finish() {
   if (without_radius_ > 0)
     parsed_.notes.push_back("atoms without a number ≥ 0 as _atom_site.pqr_radius, which have their element's: " +
                             std::to_string(without_radius_));
+  if (large_ > 0)
+    parsed_.notes.push_back(note_of_large_radii(large_));
 }
 
 void check_sequence(const cif::Item& item, const std::string& where) {

@@ -137,7 +137,7 @@ private:
   size_t residue_index_ = 0;
   Chunks<gemmi::Atom> atoms_; ///< of the open residue, since it has been opened
   ElementGuesses guesses_;
-  int64_t named_ = 0, without_radius_ = 0;
+  int64_t named_ = 0, without_radius_ = 0, large_ = 0;
 };
 
 /// If `item` is _entity_poly_seq: its places are integers. Throws Error(bad_input) "WHERE: …".

@@ -36,6 +36,8 @@ gemmi::Element ion_element(std::string_view atom, std::string_view residue) {
                                                                                     {"BAR", gemmi::El::Ba},
                                                                                     {"CAD", gemmi::El::Cd}}};
   const std::string name = letters_of(atom);
+  if (residue == "ION" || residue == "IONS") // GROMACS and others: the residue says what its atom is
+    residue = atom;
   const size_t tail = residue.find_last_not_of("+-0123456789");
   if (name.empty() || tail == std::string_view::npos || letters_of(residue) != name || tail + 1 != name.size())
     return gemmi::El::X;
@@ -133,7 +135,10 @@ void ElementGuesses::add(std::string_view atom, std::string_view residue, gemmi:
   if (letters.size() < 2 || letters[0] == 'H' || ion_element(atom, residue) != gemmi::El::X)
     return;
   const gemmi::Element pair(letters.substr(0, 2));
-  if ((of_one_letter || !pair.is_metal()) && !element.is_metal())
+  static constexpr std::array<gemmi::El, 5> often = {gemmi::El::Cl, gemmi::El::Br, gemmi::El::Fe, gemmi::El::Se,
+                                                     gemmi::El::Si}; // in any column
+  const bool misplaced = of_one_letter && std::find(often.begin(), often.end(), pair.elem) != often.end();
+  if ((of_one_letter || !pair.is_metal()) && !element.is_metal() && !misplaced)
     return;
   const gemmi::ResidueInfo info = gemmi::find_tabulated_residue(std::string(residue));
   if (!info.is_amino_acid() && !info.is_nucleic_acid() && !is_protonation_variant(residue))

@@ -158,6 +158,10 @@ std::string in_quotes(std::string_view text) {
   return s + "'";
 }
 
+std::string note_of_large_radii(int64_t count) {
+  return "radii of more than " + std::to_string(static_cast<int>(believed_radius)) + " Å: " + std::to_string(count);
+}
+
 Parsed parse_structure(std::string text, const std::string& file, const std::string& format,
                        const std::string& assembly) {
   if (format == "bcif" || (format == "auto" && looks_like_bcif(text)))

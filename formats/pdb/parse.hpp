@@ -51,6 +51,8 @@ bool looks_like_bcif(std::string_view bytes);
 
 /// Å. No atom is larger, nor a bead that stands for a few.
 inline constexpr double believed_radius = 10;
+/// "radii of more than 10 Å: 3"
+std::string note_of_large_radii(int64_t count);
 
 /// Calls take(line, number) for each line, without its end.
 template <class Take>

@@ -80,7 +80,7 @@ public:
   void finish() const {
     passed_over_.report(parsed_);
     if (large_ > 0)
-      parsed_.notes.push_back("radii of more than " + shortest(believed_radius) + " Å: " + std::to_string(large_));
+      parsed_.notes.push_back(note_of_large_radii(large_));
     if (after_end_ > 0)
       parsed_.notes.push_back("atom lines after END, not read: " + std::to_string(after_end_));
     if (parsed_.pqr.empty())

@@ -58,7 +58,7 @@ Parsed parse_xyzr(std::string_view text, const std::string& file) {
   StructureBuilder builder(parsed.structure);
   builder.open_model("1");
   parsed.pqr.reserve(static_cast<size_t>(std::count(text.begin(), text.end(), '\n')));
-  int64_t last = 1;
+  int64_t last = 1, large = 0;
   bool named = false;
   for_each_line(text, [&](std::string_view line, int64_t number) {
     last = number;
@@ -83,6 +83,7 @@ Parsed parse_xyzr(std::string_view text, const std::string& file) {
     atom.element = written ? named_element(label.name, label.residue) : gemmi::Element(gemmi::El::X);
     atom.pos = {value[0], value[1], value[2]};
     atom.serial = static_cast<int>(parsed.pqr.size());
+    large += value[3] > believed_radius;
     parsed.pqr.push_back({std::numeric_limits<double>::quiet_NaN(), value[3]});
     builder.add("", {gemmi::SeqId(label.number, ' '), {}, label.residue}, false, true, std::move(atom));
   });
@@ -91,6 +92,8 @@ Parsed parse_xyzr(std::string_view text, const std::string& file) {
   builder.finish();
   if (!named)
     parsed.notes.emplace_back("the file names no atoms and residues: all are one residue");
+  if (large > 0)
+    parsed.notes.push_back(note_of_large_radii(large));
   return parsed;
 }
 

@@ -143,6 +143,20 @@ std::vector<int32_t> hierarchy_order(const Grouping& g, const Levels& levels) {
   return order;
 }
 
+namespace {
+
+/// As a selection wants it.
+std::string in_selection(const std::string& chain) {
+  if (chain.find_first_of("/,;:*![]()\" ") == std::string::npos)
+    return chain;
+  std::string quoted = "\"";
+  for (const char c : chain)
+    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+} // namespace
+
 std::string chains_there(const std::vector<std::string>& names) {
   constexpr size_t most = 20;
   std::vector<std::string> distinct;
@@ -154,10 +168,10 @@ std::string chains_there(const std::vector<std::string>& names) {
     return "";
   std::string text = "; chains here: ";
   for (size_t i = 0; i < std::min(most, distinct.size()); ++i)
-    text += (i > 0 ? ", " : "") + distinct[i];
+    text += (i > 0 ? ", " : "") + in_selection(distinct[i]);
   if (distinct.size() > most)
     text += " and " + std::to_string(distinct.size() - most) + " more";
-  const std::string first = "'//" + distinct[0];
+  const std::string first = "'//" + in_selection(distinct[0]);
   return text + " (for example " + first + "', " + first + "/45-60', " + first + "/(HEM)')";
 }
 

@@ -24,6 +24,14 @@ struct Ccp4 {
   bool swapped = false;
   int32_t symmetry = 0;
 
+  /// Of a whole number from 0 to 2047: binary16.
+  static uint16_t half(int v) {
+    int exponent = 0;
+    while (v >> (exponent + 1) > 0)
+      ++exponent;
+    return v == 0 ? uint16_t{0} : static_cast<uint16_t>((exponent + 15) << 10 | ((v << (10 - exponent)) & 1023));
+  }
+
   std::string bytes() const {
     const int32_t n[3] = {4, 3, 5};
     std::string out(1024, '\0');
@@ -60,6 +68,8 @@ struct Ccp4 {
             put(size, static_cast<int8_t>(v));
           else if (mode == 1)
             put(size, static_cast<int16_t>(-v));
+          else if (mode == 12)
+            put(size, half(v));
           else if (mode == 6)
             put(size, static_cast<uint16_t>(v + 60000));
           else
@@ -86,7 +96,7 @@ std::string dx(const std::string& counts = "2 3 2",
 
 TEST_CASE("CCP4 maps are read in every mode, byte order and order of axes") {
   for (const bool swapped : {false, true})
-    for (const int32_t mode : {0, 1, 2, 6})
+    for (const int32_t mode : {0, 1, 2, 6, 12})
       for (const auto& axis : {std::array{1, 2, 3}, {3, 1, 2}, {2, 3, 1}, {3, 2, 1}})
         for (const int32_t symmetry : {0, 160}) {
           Ccp4 c;
@@ -103,6 +113,39 @@ TEST_CASE("CCP4 maps are read in every mode, byte order and order of axes") {
           const float v = mode == 0 ? 3 + 20 + 80 : 3 + 20 + 400;
           CHECK(m.at({3, 2, 4}) == (mode == 1 ? -v : mode == 6 ? v + 60000 : v));
         }
+}
+
+TEST_CASE("the machine stamp tells the byte order where the numbers do not") {
+  // 256 columns of bytes are 65,536 in the other order.
+  for (const bool swapped : {false, true}) {
+    std::string s(1024 + 256 * 2 * 2, '\0');
+    const auto put = [&](size_t word, int32_t v) {
+      for (size_t k = 0; k < 4; ++k)
+        s[4 * (word - 1) + k] = static_cast<char>(v >> (8 * (swapped ? 3 - k : k)));
+    };
+    for (const auto& [word, v] : {std::pair{1, 256}, {2, 2}, {3, 2}, {8, 256}, {9, 2}, {10, 2}})
+      put(static_cast<size_t>(word), v);
+    for (const size_t word : {11, 12, 13, 14, 15, 16})
+      put(word, 0x42B40000); // 90.f
+    s[212] = s[213] = swapped ? '\x11' : '\x44';
+    s[1024 + 5] = 7;
+    CHECK(formats::read_map(s, "x.map").points == Vec3i{256, 2, 2});
+    CHECK(formats::read_map(s, "x.map").at({5, 0, 0}) == 7);
+  }
+}
+
+TEST_CASE("numbers of 16 bits: small, negative, and none") {
+  Ccp4 c;
+  c.mode = 12;
+  std::string s = c.bytes();
+  const auto put = [&](size_t i, uint16_t v) { std::memcpy(&s[1024 + 2 * i], &v, 2); };
+  put(0, 0xC100); // -2.5
+  put(1, 0x0001); // 2^-24
+  const DenseMap m = formats::read_map(s, "x.map");
+  CHECK(m.at({0, 0, 0}) == -2.5f);
+  CHECK(m.at({1, 0, 0}) == std::ldexp(1.f, -24));
+  put(2, 0x7C00);
+  CHECK(refusal(s).find("x.map: M6: ") == 0);
 }
 
 TEST_CASE("a map lies where its origin says, else where its start says, in cells with any angles") {
