@@ -1,14 +1,14 @@
 # common.sh — what the recipes share: arguments, inputs, and the way from a plan to meshes that are checked and labelled.
 #
 # A recipe is called as NAME.sh DATA OUT. DATA holds the structures, under the names that the recipe asks for, OUT takes
-# what it makes. GRID is the number of grid points along the longest edge (513, as in the paper); MODE and THREADS are
-# --mode and -t of the programs, which have to be in PATH. Each stage leaves its run report: X.vdb.json beside X.vdb.
+# what it makes. GRID is the number of grid points along the longest edge; each recipe has one of its own, of which its mesh is about
+# as large as the paper's. MESHES, a list, makes these meshes alone. MODE and THREADS are --mode and -t of the programs, which have to be
+# in PATH. Each stage leaves its run report: X.vdb.json beside X.vdb.
 set -euo pipefail
 recipe=$(basename "$0" .sh)
 [ $# = 2 ] || { echo "usage: $0 DATA OUT" >&2; exit 2; }
 data=$(realpath -m "$1")
 mkdir -p "$2" && cd "$2"
-GRID=${GRID:-513}
 common=(--mode "${MODE:-omp}" -t "${THREADS:-0}")
 
 # needs FILE…: of DATA; a recipe without its structures says so, and is no failure.
@@ -18,6 +18,12 @@ needs() {
     [ -e "$data/$file" ] || { echo "$recipe: skipped, $data/$file is not there"; exit 0; }
   done
 }
+
+# points N: of the grid along its longest edge, where GRID does not say
+points() { export points=${GRID:-$1}; }
+
+# asked MESH: is it one of MESHES?
+asked() { [[ -z ${MESHES:-} || " $MESHES " == *" $1 "* ]]; }
 
 # density NAME OPTION…: NAME.vdb of NAME.hier
 density() {
@@ -31,6 +37,7 @@ density() {
 mesh() {
   local name=$1 mesh=$2
   shift 2
+  asked "$mesh" || return 0
   density2tet "${common[@]}" "$@" "$name.vdb" -o "$mesh.tet.vtu" --report "$mesh.tet.vtu.json"
   tetsmooth "${common[@]}" --density "$name.vdb" ${improve:-} "$mesh.tet.vtu" -o "$mesh.vtu" --report "$mesh.vtu.json"
   tetlabel -q ${labels:-} "$mesh.vtu" "$name.hier" -o "$mesh.labels.vtu"
@@ -46,8 +53,8 @@ check() {
   sed -n '/^region/,/^$/p' "$1.txt"
 }
 
-# spacing Å: of GRID points along an edge of that length
-spacing() { awk -v l="$1" -v n="$GRID" 'BEGIN { printf "%.6g", l / (n - 1) }'; }
+# spacing Å: of that many points along an edge of that length
+spacing() { awk -v l="$1" -v n="$points" 'BEGIN { printf "%.6g", l / (n - 1) }'; }
 
 # strand: strand.hier, which stands for a piece of tropomyosin: two copies of a helix of PDB 1SU4 side by side, along z, their middle in the origin.
 strand() {

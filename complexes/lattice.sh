@@ -11,6 +11,7 @@
 # domain names the filament or cylinder), .txt, .json.
 . "$(dirname "$0")/common.sh"
 needs paper/actin_filament_28mer_for_2w4u_derived.pdb.gz paper/1su4.pdb.gz
+points 81
 
 pdb2hier -q --hydrogens drop --select '//A' "$data/paper/actin_filament_28mer_for_2w4u_derived.pdb.gz" -o actin_1.hier
 pdb2hier -q "$data/paper/1su4.pdb.gz" -o head.hier

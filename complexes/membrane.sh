@@ -10,6 +10,7 @@
 # each: .labels.vtu (domain, chain, residue), .txt, .json.
 . "$(dirname "$0")/common.sh"
 needs paper/1su4.pdb.gz large/popc_bilayer.pdb.gz
+points 135
 
 pdb2hier -q -r '* P_R=0.2 P_C=1.1' "$data/paper/1su4.pdb.gz" -o pump.hier
 pdb2hier -q --select '(POPC)' -r '* P_R=0.2 P_C=0.8' "$data/large/popc_bilayer.pdb.gz" -o popc.hier

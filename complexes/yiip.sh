@@ -9,6 +9,7 @@
 # .txt, .json.
 . "$(dirname "$0")/common.sh"
 needs large/yiip_in_membrane.pdb.gz
+points 129
 
 pdb2hier -q --select '(!POPE,POPG)' -r '* P_R=0.2 P_C=1.1' "$data/large/yiip_in_membrane.pdb.gz" -o transporter.hier
 pdb2hier -q --select '(POPE,POPG)' -r '* P_R=0.2 P_C=0.8' "$data/large/yiip_in_membrane.pdb.gz" -o lipids.hier

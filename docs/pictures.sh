@@ -2,7 +2,7 @@
 # pictures.sh BIN [FOLDER [NAME…]] — the pictures of the documents, by the programs in BIN, into FOLDER (here); or these alone.
 #
 # Those of 1TII come from tests/data/1tii.pdb, the potential from tests/data/1l2y.pqr (and FreeFEM). The paper's figures (figure1 to figure11) need public structures: MOLMESH_TEST_DATA names
-# their folder, and without it they are left as they are.
+# their folder, and without it they are left as they are; COMPLEXES may name one where complexes/*.sh put their meshes.
 # Needs VTK's Python module (Debian: python3-vtk9); without a display also xvfb-run (xvfb, xauth). pngquant, where it is, makes them smaller.
 set -eu
 docs=$(cd "$(dirname "$0")" && pwd)
@@ -51,32 +51,14 @@ picture() {
   rm -rf "${work:?}"/*
 }
 
-# hierarchies NAME: the .hier that complexes/NAME.sh makes; its densities and meshes are left empty
-hierarchies() {
-  local program
-  mkdir -p stubs
-  for program in hier2density density2tet densityjoin tetsmooth tetlabel tetstat; do
-    printf '#!/bin/sh\nwhile [ $# -gt 1 ]; do [ "$1" = -o ] && : >"$2"; shift; done\n' >"stubs/$program"
-    chmod +x "stubs/$program"
+# recipe NAME MESH…: MESH.labels.vtu of complexes/NAME.sh, on its own grid; COMPLEXES names a folder that may have them already
+recipe() {
+  local name=$1 mesh
+  shift
+  for mesh; do
+    [ -e "${COMPLEXES:-}/$mesh.labels.vtu" ] || { MESHES=$* bash "$docs/../complexes/$name.sh" "$data" . >/dev/null 2>&1; return; }
   done
-  PATH=$PWD/stubs:$PATH bash "$docs/../complexes/$1.sh" "$data" .
-  rm -f ./*.vdb ./*.vtu
-}
-# part NAME MESH DENSITY2TET-OPTION…: MESH.vtu with labels, of NAME.vdb and NAME.hier
-part() {
-  local name=$1 mesh=$2
-  shift 2
-  density2tet -q "$@" "$name.vdb" -o "$mesh.tet.vtu"
-  tetsmooth -q --density "$name.vdb" "$mesh.tet.vtu" | tetlabel -q - "$name.hier" -o "$mesh.vtu"
-}
-# emphasized NAME STRUCTURE POINTS LOW SELECTION HIGH: NAME.vtu, the molecule with exponents LOW, and HIGH where selected. One round of
-# tetsmooth is enough for a picture of parts.
-emphasized() {
-  local name=$1 structure=$2 points=$3 low=$4 selection=$5 high=$6
-  pdb2hier -q -r "* $low" -r "$selection $high" "$structure" -o "$name.hier"
-  hier2density -q --grid "$points" "$name.hier" -o "$name.vdb"
-  density2tet -q "$name.vdb" -o "$name.tet.vtu"
-  tetsmooth -q --iterations 1 --density "$name.vdb" "$name.tet.vtu" | tetlabel -q - "$name.hier" -o "$name.vtu"
+  for mesh; do ln -s "$(realpath "$COMPLEXES")/$mesh.labels.vtu" .; done
 }
 
 tii=$docs/../tests/data/1tii.pdb
@@ -132,22 +114,16 @@ potential() { # by FreeFEM
 
 filament=(--columns 1 --size 1150,250 --view=-80,12,90 --clip y)
 figure1() {
-  hierarchies filament
-  hier2density -q --grid 257 filament.hier -o filament.vdb
-  part filament exterior --region exterior --box +40
-  draw figures.py figure1.png exterior.vtu surface 'surface' exterior.vtu exterior 'exterior' \
-    exterior.vtu embedded 'exterior, and the filament in it' "${filament[@]}" \
+  recipe filament filament.exterior
+  draw figures.py figure1.png filament.exterior.labels.vtu surface 'surface' filament.exterior.labels.vtu exterior 'exterior' \
+    filament.exterior.labels.vtu embedded 'exterior, and the filament in it' "${filament[@]}" \
     --colour domain:actin=4CC8D8 --colour domain:tropomyosin=F2A8B8 --colour domain:troponin=F08C28 --colour chain:K=D040B8 \
     --legend actin=4CC8D8 --legend 'chain K=D040B8' --legend troponin=F08C28 --legend tropomyosin=F2A8B8
 }
 figure4() {
-  local name
-  hierarchies filament
-  for name in filament_blurred filament_kept; do
-    hier2density -q --grid 257 "$name.hier" -o "$name.vdb"
-    density2tet -q "$name.vdb" | tetlabel -q - "$name.hier" -o "$name.vtu"
-  done
-  draw figures.py figure4.png filament_blurred.vtu surface 'P_D 0.25' filament_kept.vtu surface 'P_D 0.8 for actin and tropomyosin' \
+  recipe filament filament_blurred filament_kept
+  draw figures.py figure4.png filament_blurred.labels.vtu surface 'P_D 0.25' \
+    filament_kept.labels.vtu surface 'P_D 0.8 for actin and tropomyosin' \
     "${filament[@]}" --same --colour domain:actin=$green --colour domain:tropomyosin=$red \
     --legend actin=$green --legend tropomyosin=$red --legend troponin=BAC0C6
 }
@@ -186,25 +162,22 @@ END
 }
 figure10() {
   local blue=4664D8 pink=F2A8B8 i heads=()
-  hierarchies membrane
-  hier2density -q --isovalue 0.7 --spacing 2.25 membrane.hier -o membrane.vdb
-  part membrane pump_exterior --region exterior --cavities fill --box -52,-50,-60,68,70,120
-  part membrane pump_both --region both --cavities fill --box -52,-50,-60,68,70,120
-  hierarchies lattice
-  hier2density -q --spacing 6.4 lattice.hier -o lattice.vdb
-  density2tet -q --region exterior --box -60,-190,0,732,574,819.2 lattice.vdb | tetlabel -q - lattice.hier -o lattice_exterior.vtu
+  recipe membrane membrane.exterior membrane.both
+  recipe lattice lattice.exterior
   for i in 0 1 2 3 4 5; do heads+=(--colour "chain:${i}_head=$blue"); done
-  draw figures.py figure10.png pump_both.vtu body 'pump in its membrane' pump_exterior.vtu exterior 'exterior' \
-    pump_both.vtu both 'exterior, pump and membrane in it' lattice_exterior.vtu surface 'lattice' \
-    lattice_exterior.vtu exterior 'exterior' lattice_exterior.vtu embedded 'exterior, and the filaments in it' \
+  draw figures.py figure10.png membrane.both.labels.vtu body 'pump in its membrane' membrane.exterior.labels.vtu exterior 'exterior' \
+    membrane.both.labels.vtu both 'exterior, pump and membrane in it' lattice.exterior.labels.vtu surface 'lattice' \
+    lattice.exterior.labels.vtu exterior 'exterior' lattice.exterior.labels.vtu embedded 'exterior, and the filaments in it' \
     --columns 3 --size 400,420 --view=-75,18,0 --clip y "${heads[@]}" --colour domain:pump=$blue --rest $pink \
     --legend "pump, heads=$blue" --legend "membrane, filaments=$pink"
 }
 figure11() {
-  emphasized 4V6X "$data/large/4v6x.cif.gz" 97 'P_R=0.2 P_C=0.8' //B2 'P_R=0.4 P_C=1.2'
-  emphasized 1HTQ "$data/paper/1htq_24chains_model1_derived.pdb.gz" 97 'P_R=0.3 P_C=0.8' //A,B,C 'P_R=1 P_C=1.5'
-  draw figures.py figure11.png 4V6X.vtu section:B2 '4V6X for 2W4A' 4V6X.vtu parts 'eight parts' \
-    1HTQ.vtu section:A,B,C '1HTQ' 1HTQ.vtu parts 'eight parts' --columns 2 --size 400,360 --view=-70,20,0 --rest A8C8A8 \
+  local one_copy=A_1,B_1,C_1,D_1,E_1,F_1,G_1,H_1,I_1,J_1,P_1,Q_1,R_1,S_1,T_1
+  recipe machines ribosome synthetase capsid
+  draw figures.py figure11.png ribosome.labels.vtu section:B2 '4V6X for 2W4A' ribosome.labels.vtu parts 'eight parts' \
+    synthetase.labels.vtu section:A,B,C '1HTQ' synthetase.labels.vtu parts 'eight parts' \
+    capsid.labels.vtu section:$one_copy '2BTV for 2KU2' capsid.labels.vtu parts 'eight parts' \
+    --columns 2 --size 400,360 --view=-70,20,0 --rest A8C8A8 \
     --legend 'in detail=4664D8' --legend 'the rest=A8C8A8' --legend 'cut=EEAAB4'
 }
 

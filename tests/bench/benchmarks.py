@@ -17,7 +17,6 @@ import json
 import os
 import pathlib
 import re
-import shutil
 import statistics
 import subprocess
 import sys
@@ -43,28 +42,20 @@ VARIANTS = {"T0": ("full", "all"), "NS": ("neighbor", "all"), "KD": ("full", "kd
             "NS+KD": ("neighbor", "kdtree"), "default": ("neighbor", "bvh")}
 # Table 1 of the paper, 2KFX: band, analyzed points as a part of the grid.
 TABLE_1 = {"0.9,1.1": 0.026, "0.6,1.4": 0.048, "0.3,1.7": 0.092, "0.1,2.0": 0.12}
-def emphasized(low, selection, high):
-    return ["-r", f"* {low}", "-r", f"{selection} {high}"]
-
-
-# Table 3 of the paper, by what stands for its structures here: the recipe, its hierarchy and mesh, or a structure and its rules; points
-# of the quick run, where the mesh is about as large as the paper's, None: left out; the paper's name and atoms; its density, mesh, quality in
-# seconds, sequential, on 8 threads, on a GPU; its V#, E#, edge ratio, Q, dihedral angles.
+# Table 3 of the paper, by the meshes of the recipes that stand for its structures: the recipe, the mesh, its density; the paper's name and
+# atoms; its density, mesh, quality in seconds, sequential, on 8 threads, on a GPU; its V#, E#, edge ratio, Q, dihedral angles.
 TABLE_3 = {
-    "thin filament": (("filament", "filament", "filament.exterior"), 257, "TFC", "69,222",
+    "thin filament": (("filament", "filament.exterior", "filament"), "TFC", "69,222",
                       (188.6, 13.2, 157.8), (37.8, 6.6, 35.8), (4.8, 2.4, 6.3), (212120, 1094424, 10.24, 0.12, 15.00, 165.25)),
-    "SERCA in POPC": (("membrane", "membrane", "membrane.exterior"), 129, "SERCA", "80,157",
+    "SERCA in POPC": (("membrane", "membrane.exterior", "membrane"), "SERCA", "80,157",
                       (165.1, 12.8, 163.5), (38.4, 6.3, 37.7), (11.7, 2.3, 7.2), (190356, 946273, 10.23, 0.14, 15.01, 167.25)),
-    "myofibril lattice": (("lattice", "lattice", "lattice.exterior"), None, "ML", "95,853",
+    "myofibril lattice": (("lattice", "lattice.exterior", "lattice"), "ML", "95,853",
                           (377.5, 13.1, 189.5), (75.6, 6.7, 36.7), (7.3, 2.4, 5.8), (271523, 1327336, 10.31, 0.18, 15.03, 164.20)),
-    "4V6X": (("large/4v6x.cif.gz", emphasized("P_R=0.2 P_C=0.8", "//B2", "P_R=0.4 P_C=1.2")), 97, "2W4A", "0.19 M",
+    "4V6X": (("machines", "ribosome", "ribosome"), "2W4A", "0.19 M",
              (687.4, 12.9, 213.7), (143.5, 6.7, 53.2), (10.2, 2.4, 6.5), (276458, 1334008, 10.98, 0.11, 15.10, 166.23)),
-    "1HTQ, 24 chains": (("paper/1htq_24chains_model1_derived.pdb.gz",
-                         emphasized("P_R=0.3 P_C=0.8", "//A,B,C", "P_R=1 P_C=1.5")), 97, "1HTQ", "0.98 M",
+    "1HTQ, 24 chains": (("machines", "synthetase", "synthetase"), "1HTQ", "0.98 M",
                         (6494.7, 13.1, 250.6), (1589.4, 6.7, 68.3), (88.4, 2.7, 12.5), (399994, 1989245, 9.56, 0.10, 15.03, 167.46)),
-    "2BTV's capsid": (("large/2btv.pdb.gz", ["--assembly", "1", *emphasized("P_R=0.5 P_C=1", "//A_1,B_1,C_1,D_1,E_1,F_1,G_1,"
-                                                                                      "H_1,I_1,J_1,P_1,Q_1,R_1,S_1,T_1", "P_R=1.6 P_C=2")]), None,
-                      "2KU2", "1.23 M",
+    "2BTV's capsid": (("machines", "capsid", "capsid"), "2KU2", "1.23 M",
                       (3050.2, 12.9, 178.0), (645.5, 6.5, 44.2), (63.2, 2.4, 6.7), (243463, 1201048, 10.60, 0.15, 14.86, 167.42)),
 }
 
@@ -439,96 +430,112 @@ class Page:
 
     # --- complexes
 
-    def recipe(self, name):
-        """What it makes on a coarse grid and without improvement: the hierarchies, and in reports the options of the meshes."""
-        script = ROOT / "complexes" / f"{name}.sh"
-        if not script.exists():
-            return None
-        folder, stubs = self.chain.path(f"recipe_{name}"), self.chain.path("stubs")
+    def recipe(self, name, mesh):
+        """What complexes/NAME.sh runs for a mesh: by the file that is made, the grid's points and the options. Its folder, where the hierarchies
+        are made, and the densities of pieces that the recipe measures; nothing else is."""
+        script, folder, stubs = ROOT / "complexes" / f"{name}.sh", self.chain.path(f"recipe_{name}"), self.chain.path("stubs")
+        commands = self.chain.path("commands")
+        commands.write_text("")
         stubs.mkdir(exist_ok=True)
-        for program in ("tetsmooth", "tetlabel", "tetstat"):  # each makes an empty file
+        for program in ("hier2density", "densityjoin", "density2tet", "tetsmooth", "tetlabel", "tetstat"):  # each makes an empty file
             stub = stubs / program
-            stub.write_text('#!/bin/sh\nwhile [ $# -gt 1 ]; do [ "$1" = -o ] && : >"$2"; shift; done\n')
+            stub.write_text("#!/bin/sh\n"
+                            f'[ {program} = hier2density ] && case "$*" in *lattice_*) exec "{self.arguments.bin.resolve()}/{program}" "$@";; esac\n'
+                            f'(printf "%s\\t" "$points" "$@"; echo) >>"{commands}"\n'
+                            'while [ $# -gt 1 ]; do [ "$1" = -o ] && : >"$2"; shift; done\n')
             stub.chmod(0o755)
         path = f"{stubs}:{self.arguments.bin.resolve()}:{os.environ['PATH']}"
         subprocess.run(["bash", script, self.data, folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                       env={**os.environ, "PATH": path, "GRID": "65", "THREADS": str(self.threads)})
-        return folder
+                       env={**os.environ, "PATH": path, "MESHES": mesh, "GRID": "", "THREADS": "1"})
+        found = {}
+        for line in commands.read_text().splitlines():
+            points, *words = line.split("\t")[:-1]
+            made, options, k = None, [], 0
+            while k < len(words):
+                if words[k] in ("--mode", "-t", "--report", "-o", "--density"):
+                    made = words[k + 1] if words[k] == "-o" else made
+                    k += 2
+                    continue
+                options.append(words[k])
+                k += 1
+            found.setdefault(made, (int(points), options[:-1]))  # without the input
+        return found, folder
 
-    def complex(self, source, points):
-        """Its hierarchy in place; options of the density and of the mesh, or None."""
-        if len(source) == 2:
-            structure = self.file(source[0])
-            if not structure:
-                return None
-            self.chain.hierarchy(structure, *source[1])
-            return ["--grid", points], ["--region", "interior"]
-        name, hier, mesh = source
-        folder = self.recipe(name)
-        reports = [folder / f"{hier}.vdb.json", folder / f"{mesh}.tet.vtu.json"] if folder else []
-        if not reports or not all(report.exists() for report in reports):
+    def complex(self, recipe, mesh, density):
+        """Its hierarchy in place; the grid's points, options of the density of 513 points, of that which is meshed, and of the mesh; or None."""
+        found, folder = self.recipe(recipe, mesh)
+        if f"{density}.vdb" not in found:
             return None
-        of_density, of_mesh = (json.loads(report.read_text())["options"] for report in reports)
-        shutil.copy(folder / f"{hier}.hier", self.chain.path("hier"))
-        grid = ["--grid", points] if of_density.get("grid") else ["--spacing", of_density["spacing"] * 64 / (points - 1)]
-        return [*grid, "--isovalue", of_density["isovalue"]], [
-            f"--{key}={of_mesh[key]}" for key in ("region", "box", "adapt", "cavities", "drop-below")]
+        (points, options), (_, of_mesh) = found[f"{density}.vdb"], found[f"{mesh}.tet.vtu"]
+        os.replace(folder / f"{density}.hier", self.chain.path("hier"))
+        fine = list(options)
+        if "--grid" in fine:
+            fine[fine.index("--grid") + 1] = "513"
+        else:
+            at = fine.index("--spacing") + 1
+            fine[at] = f"{float(fine[at]) * (points - 1) / 512:.6g}"
+        return points, fine, options, of_mesh
 
     def complexes(self):
-        modes = [("seq", 1)] if self.arguments.shared else [
-            ("seq", 1), ("omp", max(2, self.arguments.threads or os.cpu_count())), ("cuda", 1)]
+        several = max(2, self.arguments.threads or os.cpu_count())
+        modes = [("seq", 1, "good"), ("omp", several, "good"), ("omp", several, "fast"), ("cuda", 1, "good")]
+        def processor(runs):
+            return sum(r["processor"] * r["work"] / max(r["wall"], 1e-9) for r in runs)
         rows, below, measured, missing = [], 0, 0, []
-        for title, (source, quick, theirs, their_atoms, sequential, cores, gpu, paper) in TABLE_3.items():
-            points = quick if self.quick else 513
-            made_of = self.complex(source, points) if points else None
+        for title, (source, theirs, their_atoms, sequential, cores, gpu, paper) in TABLE_3.items():
+            made_of = self.complex(*source)
             if not made_of:
                 missing.append(title)
                 self.skipped.append(f"{title} of the paper's table 3")
                 self.say(f"skipped {title}")
                 continue
-            grid, options = made_of
-            found, totals = None, []
-            for mode, threads in modes:
+            points, of_fine, of_density, of_mesh = made_of
+            found, totals, made = None, [], {}
+            for mode, threads, effort in modes:
+                at = {"threads": threads, "mode": mode}
                 try:
-                    density = self.chain.density(*grid, threads=threads, mode=mode)
-                    made = self.chain.mesh(*options, threads=threads, mode=mode)
-                    improvement = self.chain.improve(threads=threads, mode=mode, good=(0, 5))
+                    if mode not in made:  # for both efforts
+                        made = {mode: [self.chain.density(*of_fine, **at, output=self.chain.path("fine")),
+                                       self.chain.density(*of_density, **at), self.chain.mesh(*of_mesh, **at)]}
+                    runs = [*made[mode], self.chain.improve("--effort", effort, **at, good=(0, 5))]
                 except ToolError as problem:
                     if mode != "cuda":
                         raise
                     self.skipped.append("the paper's table 3 with `--mode cuda`")
                     self.say(f"  {problem}")
                     continue
-                if not found or mode == "cuda":  # the host's modes give the same bytes
-                    found = self.chain.stat("out")
-                parts = [density["seconds"]["density"], made["work"], improvement["work"]]
+                if not found or effort != found["effort"] or mode == "cuda":  # the host's modes give the same bytes
+                    found = {**self.chain.stat("out"), "effort": effort}
+                parts = [runs[0]["work"] + runs[1]["work"], runs[2]["work"], runs[3]["work"]]
                 totals.append(sum(parts))
                 quality = found["quality"]
-                rows.append((f"**{title}**, {points} points", count(density["counts"]["atoms"]),
-                             f"{mode}, {threads} thread{'s' if threads > 1 else ''}" if mode != "cuda" else mode,
-                             *map(seconds, parts), seconds(totals[-1]), count(found["points"]), count(found["tets"]),
+                rows.append((f"**{title}**, {points} points", count(runs[0]["counts"]["atoms"]),
+                             (f"{mode}, {threads} thread{'s' if threads > 1 else ''}" if mode != "cuda" else mode)
+                             + (f", {effort}" if effort != "good" else ""),
+                             *map(seconds, parts), seconds(totals[-1]), seconds(processor(runs)), count(found["points"]), count(found["tets"]),
                              f"{quality['edge_ratio']['max']:.2f}", f"{quality['joe_liu_q']['min']:.2f}",
                              angles((quality["dihedral"]["min"], quality["dihedral"]["max"])),
                              "yes" if found["valid"] else "**no**"))
-                self.say(f"  {title}, {mode}: {' '.join(map(seconds, parts))}, {found['tets']} elements")
+                self.say(f"  {title}, {mode} {effort}: {' '.join(map(seconds, parts))}, processor {seconds(processor(runs))}, {found['tets']} elements")
             v, e, ratio, q, low, high = paper
             for mode, parts in (("sequential", sequential), ("8 threads", cores), ("GPU", gpu)):
-                rows.append((f"*the paper's {theirs}*", their_atoms, mode, *(f"{s:,g}" for s in parts), f"{sum(parts):,.1f}", count(v),
+                rows.append((f"*the paper's {theirs}*", their_atoms, mode, *(f"{s:,g}" for s in parts), f"{sum(parts):,.1f}", "", count(v),
                              count(e), f"{ratio:.2f}", f"{q:.2f}", angles((low, high)), ""))
             measured += 1
             below += min(totals) < sum(gpu)
         if not rows:
             return
         self.promise("table 3: complexes whose total is below that of the paper's GPU", f"{len(TABLE_3)}",
-                     f"{below} of {measured} measured, " + ("one core" if self.arguments.shared else "all cores"), below == len(TABLE_3))
+                     f"{below} of {measured} measured, {several} threads", below == len(TABLE_3))
         self.write("## Complexes: the paper's table 3", "Seconds of density, mesh generation and quality improvement without reading and "
-                   "writing; the paper's exponents. The structures stand for those of the paper "
-                   "(`complexes/` holds the recipes, [figures.md](figures.md) shows them). As in the paper the first three are "
-                   "meshes of the surroundings up to a box, the others of the molecule. "
-                   + ("Grids are coarser here than the paper's 513 points, so that meshes are about as large as the paper's. " if self.quick
-                      else "") + "The paper's are from a Xeon E5-1620 (4 cores, 8 "
+                   "writing; the paper's exponents, the meshes of the recipes in `complexes/`, whose structures stand for the paper's "
+                   "([complexes.md](complexes.md)). As in the paper the first three are "
+                   "meshes of the surroundings up to a box, the others of the molecule. *Density* is that of 513 points along the longest edge, as "
+                   "the paper has it, and besides that of the grid that is meshed, whose points the first column says: with these a mesh is "
+                   "about as large as the paper's. `fast` is `tetsmooth --effort fast`, whose aim, 15° to 155°, is what the paper's meshes have. "
+                   "*Processor* is the seconds of all threads together. The paper's are from a Xeon E5-1620 (4 cores, 8 "
                    "threads) and a GTX 680." + (f" Not measured in this run: {', '.join(missing)}." if missing else ""),
-                   table(("", "atoms", "mode", "density", "mesh", "quality", "total", "V#", "E#", "edge ratio ≤", "Q ≥",
+                   table(("", "atoms", "mode", "density", "mesh", "quality", "total", "processor", "V#", "E#", "edge ratio ≤", "Q ≥",
                           "dihedral angles", "valid"), rows))
 
     # --- the body
@@ -570,8 +577,8 @@ class Page:
         """The page that there is, with the sections of `body` and of the .md files in place of its own."""
         sections = re.split(r"(?m)^(?=## )", self.arguments.output.read_text())
         fresh = re.split(r"(?m)^(?=## )", "\n\n".join(body) + "\n\n")[1:]
-        kind = ("seconds of the clock times the share of a processor that the program had, on one thread, beside other work"
-                if self.arguments.shared else "of one run")
+        kind = ("of one run beside other work: of one thread, seconds of the clock times the share of a processor that it had; of several, "
+                "seconds of the clock without those in which the first thread waited for a processor" if self.arguments.shared else "of one run")
         fresh = [s.rstrip() + f"\n\nMeasured on: {self.machine()} Times are {kind}.\n\n" for s in fresh]
         fresh += [path.read_text().strip() + "\n\n" for path in sorted(HERE.glob("*.md"))
                   if any(s.startswith(path.read_text().split("\n")[0] + "\n") for s in sections)]

@@ -13,7 +13,8 @@ class ToolError(Exception):
 
 class Chain:
     """The programs in one folder, their files in another. threads: of those that have a choice. shared: other work goes on
-    beside this one; one thread, and every second counts as the share of a processor that the run had."""
+    beside this one; one thread unless more are asked for, and every second of one thread counts as the share of a processor that the run
+    had, of several as the share in which the first did not wait for a processor."""
 
     def __init__(self, programs, folder, threads, shared=False):
         self.programs, self.folder, self.shared = pathlib.Path(programs), pathlib.Path(folder), shared
@@ -25,21 +26,34 @@ class Chain:
     def run(self, program, *options, threads=None, mode="omp", good=(0,)):
         """The run report, where the status is a good one; `seconds` of each phase, `wall` of all, `work` without reading and writing, `processor`: user and
         system."""
-        report = self.path(f"{program}.json")
+        report, threads = self.path(f"{program}.json"), int(threads or self.threads)
         before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
-        threads = 1 if self.shared else threads or self.threads
-        done = subprocess.run([self.programs / program, "-q", "--mode", mode, "-t", str(threads), "--report", report,
-                               *map(str, options)], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+        done = subprocess.Popen([self.programs / program, "-q", "--mode", mode, "-t", str(threads), "--report", report,
+                                 *map(str, options)], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+        waited = self.waiting(done) if self.shared and threads > 1 else 0
+        _, said = done.communicate()
         after, elapsed = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic() - start
         if done.returncode not in good:
-            raise ToolError(f"{program}: status {done.returncode}: {done.stderr.strip()}")
+            raise ToolError(f"{program}: status {done.returncode}: {said.strip()}")
         text = json.loads(report.read_text())
         text["processor"] = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        share = min(1, text["processor"] / elapsed) if self.shared else 1
+        share = 1 - waited / elapsed if threads > 1 or not self.shared else min(1, text["processor"] / elapsed)
         text["seconds"] = {p["name"]: p["seconds"] * share for p in text["phases"]}
         text["wall"] = sum(text["seconds"].values())
         text["work"] = sum(s for name, s in text["seconds"].items() if name not in ("read", "write"))
         return text
+
+    @staticmethod
+    def waiting(process):
+        """Until it ends: the seconds in which its first thread could have run, but had no processor."""
+        seconds = 0
+        while True:
+            try:
+                seconds = int(pathlib.Path(f"/proc/{process.pid}/schedstat").read_text().split()[1]) / 1e9
+                process.wait(0.02)
+                return seconds
+            except subprocess.TimeoutExpired:
+                pass
 
     def hierarchy(self, structure, *options):
         return self.run("pdb2hier", *options, structure, "-o", self.path("hier"))
