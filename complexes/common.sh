@@ -1,9 +1,10 @@
 # common.sh — what the recipes share: arguments, inputs, and the way from a plan to meshes that are checked and labelled.
 #
 # A recipe is called as NAME.sh DATA OUT. DATA holds the structures, under the names that the recipe asks for, OUT takes
-# what it makes. GRID is the number of grid points along the longest edge; each recipe has one of its own, of which its mesh is about
-# as large as the paper's. MESHES, a list, makes these meshes alone. MODE and THREADS are --mode and -t of the programs, which have to be
-# in PATH. Each stage leaves its run report: X.vdb.json beside X.vdb.
+# what it makes. GRID is the number of grid points along the longest edge (513 in the paper) and DECAY the decay rate of the kernels, which
+# the paper does not give: with those of the recipes its mesh is about as large as the paper's. MESHES, a list, makes these meshes
+# alone. MODE and THREADS are --mode and -t of the programs, which have to be in PATH. Each stage leaves its run report: X.vdb.json beside
+# X.vdb.
 set -euo pipefail
 recipe=$(basename "$0" .sh)
 [ $# = 2 ] || { echo "usage: $0 DATA OUT" >&2; exit 2; }
@@ -19,8 +20,8 @@ needs() {
   done
 }
 
-# points N: of the grid along its longest edge, where GRID does not say
-points() { export points=${GRID:-$1}; }
+# points N: of the grid along its longest edge, where GRID does not say; decay: of the kernels
+points() { export points=${GRID:-$1} decay=${DECAY:-0.15}; }
 
 # asked MESH: is it one of MESHES?
 asked() { [[ -z ${MESHES:-} || " $MESHES " == *" $1 "* ]]; }

@@ -9,7 +9,7 @@
 # Beside each: .labels.vtu (domain, chain, residue at every triangle), .txt (tetstat), .json (run reports).
 . "$(dirname "$0")/common.sh"
 needs paper/actin_filament_28mer_for_2w4u_derived.pdb.gz paper/1su4.pdb.gz typical/1aki.pdb
-points 217
+points 513
 
 pdb2hier -q --hydrogens drop "$data/paper/actin_filament_28mer_for_2w4u_derived.pdb.gz" -o actin.hier
 pdb2hier -q "$data/typical/1aki.pdb" -o knob.hier
@@ -25,13 +25,13 @@ piece knob.hier   domain=troponin    P_R=2   P_C=1   P_D=1   chains=A:Tn transla
 rule //K P_R=2 P_C=1
 END
 hierjoin filament.join -o filament.hier
-density filament --grid "$points"
-mesh filament filament.exterior --region exterior --box +40
-mesh filament filament.both --region both --box +40
+density filament --decay "$decay" --grid "$points"
+mesh filament filament.exterior --adapt 0.4 --region exterior --box +40
+mesh filament filament.both --adapt 0.4 --region both --box +40
 
 hierjoin -q -r '* P_R=0.7 P_C=0.4 P_D=0.25' filament.join -o filament_blurred.hier
 hierjoin -q -r '* P_R=0.7 P_C=0.4 P_D=0.25' -r '//K P_D=0.8' -r '//Tm_1,Tm_2 P_D=0.8' filament.join -o filament_kept.hier
 for name in filament_blurred filament_kept; do
-  density $name --grid "$points"
-  mesh $name $name
+  density $name --decay "$decay" --grid "$points"
+  mesh $name $name --adapt 0.4
 done

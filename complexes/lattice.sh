@@ -11,7 +11,7 @@
 # domain names the filament or cylinder), .txt, .json.
 . "$(dirname "$0")/common.sh"
 needs paper/actin_filament_28mer_for_2w4u_derived.pdb.gz paper/1su4.pdb.gz
-points 81
+points 97
 
 pdb2hier -q --hydrogens drop --select '//A' "$data/paper/actin_filament_28mer_for_2w4u_derived.pdb.gz" -o actin_1.hier
 pdb2hier -q "$data/paper/1su4.pdb.gz" -o head.hier
@@ -30,20 +30,23 @@ cylinder() {
     printf "join 1\nbody cylinder cylinder from=%.9f,%.9f,%.9f to=%.9f,%.9f,%.9f radius=80 P_R=0.5 P_C=0.3\n", x, y, z - 80, x, y, z + 900
   }' >lattice_cylinder.join
   hierjoin -q lattice_cylinder.join -o lattice_cylinder.hier
-  density lattice_cylinder --spacing "$spacing"
+  density lattice_cylinder --decay "$decay" --spacing "$spacing"
 }
 # origin NAME: the first point of its grid, a coordinate a line
 origin() { awk '/"origin"/ { on = 1; next } on && /\]/ { exit } on { gsub(/[ ,]/, ""); print }' "$1.vdb.json"; }
 hierjoin -q lattice_filament.join -o lattice_filament.hier
-density lattice_filament --spacing "$spacing"
+density lattice_filament --decay "$decay" --spacing "$spacing"
 # Each grid begins where its atoms do. Cylinders go half a spacing at most, so that their points are the filament's, some whole spacings
-# away; and places are whole spacings apart: all pieces are copied bit for bit.
+# away; and places are whole spacings apart (on 513 points as they are, on coarser grids up to half a spacing beside): all pieces are
+# copied bit for bit.
 cylinder 0 0 0
 cylinder $(paste <(origin lattice_filament) <(origin lattice_cylinder) |
   awk -v h="$spacing" '{ d = ($1 - $2) / h; printf "%.9f ", h * (d - sprintf("%.0f", d)) }')
 
-filaments=(224,-128 672,128 224,128 448,256 0,256 448,512)
-cylinders=(0,0 448,0 224,384 672,384)
+# whole X,Y…: the nearest places that are whole spacings away; those of 513 points are
+whole() { printf '%s\n' "$@" | awk -F, -v h="$spacing" '{ printf "%.9f,%.9f\n", h * sprintf("%.0f", $1 / h), h * sprintf("%.0f", $2 / h) }'; }
+filaments=($(whole 224,-128 672,128 224,128 448,256 0,256 448,512))
+cylinders=($(whole 0,0 448,0 224,384 672,384))
 # plan ENDING: a plan of the pieces lattice_filament.ENDING and lattice_cylinder.ENDING; names for what has atoms
 plan() {
   local i names
@@ -62,11 +65,11 @@ plan vdb >lattice_assembled.join
 box=-60,-190,0,732,574,819.2
 
 hierjoin lattice.join -o lattice.hier
-density lattice --spacing "$spacing"
-mesh lattice lattice.exterior --region exterior --box $box
-mesh lattice lattice.both --region both --box $box
+density lattice --decay "$decay" --spacing "$spacing"
+mesh lattice lattice.exterior --adapt 0.4 --region exterior --box $box
+mesh lattice lattice.both --adapt 0.4 --region both --box $box
 
 # The parts are over 20 Å apart, where the union is the sum.
 densityjoin "${common[@]}" --combine max lattice_assembled.join -o lattice_assembled.vdb --report lattice_assembled.vdb.json
 ln -sf lattice.hier lattice_assembled.hier
-labels=--other-structure mesh lattice_assembled lattice_assembled.both --region both --box $box
+labels=--other-structure mesh lattice_assembled lattice_assembled.both --adapt 0.4 --region both --box $box

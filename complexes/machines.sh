@@ -15,9 +15,9 @@ machine() { # NAME POINTS FILE OPTION…: of pdb2hier
   asked "$name" || return 0
   [ -e "$data/$file" ] || { echo "$recipe: skipped $name, $data/$file is not there"; return; }
   pdb2hier "$@" "$data/$file" -o "$name.hier"
-  density "$name" --grid "$points"
-  mesh "$name" "$name"
+  density "$name" --decay "$decay" --grid "$points"
+  mesh "$name" "$name" --adapt 0.4
 }
-machine synthetase 105 paper/1htq_24chains_model1_derived.pdb.gz -r '* P_R=0.3 P_C=0.8' -r '//A,B,C P_R=1 P_C=1.5'
-machine ribosome 91 large/4v6x.cif.gz -r '* P_R=0.2 P_C=0.8' -r '//B2 P_R=0.4 P_C=1.2'
-machine capsid 85 large/2btv.pdb.gz --assembly 1 -r '* P_R=0.5 P_C=1' -r '//A_1,B_1,C_1,D_1,E_1,F_1,G_1,H_1,I_1,J_1,P_1,Q_1,R_1,S_1,T_1 P_R=1.6 P_C=2'
+machine synthetase 513 paper/1htq_24chains_model1_derived.pdb.gz -r '* P_R=0.3 P_C=0.8' -r '//A,B,C P_R=1 P_C=1.5'
+machine ribosome 289 large/4v6x.cif.gz -r '* P_R=0.2 P_C=0.8' -r '//B2 P_R=0.4 P_C=1.2'
+machine capsid 97 large/2btv.pdb.gz --assembly 1 -r '* P_R=0.5 P_C=1' -r '//A_1,B_1,C_1,D_1,E_1,F_1,G_1,H_1,I_1,J_1,P_1,Q_1,R_1,S_1,T_1 P_R=1.6 P_C=2'
