@@ -51,7 +51,7 @@ picture() {
   rm -rf "${work:?}"/*
 }
 
-# recipe NAME MESH…: MESH.labels.vtu of complexes/NAME.sh, on its own grid; COMPLEXES names a folder that may have them already
+# recipe NAME MESH…: MESH.labels.vtu of complexes/NAME.sh, on GRID points or its own grid; COMPLEXES names a folder that may have them already
 recipe() {
   local name=$1 mesh
   shift
@@ -121,7 +121,7 @@ figure1() {
     --legend actin=4CC8D8 --legend 'chain K=D040B8' --legend troponin=F08C28 --legend tropomyosin=F2A8B8
 }
 figure4() {
-  recipe filament filament_blurred filament_kept
+  GRID=257 recipe filament filament_blurred filament_kept
   draw figures.py figure4.png filament_blurred.labels.vtu surface 'P_D 0.25' \
     filament_kept.labels.vtu surface 'P_D 0.8 for actin and tropomyosin' \
     "${filament[@]}" --same --colour domain:actin=$green --colour domain:tropomyosin=$red \
@@ -173,7 +173,8 @@ figure10() {
 }
 figure11() {
   local one_copy=A_1,B_1,C_1,D_1,E_1,F_1,G_1,H_1,I_1,J_1,P_1,Q_1,R_1,S_1,T_1
-  recipe machines ribosome synthetase capsid
+  GRID=129 recipe machines ribosome synthetase
+  GRID=65 recipe machines capsid
   draw figures.py figure11.png ribosome.labels.vtu section:B2 '4V6X for 2W4A' ribosome.labels.vtu parts 'eight parts' \
     synthetase.labels.vtu section:A,B,C '1HTQ' synthetase.labels.vtu parts 'eight parts' \
     capsid.labels.vtu section:$one_copy '2BTV for 2KU2' capsid.labels.vtu parts 'eight parts' \
