@@ -66,6 +66,16 @@ ReferenceSurface::ReferenceSurface(const TetMesh& mesh, const std::vector<uint8_
   sort_along_curve();
   tree_ = std::make_unique<BoxTree>(
       triangle_.size(), [&](size_t t) { return box_around(triangle_[t].a, triangle_[t].b, triangle_[t].c); });
+  const size_t samples = std::min<size_t>(64, triangle_.size());
+  int64_t all = 0;
+  for (size_t s = 0; s < samples; ++s) {
+    const Triangle& t = triangle_[s * triangle_.size() / samples];
+    Vec3d q;
+    int looked_at;
+    closest((t.a + t.b + t.c) / 3., 0.5 * edge_, q, looked_at);
+    all += looked_at;
+  }
+  looks_ += 8 * all / static_cast<int64_t>(samples);
 }
 
 void ReferenceSurface::sort_along_curve() {
@@ -106,7 +116,8 @@ ReferenceSurface::Answer& ReferenceSurface::kept_answer(Vec3d p, double reach) {
   return kept[h * 0xFF51AFD7ED558CCDu >> (64 - bits)];
 }
 
-const ReferenceSurface::Triangle* ReferenceSurface::closest(Vec3d p, double reach, Vec3d& point) const {
+const ReferenceSurface::Triangle* ReferenceSurface::closest(Vec3d p, double reach, Vec3d& point,
+                                                            int& looked_at) const {
   const bool many = many_.load(std::memory_order_relaxed);
   if (many) {
     const Answer& a = kept_answer(p, reach);
@@ -116,7 +127,7 @@ const ReferenceSurface::Triangle* ReferenceSurface::closest(Vec3d p, double reac
       return a.nearest;
     }
   }
-  int looked_at = 0;
+  looked_at = 0;
   double best = reach * reach;
   const double rounding = 1e-9 * best + 1e-20 * edge_ * edge_;
   const Triangle* nearest = nullptr;
@@ -142,12 +153,14 @@ const ReferenceSurface::Triangle* ReferenceSurface::closest(Vec3d p, double reac
 
 bool ReferenceSurface::project(Vec3d& p, double reach) const {
   const Vec3d from = p;
-  return closest(from, std::min(reach, edge_), p) != nullptr;
+  int looked_at;
+  return closest(from, std::min(reach, edge_), p, looked_at) != nullptr;
 }
 
 bool ReferenceSurface::probe(Vec3d p, double& distance, Vec3d& normal) const {
   Vec3d q;
-  const Triangle* t = closest(p, 0.5 * edge_, q);
+  int looked_at;
+  const Triangle* t = closest(p, 0.5 * edge_, q, looked_at);
   if (!t)
     return false;
   normal = t->normal;

@@ -17,6 +17,7 @@ public:
   bool project(Vec3d& p, double reach) const override;
   bool probe(Vec3d p, double& distance, Vec3d& normal) const override;
   double spacing() const override { return spacing_; }
+  int64_t looks() const override { return looks_; }
 
 private:
   struct Triangle {
@@ -26,12 +27,13 @@ private:
   struct Answer;
   static Answer& kept_answer(Vec3d p, double reach);
   void sort_along_curve();
-  const Triangle* closest(Vec3d p, double reach, Vec3d& point) const;
+  const Triangle* closest(Vec3d p, double reach, Vec3d& point, int& looked_at) const;
   std::vector<Triangle> triangle_; ///< along a curve that keeps near ones together
   std::unique_ptr<BoxTree> tree_;
   uint64_t number_ = 0;                    ///< of this surface among all
   mutable std::atomic<bool> many_ = false; ///< many triangles were looked at for a closest point
   double edge_ = 1, spacing_ = 1;          ///< typical length of an edge, Å
+  int64_t looks_ = 8;
 };
 
 } // namespace molmesh

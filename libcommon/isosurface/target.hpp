@@ -41,6 +41,8 @@ public:
   /// How far off where points are put a place is, from its distance: in units of a fiftieth of a spacing (what I8
   /// allows).
   double off_by(double distance) const { return std::abs(distance + offset()) / (0.02 * spacing()); }
+  /// What a question costs, about, in looks at an element's quality.
+  virtual int64_t looks() const { return 8; }
   /// Length that distances are measured against: the grid spacing, or the mean edge of the surface (Å).
   virtual double spacing() const = 0;
 };

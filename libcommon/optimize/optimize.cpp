@@ -112,6 +112,10 @@ constexpr size_t lattice_outgrown = 8;
 // Where two cells a part leave fewer than this, first passes take one: a single part would be one thread's work.
 constexpr int64_t fewest_parts = 8;
 
+// Time is bounded by a multiple of the elements, whatever the mesh. A look takes some nanoseconds. Most meshes need
+// a quarter of these.
+constexpr int64_t looks_at_element = 10'000, looks_at_some = 5'000'000, looks_for_points = 20'000;
+
 constexpr double fitting_share = 0.1; // of the goal's sine
 const Guard fitting{40, 0.24, 0.5, 0};
 
@@ -186,7 +190,9 @@ public:
                                                               angle_quality(result.before.max))))),
         repairs_(options.iterations >= std::ssize(course_.rounds)),
         small_(schedule_.parts_at_surface(2) < fewest_parts),
-        many_(isosurface && schedule_.below(goal_) >= many_elements) {}
+        many_(isosurface && schedule_.below(goal_) >= many_elements) {
+    schedule_.allow(looks_at_some + looks_at_element * elements_);
+  }
 
   /// Vertices go in the middle of the rounds: elements are good enough then to give way, and rounds repair what is
   /// left. With fewer rounds than all no element falls under the goal.
@@ -278,8 +284,10 @@ public:
   void search() {
     if (course_.most_elements == 0 || !(repairs_ || schedule_.worst() >= goal_))
       return;
-    if (isosurface_)
+    if (isosurface_) {
+      schedule_.allow(looks_for_points * elements_);
       search_points();
+    }
     search_elements();
   }
 
@@ -331,6 +339,7 @@ private:
 
   int64_t count(const Counts& c) {
     result_.counts += c;
+    result_.looks = schedule_.looks().done;
     return c.total();
   }
 
@@ -378,6 +387,7 @@ private:
   const float goal_, usual_, at_first_, no_worse_;
   const bool repairs_; ///< all rounds: what projection and fitting spoil is repaired. With fewer they spoil nothing
   const bool small_, many_;
+  const int64_t elements_ = schedule_.below(1e30F);
   int64_t at_begin_ = 0; ///< elements below the goal
 };
 

@@ -47,6 +47,7 @@ struct Options {
 struct Result {
   Counts counts;
   int rounds = 0;
+  int64_t looks = 0;     ///< what it cost, on any machine: elements whose quality was looked at, about
   int64_t removed = 0;   ///< vertices that coarsening has removed
   bool rejected = false; ///< the worst element would have become worse: the mesh is as it came
   Angles before, after;

@@ -22,6 +22,7 @@ double misfit_within(const Region& r, const Guard& guard, double most_tilt, cons
     p[i] = r.mesh.point[v[i]];
   if (!r.mesh.outward(e, face))
     std::swap(p[1], p[2]);
+  r.look_at(*r.target_of(e.label[face]), 1);
   return misfit(*r.target_of(e.label[face]), guard, most_tilt, p[0], p[1], p[2]);
 }
 
@@ -85,6 +86,7 @@ bool is_bent(const Region& r, const Acceptance& accept, int32_t t, size_t face) 
 }
 
 double misfit_of(const Region& r, const Acceptance& accept, uint8_t label, Vec3d a, Vec3d b, Vec3d c) {
+  r.look_at(*r.target_of(label), 1);
   return misfit(*r.target_of(label), accept.guard, accept.most_tilt, a, b, c);
 }
 
@@ -126,6 +128,7 @@ Fit fit_of_triangles(const Region& r, const Acceptance& accept, const Vec3d* x) 
         corner[k]->set(i, x && t.moving == static_cast<int>(k) ? *x : t.p[k]);
     }
     centroids(triangle, centroid);
+    r.look_at(*target, n);
     target->probe_eight(centroid, static_cast<int>(n), probes);
     double misfit[8];
     misfits(triangle, probes, accept.guard.distance * target->spacing(), accept.most_tilt, misfit);

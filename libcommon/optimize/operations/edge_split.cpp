@@ -71,11 +71,10 @@ bool split(Region& r, const Acceptance& accept, int32_t e, int i, int j) {
   const Vec3d pa = r.mesh.point[a], pb = r.mesh.point[b];
   const double length = norm(pb - pa);
   Vec3d x = 0.5 * (pa + pb);
-  if (!Bound{accept, {r, kind, x, accept.guard.reach * length}}(x) ||
-      (!accept.fits_surface() && !fits_at(r, accept, x, fit)))
+  if (!Bound{accept, {r, kind, x, accept.guard.reach * length}}(x))
     return false;
   float best = elements.worst(x, 0.25f * before);
-  if (!(best > 0.25f * before))
+  if (!(best > 0.25f * before) || (!accept.fits_surface() && !fits_at(r, accept, x, fit)))
     return false; // too far from a gain to search for it
   if (accept.fits_surface())
     best = worth_at(r, accept, x, above);

@@ -88,6 +88,10 @@ bool search_place(Region& r, const Acceptance& accept, const Vertex& vertex, Vec
   const int dimensions = directions_of(r, vertex, accept.guard.lift > 0 || accept.off_target, x, basis);
   if (dimensions == 0)
     return false;
+  constexpr size_t places = 128; // about
+  r.looks.done += static_cast<int64_t>(places * r.work.elements.size());
+  if (const Target* target = r.target_of(vertex.label); target && follows_target(vertex.kind))
+    r.look_at(*target, places);
   const Bound bound{accept, {r, vertex, x, accept.guard.reach * length}};
   if (accept.fits_surface()) {
     struct {

@@ -51,6 +51,9 @@ bool Region::has_failed(const Acceptance& accept, FailedAttempts::Attempt& attem
   return failed_.knows(attempt);
 }
 
+// At a point with more elements none is worth its time: meshes of molecules have 120 at most.
+constexpr size_t most_in_star = 256;
+
 // Only our elements are stamped, so no other region sees the stamps.
 // Nearly without branches: which faces lead on is not to be guessed.
 bool Region::star(int32_t v, std::vector<int32_t>& out) {
@@ -68,6 +71,10 @@ bool Region::star(int32_t v, std::vector<int32_t>& out) {
   for (size_t i = 0; i < found; ++i) {
     if (found + 4 > out.size())
       out.resize(2 * out.size());
+    if (found > most_in_star) {
+      looks.done += most_in_star;
+      return false;
+    }
     const int32_t t = out[i];
     const Element& e = element[t];
     for (size_t f = 0; f < 4; ++f) {
@@ -83,6 +90,7 @@ bool Region::star(int32_t v, std::vector<int32_t>& out) {
     }
   }
   out.resize(found);
+  looks.done += static_cast<int64_t>(found);
   return true;
 }
 

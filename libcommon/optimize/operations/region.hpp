@@ -54,6 +54,12 @@ struct Workspace {
   std::vector<MovingTriangle> triangles;
 };
 
+/// What operations cost, whether they succeed or not, about: elements whose quality is looked at.
+struct Looks {
+  static constexpr int64_t earned = 20'000; ///< by an operation that is done: more than most cost
+  int64_t done = 0, allowed = INT64_MAX / 2;
+};
+
 class Region;
 #ifdef MOLMESH_CHECK_OPERATIONS
 /// Fails where find_fault() (check.hpp) finds one.
@@ -78,7 +84,8 @@ public:
   ChangeLog log;                ///< elements of the part that were written, their sides too, once it is kept
   std::vector<int32_t> changed; ///< elements made or changed by operations since the caller last cleared it
   Counts counts;
-  int32_t time = 1; ///< what operations write to DynamicMesh::touched
+  mutable Looks looks; ///< those at the target count too
+  int32_t time = 1;    ///< what operations write to DynamicMesh::touched
 
   int32_t part() const { return room.part; }
   uint32_t clock() const { return clock_; } ///< nothing above it has been stamped
@@ -89,6 +96,9 @@ public:
   const Target* target_of(uint8_t label) const {
     const Target* own = mesh.labels[label].target;
     return own ? own : target;
+  }
+  void look_at(const Target& asked, size_t times) const {
+    looks.done += static_cast<int64_t>(times) * asked.looks();
   }
   /// A surface vertex that is kept on the mesh's target.
   bool on_main_target(int32_t v) const {
@@ -141,6 +151,10 @@ public:
     if (!looked_beyond)
       failed_.add(attempt);
     return false;
+  }
+  /// Else nothing more is begun.
+  bool looks_left() const {
+    return looks.done < looks.allowed + Looks::earned * counts.total();
   }
   bool looked_beyond = false; ///< what the operation failed for is not all at its vertices
 

@@ -115,7 +115,7 @@ Counts Schedule::work_off(const std::vector<int32_t>& items, const Pass& pass, i
         sort_worst_first(m_, list);
       r.changed.clear();
       for (const int32_t e : list)
-        if (worthwhile(e, pass.goal) && !improve_element(r, accept, e, pass.merges_and_splits))
+        if (r.looks_left() && worthwhile(e, pass.goal) && !improve_element(r, accept, e, pass.merges_and_splits))
           m_.element[e].tried = r.time;
       list.clear();
       for (const int32_t e : r.changed)
@@ -155,7 +155,7 @@ Counts Schedule::fit_surface(const Pass& pass) {
       par::sort_unique(list, 1);
       r.changed.clear();
       for (const int32_t e : list)
-        if (m_.element[e].alive())
+        if (r.looks_left() && m_.element[e].alive())
           fit_element(r, accept, e);
       list.swap(r.changed);
     }
@@ -225,7 +225,7 @@ Counts Schedule::search(const Strategy& s) {
   constexpr size_t room_for_shells = 3072; // elements, shrink_cavity
   const int32_t time = ++time_;
   const std::vector<int32_t> points = places_to_search(s);
-  if (points.empty())
+  if (points.empty() || looks_.done >= looks_.allowed)
     return {};
   watch_crossings(everywhere); // points leave the surface meanwhile
   set_parts_around(points, passes_++, s.part_size * cell_);
@@ -253,7 +253,7 @@ Counts Schedule::search(const Strategy& s) {
                                     slots.insert(slots.end(), r.room.element.begin(), r.room.element.end());
                                     r.time = time;
                                     search_part(r, slots, s, searched);
-                                    failed[part] = r.counts.total() == 0;
+                                    failed[part] = r.counts.total() == 0 && r.looks_left();
                                   },
                                   {.slots_per_item = 0.25,
                                    .slots = s.scope == Scope::points ? room_for_shells : PartShares{}.slots,

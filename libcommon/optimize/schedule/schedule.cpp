@@ -9,6 +9,8 @@
 
 namespace molmesh::optimize {
 
+constexpr double looks_of_pass = 0.25; // of those left: what helps little is given up then
+
 Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads)
     : m_(mesh), target_(target), cell_(cell), threads_(threads), free_triangles_(1) {
   const auto with_room = [&](auto& v, size_t n) { par::reserve_pages(v, n, n / 4, threads_); };
@@ -186,6 +188,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     std::vector<int32_t> items;
     size_t weight = 0;
     Counts counts;
+    Looks looks;
     FreeTriangleChanges changes;
     uint32_t clock = 0;
   };
@@ -227,10 +230,15 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
   }
   stamp_.resize(m_.element.size(), 0);
   std::vector<Job*> largest_first; // else threads wait for one that came last
+  size_t weights = 1;
   for (Job& job : jobs) {
     job.weight = shares.weight ? shares.weight(job.room.part) : job.items.size();
+    weights += job.weight;
     largest_first.push_back(&job);
   }
+  for (Job& job : jobs) // half of them by their weights
+    job.looks.allowed = static_cast<int64_t>(double(looks_.allowed - looks_.done) * looks_of_pass / 2 *
+                                             (double(job.weight) / double(weights) + 1 / double(jobs.size())));
   std::stable_sort(largest_first.begin(), largest_first.end(),
                    [](const Job* a, const Job* b) { return a->weight > b->weight; });
   FreeTriangles& free_now = free_triangles();
@@ -239,7 +247,9 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     for (size_t j; (j = next++) < jobs.size();) {
       Job& job = *largest_first[j];
       Region r(m_, target_, ends_in_surface_ ? &free_now : nullptr, parts_, stamp_, job.room, last_stamp_);
+      r.looks = job.looks;
       work(r, job.items);
+      job.looks = r.looks;
       job.counts = r.counts;
       job.changes = r.crossings.take_changes();
       job.clock = r.clock();
@@ -251,6 +261,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
   std::vector<FreeTriangleChanges> changes;
   for (Job& job : jobs) {
     sum += job.counts;
+    looks_.done += job.looks.done;
     last_stamp_ = std::max(last_stamp_, job.clock);
     changes.push_back(std::move(job.changes));
     free_element_.insert(free_element_.end(), job.room.element.begin(), job.room.element.end());
@@ -261,6 +272,7 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
       for (const FreeTriangleChanges& of_part : changes)
         free_triangles_.merge(of_part);
     });
+  looks_.allowed += Looks::earned * sum.total();
   return sum;
 }
 

@@ -43,6 +43,9 @@ public:
   static constexpr double everywhere = 1e300;
   /// Each triangle stays within a quarter of a spacing (Guard::distance), or what it is off.
   static constexpr double guarded = 0.5;
+  /// So many looks more, of which each pass takes a share of those left at most. Without, all that passes want.
+  void allow(int64_t looks) { looks_.allowed = looks_.done + looks; }
+  const Looks& looks() const { return looks_; }
   bool ends_in_surface() const { return ends_in_surface_; }
   float worst();
   /// How many parts of that size, in the schedule's cells, hold a point of the surface.
@@ -86,6 +89,7 @@ private:
   bool ends_in_surface_ = false;
   int passes_ = 0, projections_ = 0;
   int32_t time_ = 0, since_ = 0; ///< sweeps so far; when this kind of pass began
+  Looks looks_;
   Pass last_;
   FailedSearches failed_searches_;
   Parts parts_;

@@ -72,7 +72,8 @@ void LocalSearch::repair(int rounds, double hopeless) {
   Acceptance a = accept_;
   a.may_bend = leeway.may_bend;
   a.off_target = leeway.off_target;
-  for (int k = 0, idle = 0; k < rounds && idle < 2; ++k) { // after two without effect, one of each measure, all are
+  // After two without effect, one of each measure, all are.
+  for (int k = 0, idle = 0; k < rounds && idle < 2 && r_.looks_left(); ++k) {
     if (k > 0 && k * cost() > hopeless)
       return;
     const int64_t done = r_.counts.total();
@@ -163,7 +164,7 @@ void LocalSearch::climb(const Faults& before, int& trials) {
     done = false;
     const Snapshot here = r_.save(elements());
     const std::vector<int32_t> around = worst();
-    for (size_t i = 0; i < around.size() * operations && !done && trials > 0; ++i) {
+    for (size_t i = 0; i < around.size() * operations && !done && trials > 0 && r_.looks_left(); ++i) {
       const Outcome outcome = attempt({around[i / operations], static_cast<int>(i % operations)}, limit);
       trials -= outcome != Outcome::idle;
       done = outcome == Outcome::better;
@@ -186,7 +187,8 @@ void LocalSearch::walk(const Faults& before, int& trials) {
   double current = cost();
   Snapshot here = r_.save(elements());
   std::vector<int32_t> list = worst();
-  for (int idle = idle_for_a_trial * trials; current > 0 && trials > 0 && idle > 0 && !list.empty();) {
+  for (int idle = idle_for_a_trial * trials;
+       current > 0 && trials > 0 && idle > 0 && !list.empty() && r_.looks_left();) {
     const int32_t t = list[random(list.size())];
     if (!operate({t, static_cast<int>(random(operations))})) {
       --idle;

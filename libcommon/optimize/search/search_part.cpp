@@ -70,7 +70,7 @@ private:
     if (points.size() > 1)
       all_back(points);
     for (const int32_t v : search_.faults.points_off())
-      if (is_off(v))
+      if (is_off(v) && r_.looks_left())
         bring_back(v);
     here_.reset();
     return true;
@@ -85,7 +85,7 @@ private:
   template <class Operation>
   bool attempt(const Snapshot& snapshot, const Faults& before, Operation&& operation) {
     r_.changed.clear();
-    if (operation(search_.first_step())) {
+    if (r_.looks_left() && operation(search_.first_step())) {
       search_.fit_changed();
       search_.repair(6, is_careful() ? hopeless : 1e30);
       if (search_.leeway.fits_after && search_.cost() == 0)
