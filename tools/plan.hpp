@@ -174,7 +174,10 @@ bool mesh_is_planned(const cli::Common& o, const cli::PlanOptions& p, const cont
   }
   constexpr int64_t countable = 20'000'000;
   contour::Fit fit;
-  if (most_elements > 0)
+  if (most_elements > 0 && !p.plan) // the mesh is fitted later: no more than that it will be
+    chain.leaves =
+        chain.leaves.times(std::min(1., double(most_elements) / double(chain.mesh(options.meshed).elements)));
+  else if (most_elements > 0)
     chain.leaves = (fit = planned_fit(grid(), options, most_elements)).leaves;
   else if (!p.plan || !usual || size.active_points <= countable)
     chain.leaves = contour::count_leaves(grid(), options);

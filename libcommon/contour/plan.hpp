@@ -15,6 +15,9 @@ struct Leaves {
   double adapt = 0;           ///< the tolerance that chords allowed, in grid spacings
   double surface = 0;         ///< those whose corners lie on both sides
   double split = 0;           ///< fine cells with two pieces of the surface: at its thinnest places
+  Leaves times(double share) const {
+    return {share * all, share * inside, halvings, adapt, share * surface, split};
+  }
 };
 
 /// The octrees of one grid. Throws as contour().
