@@ -1,12 +1,14 @@
 // plan.cpp — memory and time for each element, triangle and thin place are measured (docs/benchmarks.md, Plans).
 #include "optimize/plan.hpp"
+#include <algorithm>
 #include <cmath>
 
 namespace molmesh::optimize {
 namespace {
 
 /// Seconds for each element and triangle, and for each split cell: where the surface is thin, points and elements
-/// are searched for that no single operation improves. Bytes that such a search saves, in each thread.
+/// are searched for that no single operation improves. Bytes that such a search saves, in each thread, in a
+/// large mesh.
 struct Effect {
   double element, triangle, split, states;
 };
@@ -31,7 +33,7 @@ Plan plan(const Work& work) {
   Plan p;
   p.elements = work.elements;
   p.memory = std::llround(13.5e6 + 70 * n + 720 * surface + 2200 * static_cast<double>(work.blocks) +
-                          (improves ? e.states * work.threads : 0));
+                          (improves ? std::min(e.states, 250 * n) * work.threads : 0));
   p.seconds = 0.03 + 3e-7 * n + (improves ? e.element * n + e.triangle * surface + e.split * split : 0);
   return p;
 }
