@@ -57,7 +57,8 @@ public:
       if (tag.name == "AppendedData") {
         if (std::exchange(appended, true))
           d_.refuse(tag.line, "R1", "a second AppendedData");
-        appended_data(tag);
+        if (!appended_data(tag))
+          continue;
       }
       if (collecting_ && tag.name != "DataArray" && array_end_ == 0)
         array_end_ = tag.begin; // VTK's InformationKey
@@ -244,7 +245,8 @@ private:
     collecting_ = nullptr;
   }
 
-  void appended_data(const Tag& tag) {
+  /// Whether it has an end tag.
+  bool appended_data(const Tag& tag) {
     const std::string_view* encoding = tag.find("encoding");
     raw_ = encoding && *encoding == "raw";
     if (!raw_ && (!encoding || *encoding != "base64"))
@@ -253,11 +255,15 @@ private:
     if (mark == text_.npos || text_[mark] != '_')
       d_.refuse(tag.line, "R3", "AppendedData does not start with _");
     // Raw data may hold anything, also tags: only the last end tag counts.
-    const size_t end = raw_ ? text_.rfind("</AppendedData") : text_.find('<', mark);
+    size_t end = raw_ ? text_.rfind("</AppendedData") : text_.find('<', mark);
+    const bool has_end = !raw_ || end != text_.npos;
+    if (!has_end)
+      end = text_.rfind("</VTKFile"); // CGAL 5 writes no other
     if (end == text_.npos || end <= mark)
       d_.refuse(tag.line, "R4", "AppendedData does not end: truncated?");
     appended_ = text_.substr(mark + 1, end - mark - 1);
     at_ = end; // lines are not counted across binary data
+    return has_end;
   }
 
   void locate_appended() {

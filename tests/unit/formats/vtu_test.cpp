@@ -151,6 +151,19 @@ TEST_CASE("foreign encodings of the same mesh read the same") {
   }
 }
 
+TEST_CASE("CGAL's .vtu, whose appended data have no end tag, reads as its text does") {
+  const std::string with = content(fs::path(MOLMESH_SOURCE_DIR) / "tests/data/cgal/cgal-mesh3.vtu"),
+                    without = content(fs::path(MOLMESH_SOURCE_DIR) / "tests/data/cgal/cgal-mesh3-binary.vtu");
+  REQUIRE(without.find("</AppendedData") == std::string::npos);
+  const TetMesh a = read_text(with), b = read_text(without);
+  CHECK(a.tet == b.tet);
+  CHECK(a.region == b.region);
+  REQUIRE(a.point.size() == b.point.size());
+  for (size_t p = 0; p < a.point.size(); ++p)
+    CHECK(norm(a.point[p] - b.point[p]) < 1e-5); // six digits
+  CHECK(refusal(without.substr(0, without.size() - 20)).find("R4") != std::string::npos);
+}
+
 TEST_CASE("each failed sample breaks the rule in its name") {
   for (const fs::path& file : samples("failed")) {
     INFO(file.filename());
