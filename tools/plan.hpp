@@ -222,10 +222,23 @@ inline int64_t split_cells(const BlockGrid& grid, int threads) {
   }
 }
 
-/// tetsmooth: as above.
-inline bool improvement_is_planned(const cli::Common& o, const cli::PlanOptions& p, const optimize::Work& work,
-                                   const cli::Run& run) {
-  const int64_t elements = work.elements;
+/// How a mesh is improved.
+struct Improvement {
+  int iterations;
+  optimize::Effort effort;
+  int threads;
+};
+
+/// tetsmooth: as above. grid: none without a density.
+inline bool improvement_is_planned(const cli::Common& o, const cli::PlanOptions& p, const TetMesh& mesh,
+                                   const BlockGrid* grid, const Improvement& how, const cli::Run& run) {
+  const int64_t elements = std::ssize(mesh.tet);
+  optimize::Work work{elements, std::ssize(mesh.tri)};
+  work.split = grid && p.plan ? split_cells(*grid, how.threads) : -1;
+  work.blocks = grid ? std::ssize(grid->corner) : 0;
+  work.iterations = how.iterations;
+  work.effort = how.effort;
+  work.threads = how.threads;
   const optimize::Plan plan = optimize::plan(work);
   if (p.plan) {
     cli::Value v;

@@ -45,15 +45,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   TetMesh mesh = read_mesh(run, input, o.mesh, formats::CellArrays::keep, notes);
   if (grid)
     require_same_source(mesh, !notes.isovalue_missing, grid->info, density->name());
-  optimize::Work work;
-  work.elements = std::ssize(mesh.tet);
-  work.triangles = std::ssize(mesh.tri);
-  work.split = grid && o.plan ? plans::split_cells(*grid, threads) : -1;
-  work.blocks = grid ? std::ssize(grid->corner) : 0;
-  work.iterations = o.iterations;
-  work.effort = o.chosen();
-  work.threads = threads;
-  if (plans::improvement_is_planned(o, o, work, run))
+  if (plans::improvement_is_planned(o, o, mesh, grid ? &*grid : nullptr, {o.iterations, o.chosen(), threads}, run))
     return Status::good;
   const std::string level = formats::region_level(mesh);
   const AttributeTransfer arrays(mesh);
