@@ -172,12 +172,11 @@ figure10() {
     --legend "pump, heads=$blue" --legend "membrane, filaments=$pink"
 }
 figure11() {
-  local one_copy=A_1,B_1,C_1,D_1,E_1,F_1,G_1,H_1,I_1,J_1,P_1,Q_1,R_1,S_1,T_1
   GRID=129 recipe machines ribosome synthetase
   GRID=65 recipe machines capsid
   draw figures.py figure11.png ribosome.labels.vtu section:B2 '4V6X for 2W4A' ribosome.labels.vtu parts 'eight parts' \
     synthetase.labels.vtu section:A,B,C '1HTQ' synthetase.labels.vtu parts 'eight parts' \
-    capsid.labels.vtu section:$one_copy '2BTV for 2KU2' capsid.labels.vtu parts 'eight parts' \
+    capsid.labels.vtu section '2BTV for 2KU2' capsid.labels.vtu parts 'eight parts' \
     --columns 2 --size 400,360 --view=-70,20,0 --rest A8C8A8 \
     --legend 'in detail=4664D8' --legend 'the rest=A8C8A8' --legend 'cut=EEAAB4'
 }
