@@ -16,7 +16,7 @@ struct Signature {
 
 using std::string_view_literals::operator""sv;
 
-constexpr std::array<Signature, 15> signatures = {{
+constexpr std::array<Signature, 17> signatures = {{
     {0,
      "\xFD"
      "7zXZ"sv,
@@ -25,6 +25,8 @@ constexpr std::array<Signature, 15> signatures = {{
     {0, "\x28\xB5\x2F\xFD"sv, "zstd data", "decompress it with zstd -d"},
     {0, "\x1F\x9D"sv, "compress (.Z) data", "decompress it with gzip -d"},
     {0, "PK\x03\x04"sv, "a zip archive", "unpack it with unzip"},
+    {0, "\x1F\x8B"sv, "gzip data within gzip data", "decompress it with gunzip"},
+    {257, "ustar"sv, "a tar archive", "unpack it with tar -x"},
     {0, "\x89HDF"sv, "HDF5", "convert it with mdconvert or MDAnalysis"},
     {4, "CORD"sv, "a DCD trajectory", "write a frame as PDB with VMD or MDAnalysis"},
     {0, "\x00\x00\x07\xC9"sv, "a GROMACS trajectory (TRR)", "write a frame with gmx trjconv -o x.gro"},

@@ -19,11 +19,11 @@ namespace {
 
 /// Where programs keep regions; the first that a file has is taken. Letters of any case.
 constexpr const char* usual_names[] = {
-    "region",      "gmsh:physical",   "medit:ref",     "MaterialIds",  "MaterialID",
-    "material_id", "material",        "CellEntityIds", "PhysicalIds",  "physical",
-    "tetgen:ref",  "cell_tags",       "attribute",     "MeshDomain",   "subdomain_id",
-    "subdomain",   "SubdomainId",     "RegionId",      "regions",      "Label",
-    "elem_tags",   "avsucd:material", "block_id",      "cell_scalars", "gmsh:geometrical"};
+    "region",          "gmsh:physical", "medit:ref",    "MaterialIds",     "MaterialID",   "material_id",
+    "material",        "CellEntityIds", "PhysicalIds",  "physical",        "tetgen:ref",   "cell_tags",
+    "attribute",       "MeshDomain",    "subdomain_id", "subdomain",       "SubdomainId",  "RegionId",
+    "regions",         "Label",         "elem_tags",    "avsucd:material", "block_id",     "BlockId",
+    "ElementBlockIds", "ObjectId",      "labels",       "marker",          "cell_scalars", "gmsh:geometrical"};
 
 bool same_letters(const std::string& a, const char* b) {
   size_t i = 0;
@@ -40,6 +40,11 @@ bool whole(double v) {
 /// Integers, or reals that are: some programs know no other arrays.
 bool holds_labels(const CellArray& a) {
   return a.real.empty() || std::all_of(a.real.begin(), a.real.end(), whole);
+}
+
+/// Whole numbers of which some are no 32-bit integers: labels that cannot be regions.
+bool holds_large_labels(const CellArray& a) {
+  return !holds_labels(a) && std::all_of(a.real.begin(), a.real.end(), [](double v) { return v == std::floor(v); });
 }
 
 int32_t label_of(const CellArray& a, size_t cell) {
@@ -62,7 +67,9 @@ const CellArray* asked_array(const TetMesh& m, const std::string& file, const st
       known += (known.empty() ? "'" : ", '") + other.name + "'";
   if (!a || !holds_labels(*a))
     fail(Status::bad_input,
-         file + ": " + (a ? "the cell array '" + name + "' holds no integers" : "no cell array '" + name + "'") +
+         file + ": " +
+             (a ? "the cell array '" + name + "' holds no integers" + (holds_large_labels(*a) ? " of 32 bits" : "")
+                : "no cell array '" + name + "'") +
              ", expected " + (known.empty() ? "one of integers, and the file has none" : "one of " + known),
          {"region-array"});
   return a;
@@ -118,9 +125,11 @@ void choose_regions(TetMesh& m, const std::string& file, const MeshReading& as, 
     return;
   }
   for (const CellArray& a : m.cell_array)
-    if (a.name != "patch" && a.real.empty() &&
-        std::any_of(a.integer.begin(), a.integer.begin() + std::ssize(m.tet),
-                    [&](int32_t v) { return v != a.integer[0]; }))
+    if (const auto differ =
+            [&](const auto& v) {
+              return std::any_of(v.begin(), v.begin() + std::ssize(m.tet), [&](auto x) { return x != v[0]; });
+            };
+        a.name != "patch" && ((a.real.empty() && differ(a.integer)) || (holds_large_labels(a) && differ(a.real))))
       notes.several.push_back(a.name);
 }
 

@@ -292,6 +292,15 @@ TEST_CASE("regions are found in other arrays by usual names or by the name that 
   CHECK(notes.region_array == "colour");
   CHECK(refusal(foreign_vtu(plain), keeping("color")) ==
         "x: no cell array 'color', expected one of 'zegion', 'zoundary', 'colour'[region-array]");
+  std::vector<double> large(box.tet.size() + box.tri.size(), 1);
+  large[0] = 4294967296.; // no region, but said all the same
+  TetMesh beyond = box;
+  beyond.cell_array.push_back({"MaterialIds", {}, large});
+  m = read(foreign_vtu(beyond), notes);
+  CHECK(notes.region_array.empty());
+  CHECK(notes.several == std::vector<std::string>{"zegion", "MaterialIds"});
+  CHECK(refusal(foreign_vtu(beyond), keeping("MaterialIds")).find("holds no integers of 32 bits, expected") !=
+        std::string::npos);
   m = read(as_vtu(with_array(box, "one", std::vector<int32_t>(box.tet.size(), 5))), keeping("one"));
   CHECK(std::set<int32_t>(m.region.begin(), m.region.end()) == std::set<int32_t>{5});
   CHECK(check_validity(m, 1).valid()); // the triangles between the regions of before are gone
