@@ -5,7 +5,8 @@
 using namespace molmesh;
 using optimize::Effort;
 
-TEST_CASE("effort, thin places and threads make an improvement larger; without rounds nothing is searched for") {
+TEST_CASE(
+    "effort, thin places and threads make an improvement larger, and without rounds nothing is searched for") {
   optimize::Work work;
   work.elements = 1'000'000;
   work.triangles = 80'000;
