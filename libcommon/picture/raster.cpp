@@ -136,10 +136,29 @@ Bins bins_of(const Scene& s, int samples, int height, int bands) {
   return bins;
 }
 
+/// Places on rings around a pixel, the inner rings first.
+struct Surroundings {
+  struct Place {
+    int i, j; ///< from the pixel's middle, samples
+    float r;  ///< of its ring
+  };
+  std::vector<Place> place;
+
+  explicit Surroundings(int samples) {
+    constexpr int directions = 12;
+    constexpr float radius[] = {2.5f, 6, 13, 26}; // pixels
+    for (size_t ring = 0; ring < 4; ++ring)
+      for (int k = 0; k < directions; ++k) {
+        const double angle = (k + 0.25 * static_cast<double>(ring)) * 6.283185307179586 / directions;
+        const float r = radius[ring] * static_cast<float>(samples);
+        place.push_back({static_cast<int>(std::lround(r * std::cos(angle))),
+                         static_cast<int>(std::lround(r * std::sin(angle))), r});
+      }
+  }
+};
+
 /// How much of the sky over a pixel its surroundings hide, 0 to 1: depths on rings around it.
-float hidden(const Samples& s, int samples, int x, int y) {
-  constexpr int directions = 12;
-  constexpr float radius[] = {2.5f, 6, 13, 26}; // pixels
+float hidden(const Samples& s, int samples, const Surroundings& around, int x, int y) {
   const int cx = x * samples + samples / 2, cy = y * samples + samples / 2;
   const auto depth = [&](int i, int j) {
     return s.depth[static_cast<size_t>(j) * static_cast<size_t>(s.width) + static_cast<size_t>(i)];
@@ -148,20 +167,16 @@ float hidden(const Samples& s, int samples, int x, int y) {
   if (own == far_away)
     return 0;
   float sum = 0;
-  for (size_t ring = 0; ring < 4; ++ring)
-    for (int k = 0; k < directions; ++k) {
-      const double angle = (k + 0.25 * static_cast<double>(ring)) * 6.283185307179586 / directions;
-      const float r = radius[ring] * static_cast<float>(samples);
-      const int i = cx + static_cast<int>(std::lround(r * std::cos(angle))),
-                j = cy + static_cast<int>(std::lround(r * std::sin(angle)));
-      if (i < 0 || j < 0 || i >= s.width || j >= s.height)
-        continue;
-      const float d = depth(i, j);
-      const float rise = (d == far_away ? 0 : d - own) / r - 0.15f;
-      if (rise > 0) // what is far in front hides less than what is close by
-        sum += std::min(rise, 1.f) / (1 + 0.25f * std::max(0.f, rise - 2));
-    }
-  return std::min(1.f, sum / (4 * directions) * 1.6f);
+  for (const auto& [di, dj, r] : around.place) {
+    const int i = cx + di, j = cy + dj;
+    if (i < 0 || j < 0 || i >= s.width || j >= s.height)
+      continue;
+    const float d = depth(i, j);
+    const float rise = (d == far_away ? 0 : d - own) / r - 0.15f;
+    if (rise > 0) // what is far in front hides less than what is close by
+      sum += std::min(rise, 1.f) / (1 + 0.25f * std::max(0.f, rise - 2));
+  }
+  return std::min(1.f, sum / static_cast<float>(around.place.size()) * 1.6f);
 }
 
 } // namespace
@@ -183,6 +198,7 @@ Image draw_scene(const Scene& scene, const RasterOptions& o, int threads) {
       band.draw(scene.facet[bins.facet[k]]);
   });
   Image image(o.width, o.height, o.background);
+  const Surroundings around(o.samples);
   par::for_n(o.height, threads, 8, [&](int64_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < o.width; ++x) {
@@ -193,7 +209,7 @@ Image draw_scene(const Scene& scene, const RasterOptions& o, int threads) {
                                  static_cast<size_t>(x * o.samples + i)];
           sum[0] += c.r, sum[1] += c.g, sum[2] += c.b;
         }
-      const float open = o.shade_hollows ? 1 - 0.6f * hidden(s, o.samples, x, y) : 1;
+      const float open = o.shade_hollows ? 1 - 0.6f * hidden(s, o.samples, around, x, y) : 1;
       uint8_t* const p = image.at(x, y);
       for (int k = 0; k < 3; ++k)
         p[k] = static_cast<uint8_t>(static_cast<float>(sum[k]) / static_cast<float>(o.samples * o.samples) * open +
