@@ -43,7 +43,7 @@ public:
   /// is none.
   void row(const std::vector<std::string_view>& values, int64_t line);
   int64_t rows() const { return rows_; }
-  /// After the last row: the models into parsed.structure, and what the file lacked into parsed.notes.
+  /// After the last row: the models into parsed.structure, and what the file did not have into parsed.notes.
   void finish();
 
 private:

@@ -176,7 +176,7 @@ struct Reading : cif::Document {
   AtomSite& atoms;
   std::exception_ptr wrong;
 
-  /// What is wrong with an atom is told when all is read: where the table lacks a value, that is the cause.
+  /// What is wrong with an atom is told when all is read: where the table has no value, that is the cause.
   template <class Action>
   void or_later(Action action) {
     try {
