@@ -528,7 +528,7 @@ class Page:
         if not rows:
             return
         self.promise("table 3: complexes whose total is below that of the paper's GPU", f"{len(TABLE_3)}",
-                     f"{below} of {measured} measured, {several} threads; {good} with 25° to 140°, the rest by `--effort fast`", below == len(TABLE_3))
+                     f"{below} of {measured} measured, {several} threads, " + ("all with 25° to 140°" if good == below else f"{good} with 25° to 140°, the rest by `--effort fast`"), below == len(TABLE_3))
         self.write("## Complexes: the paper's table 3", "Seconds of density, mesh generation and quality improvement without reading and "
                    "writing; the paper's exponents, the meshes of the recipes in `complexes/`, whose structures stand for the paper's "
                    "([complexes.md](complexes.md)). As in the paper the first three are "
