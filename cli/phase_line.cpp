@@ -9,7 +9,7 @@
 namespace molmesh::cli {
 
 std::string phase_text(const std::string& tool, const std::string& phase, double share, double seconds,
-                       double phase_seconds) {
+                       double phase_seconds, double since) {
   constexpr int wide = 12;
   char text[160];
   if (share < 0) {
@@ -21,7 +21,8 @@ std::string phase_text(const std::string& tool, const std::string& phase, double
   std::snprintf(text, sizeof text, " [%s] %3.0f %%, %.0f s", bar.c_str(), 100 * share, seconds);
   std::string line = tool + ": " + phase + text;
   if (share > 0.02) {
-    std::snprintf(text, sizeof text, ", about %.0f s left", phase_seconds * (1 - share) / share);
+    std::snprintf(text, sizeof text, ", about %.0f s left",
+                  std::max(0., phase_seconds * (1 - share) / share - since));
     line += text;
   }
   return line;
@@ -62,11 +63,21 @@ void PhaseLine::phase(const std::string& name) {
   share_ = -1;
 }
 
+void PhaseLine::share(double done) {
+  const std::lock_guard lock(guard_);
+  share_ = done;
+  told_ = Clock::now();
+}
+
 void PhaseLine::write() {
-  const auto since = [](Clock::time_point begin) {
-    return std::chrono::duration<double>(Clock::now() - begin).count();
+  if (phase_.empty())
+    return;
+  const auto seconds = [](Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double>(to - from).count();
   };
-  const std::string line = phase_text(tool_, phase_, share_, since(begun_), since(phase_begun_));
+  const Clock::time_point now = Clock::now();
+  const std::string line =
+      phase_text(tool_, phase_, share_, seconds(begun_, now), seconds(phase_begun_, told_), seconds(told_, now));
   winsize terminal{};
   const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &terminal) == 0 && terminal.ws_col > 1;
   const int most = known ? terminal.ws_col - 1 : static_cast<int>(line.size());

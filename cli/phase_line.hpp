@@ -1,6 +1,5 @@
 // phase_line.hpp — one line on a terminal that tells what a long run does: phase, share, time.
 #pragma once
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -20,7 +19,7 @@ public:
 
   void phase(const std::string& name);
   /// Of the phase's work, 0 to 1; negative: not known. From any thread.
-  void share(double done) { share_ = done; }
+  void share(double done);
   /// Takes the line away until it is next written: before other lines on standard error.
   void clear();
 
@@ -32,15 +31,17 @@ private:
   const Clock::time_point begun_ = Clock::now();
   Clock::time_point phase_begun_ = begun_;
   std::string phase_;
-  std::atomic<double> share_ = -1;
+  double share_ = -1;
+  Clock::time_point told_ = begun_; ///< when share_ was last told
   bool over_ = false, shown_ = false;
   std::mutex guard_;
   std::condition_variable ending_;
   std::thread writer_;
 };
 
-/// "tetsmooth: improve [######......]  52 %, 12 s, about 11 s left"; share < 0: without share and time left.
+/// "tetsmooth: improve [######......]  52 %, 12 s, about 11 s left"; share < 0: without share and time left. The
+/// share was told `since` seconds ago, when the phase had taken phase_seconds: meanwhile the time left runs down.
 std::string phase_text(const std::string& tool, const std::string& phase, double share, double seconds,
-                       double phase_seconds);
+                       double phase_seconds, double since = 0);
 
 } // namespace molmesh::cli

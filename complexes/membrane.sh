@@ -26,4 +26,11 @@ box=-52,-50,-60,68,70,120
 for region in exterior both; do
   mesh membrane membrane.$region --region $region --cavities fill --box $box
 done
-improve='--hier membrane.hier' mesh membrane membrane.regions --region both --regions domain --hier membrane.hier --cavities fill --box $box
+
+# Where domains have equal shares is rough on a grid whose spacing is below an atom: a decay rate of 1, and a coarser grid.
+if asked membrane.regions; then
+  points 81
+  ln -f membrane.hier membrane.regions.hier
+  density membrane.regions --decay "${DECAY:-1}" --spacing "$(spacing 180)"
+  improve='--hier membrane.hier' mesh membrane.regions membrane.regions --region both --regions domain --hier membrane.hier --cavities fill --box $box
+fi

@@ -25,4 +25,11 @@ box=-15,-3,-5,75,92,150
 for region in exterior both; do
   mesh yiip yiip.$region --region $region --cavities fill --box $box
 done
-improve='--hier yiip.hier' mesh yiip yiip.regions --region both --regions domain --hier yiip.hier --cavities fill --box $box
+
+# Where domains have equal shares is rough on a grid whose spacing is below an atom: a decay rate of 1, and a coarser grid.
+if asked yiip.regions; then
+  points 81
+  ln -f yiip.hier yiip.regions.hier
+  density yiip.regions --decay "${DECAY:-1}" --spacing "$(spacing 155)"
+  improve='--hier yiip.hier' mesh yiip.regions yiip.regions --region both --regions domain --hier yiip.hier --cavities fill --box $box
+fi

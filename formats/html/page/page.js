@@ -101,7 +101,7 @@ function figures(m) {
     figure(count(m.tets), 'tetrahedra'), figure(count(m.points), 'points'), figure(count(m.triangles), 'boundary triangles')];
   if (bodies.length) all.push(figure(size(sum(bodies, 'volume')) + ' Å³', 'molecule, ' + plural(bodies.length, 'body', 'bodies')));
   else all.push(figure(size(sum(m.bodies, 'volume')) + ' Å³', 'volume'));
-  const molecular = m.boundaries.filter(b => !/^box_/.test(b.name));
+  const molecular = m.boundaries.filter(b => !/^(box_|sphere$)/.test(b.name));
   all.push(figure(size(sum(molecular, 'area')) + ' Å²', 'molecular surface'));
   if (cavities.length) all.push(figure(size(sum(cavities, 'volume')) + ' Å³', plural(cavities.length, 'closed cavity', 'closed cavities')));
   all.push(figure(angle(q.dihedral.min) + ' – ' + angle(q.dihedral.max), 'dihedral angles'), figure(q.joe_liu_q.min.toFixed(3), 'smallest Joe–Liu Q'));
@@ -414,7 +414,7 @@ function ramp(x) { return View.prototype.rampColour.call({palette: REPORT.palett
 class Gallery {
   constructor() {
     this.rows = REPORT.meshes.map(m => ({m, bodies: bodiesOf(m, 1).length, cavities: bodiesOf(m, 3).length,
-      volume: (bodiesOf(m, 1).length ? bodiesOf(m, 1) : m.bodies).reduce((s, b) => s + b.volume, 0), area: m.boundaries.filter(b => !/^box_/.test(b.name)).reduce((s, b) => s + b.area, 0)}));
+      volume: (bodiesOf(m, 1).length ? bodiesOf(m, 1) : m.bodies).reduce((s, b) => s + b.volume, 0), area: m.boundaries.filter(b => !/^(box_|sphere$)/.test(b.name)).reduce((s, b) => s + b.area, 0)}));
     this.kind = this.rows.length > 60 ? 'table' : 'pictures';
     this.key = null;
     this.body = make('div');

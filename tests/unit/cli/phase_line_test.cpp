@@ -11,6 +11,10 @@ TEST_CASE("a phase line has the phase and the seconds, and with a share the bar 
   CHECK(phase_text("tetsmooth", "improve", 0.5, 12, 10) ==
         "tetsmooth: improve [######......]  50 %, 12 s, about 10 s left");
   CHECK(phase_text("tetsmooth", "improve", 0, 1, 1) == "tetsmooth: improve [............]   0 %, 1 s");
+  CHECK(phase_text("tetsmooth", "improve", 0.5, 16, 10, 4) ==
+        "tetsmooth: improve [######......]  50 %, 16 s, about 6 s left");
+  CHECK(phase_text("tetsmooth", "improve", 0.5, 32, 10, 20) ==
+        "tetsmooth: improve [######......]  50 %, 32 s, about 0 s left");
 }
 
 TEST_CASE("a quiet phase line starts no thread that would have to end") {
