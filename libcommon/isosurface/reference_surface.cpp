@@ -118,6 +118,7 @@ ReferenceSurface::Answer& ReferenceSurface::kept_answer(Vec3d p, double reach) {
 
 const ReferenceSurface::Triangle* ReferenceSurface::closest(Vec3d p, double reach, Vec3d& point,
                                                             int& looked_at) const {
+  looked_at = 0; // a kept answer takes none
   const bool many = many_.load(std::memory_order_relaxed);
   if (many) {
     const Answer& a = kept_answer(p, reach);
@@ -127,7 +128,6 @@ const ReferenceSurface::Triangle* ReferenceSurface::closest(Vec3d p, double reac
       return a.nearest;
     }
   }
-  looked_at = 0;
   double best = reach * reach;
   const double rounding = 1e-9 * best + 1e-20 * edge_ * edge_;
   const Triangle* nearest = nullptr;

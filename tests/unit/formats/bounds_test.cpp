@@ -98,26 +98,25 @@ void read_hier(std::istream& in) {
 void read_vdb(std::istream& in) {
   formats::read_vdb(in, "x", 1);
 }
-/// And places the atoms.
-void read_structure(std::istream& in) {
+/// And places the atoms; the name says the format.
+void place_atoms(std::istream& in, const char* name) {
   std::ostringstream out;
-  formats::PdbHierarchy(in, "x.pdb", {}).write(out);
+  formats::PdbHierarchy(in, name, {}).write(out);
+}
+void read_structure(std::istream& in) {
+  place_atoms(in, "x.pdb");
 }
 void read_cif(std::istream& in) {
-  std::ostringstream out;
-  formats::PdbHierarchy(in, "x.cif", {}).write(out);
+  place_atoms(in, "x.cif");
 }
 void read_gro(std::istream& in) {
-  std::ostringstream out;
-  formats::PdbHierarchy(in, "x.gro", {}).write(out);
+  place_atoms(in, "x.gro");
 }
 void read_pqr(std::istream& in) {
-  std::ostringstream out;
-  formats::PdbHierarchy(in, "x.pqr", {}).write(out);
+  place_atoms(in, "x.pqr");
 }
 void read_xyzr(std::istream& in) {
-  std::ostringstream out;
-  formats::PdbHierarchy(in, "x.xyzr", {}).write(out);
+  place_atoms(in, "x.xyzr");
 }
 
 std::string repeated(const std::string& text, size_t n) {
