@@ -53,8 +53,8 @@ std::vector<Vec3d> places_near(const Hierarchy& h, int n, double spread, unsigne
 } // namespace
 
 TEST_CASE("Labels and shares are those of the sums, at any depth and with any exponents") {
-  const std::vector<std::vector<double>> exponents = {{},          {0.3},         {0.3, 1},   {0.5, 0.2},
-                                                      {0.05, 0.5}, {0.3, 1, 0.5}, {0.7, 1.5}, {2, 1, 1}};
+  const std::vector<std::vector<double>> exponents = {
+      {}, {0.3}, {0.3, 1}, {0.5, 0.2}, {0.05, 0.5}, {0.3, 1, 0.5}, {0.7, 1.5}, {2, 1, 1}, {0.8, 0.2}, {1.5, 0.3}};
   unsigned seed = 1;
   for (const std::vector<double>& e : exponents) {
     INFO("levels " << e.size());
@@ -64,7 +64,7 @@ TEST_CASE("Labels and shares are those of the sums, at any depth and with any ex
     double power = 1;
     for (const double p : e)
       power *= std::min(p, 1.0);
-    for (const double decay : {1.0, 0.4}) {
+    for (const double decay : {1.0, 0.4, 0.15}) {
       std::vector<Vec3d> place = places_near(h, 150, 1.5, seed), far = places_near(h, 50, 30, seed + 1);
       place.insert(place.end(), far.begin(), far.end());
       const label::Labels found = label::find_labels(h, place, {decay, 1, 2});
@@ -90,6 +90,42 @@ TEST_CASE("Labels do not depend on the number of threads, nor on the isovalue be
     CHECK(one.share[l] == five.share[l]);
     for (size_t i = 0; i < place.size(); ++i)
       CHECK(other.share[l][i] == Approx(one.share[l][i]).margin(4e-6));
+  }
+}
+
+TEST_CASE("Shares do not depend on which other places are asked for, near atoms and far from all") {
+  const Hierarchy h = test::random_chains(4, 20, 6, {0.5, 1.2}, 5);
+  std::vector<Vec3d> place = places_near(h, 400, 5, 6);
+  const label::ShareFinder finder(h, 0, {0.6, 1, 2});
+  const std::vector<label::Shares> together = finder.at(place);
+  int far = 0;
+  for (size_t i = 0; i < place.size(); ++i) {
+    const label::Shares alone = finder.at({place[i]}).front();
+    CHECK(together[i].group == alone.group);
+    CHECK(together[i].ln_field == Approx(alone.ln_field).margin(1e-6));
+    for (size_t k = 0; k < label::Shares::most; ++k)
+      if (alone.ln[k] > -12)
+        CHECK(together[i].ln[k] == Approx(alone.ln[k]).margin(1e-3));
+    far += alone.ln_field < -3;
+  }
+  CHECK(far > 20);
+  CHECK(far < 380);
+}
+
+TEST_CASE("Labels by slow kernels, part of them sharpened, are those of the sums") {
+  for (const std::vector<double>& e : {std::vector<double>{0.8, 0.3}, {1, 0.5}}) {
+    Hierarchy h = test::random_chains(12, 40, 8, e, 11);
+    for (Group& g : h.level[0].group) // far apart: most groups matter to few places
+      for (int64_t r = g.begin; r < g.end; ++r)
+        for (int64_t a = h.level[1].group[r].begin; a < h.level[1].group[r].end; ++a)
+          h.atom[a].center.x += 12. * static_cast<double>(&g - h.level[0].group.data());
+    h.level[0].group[3].exponent = 1.5;
+    for (int64_t r = h.level[0].group[3].begin; r < h.level[0].group[3].end; ++r)
+      h.level[1].group[r].exponent = 2;
+    const std::vector<Vec3d> place = places_near(h, 600, 3, 12);
+    const label::Labels found = label::find_labels(h, place, {0.15, 1, 2});
+    for (size_t i = 0; i < place.size(); ++i)
+      check_place(h, found, i, 0.15, place[i], 1e-6 / (e[0] * e[1]));
   }
 }
 
