@@ -94,7 +94,7 @@ struct Course {
   const std::vector<Round>& rounds;
   size_t rounds_to_coarsening; // before it
   size_t rounds_to_offset;     // after this one points are put further out, for what chords enclose less
-  size_t most_elements;        // below the goal that are searched for; 0: no search, of points neither
+  size_t most_elements;        // below the goal that are searched for; 0: none but for the promise, and no points
 };
 const Course to_fair{16.5, 154.4, rounds_to_fair, 2, 1, 0}, to_good{26, 138.5, rounds_to_good, 4, 4, 64},
     to_best{30.65, 129.4, rounds_to_good, 4, 4, 1024};
@@ -111,6 +111,8 @@ constexpr int64_t many_elements = 16384;
 constexpr size_t lattice_outgrown = 8;
 // Where two cells a part leave fewer than this, first passes take one: a single part would be one thread's work.
 constexpr int64_t fewest_parts = 8;
+// Below the goal, where the promise is missed.
+constexpr size_t few_elements = 64;
 
 // Time is bounded by a multiple of the elements, whatever the mesh. A look takes some nanoseconds. Most meshes need
 // a quarter of these.
@@ -282,13 +284,18 @@ public:
 
   // Where the rounds have done all they can.
   void search() {
-    if (course_.most_elements == 0 || !(repairs_ || schedule_.worst() >= goal_))
+    if (course_.most_elements == 0) { // the promise alone: few meshes need it
+      if (repairs_ && schedule_.worst() < FaultCount::share * goal_)
+        search_elements(few_elements);
+      return;
+    }
+    if (!(repairs_ || schedule_.worst() >= goal_))
       return;
     if (isosurface_) {
       schedule_.allow(looks_for_points * elements_);
       search_points();
     }
-    search_elements();
+    search_elements(course_.most_elements);
   }
 
   // But for rounding: what is put on the isosurface may lose a millionth. What is coarsened may lose what is better
@@ -320,10 +327,10 @@ private:
     }
   }
 
-  void search_elements() {
+  void search_elements(size_t most) {
     for (Strategy s : for_elements) {
       s.goal = goal_;
-      s.most_elements = course_.most_elements;
+      s.most_elements = most;
       count(schedule_.search(s));
     }
   }
