@@ -27,10 +27,10 @@ for region in exterior both; do
   mesh membrane membrane.$region --region $region --cavities fill --box $box
 done
 
-# Where domains have equal shares is rough on a grid whose spacing is below an atom: a decay rate of 1, and a coarser grid.
+# Cells at the interface are small on any grid: a coarser one.
 if asked membrane.regions; then
-  points 81
+  points 105
   ln -f membrane.hier membrane.regions.hier
-  density membrane.regions --decay "${DECAY:-1}" --spacing "$(spacing 180)"
+  density membrane.regions --decay "$decay" --spacing "$(spacing 180)"
   improve='--hier membrane.hier' mesh membrane.regions membrane.regions --region both --regions domain --hier membrane.hier --cavities fill --box $box
 fi

@@ -26,10 +26,10 @@ for region in exterior both; do
   mesh yiip yiip.$region --region $region --cavities fill --box $box
 done
 
-# Where domains have equal shares is rough on a grid whose spacing is below an atom: a decay rate of 1, and a coarser grid.
+# Cells at the interface are small on any grid: a coarser one.
 if asked yiip.regions; then
-  points 81
+  points 105
   ln -f yiip.hier yiip.regions.hier
-  density yiip.regions --decay "${DECAY:-1}" --spacing "$(spacing 155)"
+  density yiip.regions --decay "$decay" --spacing "$(spacing 155)"
   improve='--hier yiip.hier' mesh yiip.regions yiip.regions --region both --regions domain --hier yiip.hier --cavities fill --box $box
 fi
