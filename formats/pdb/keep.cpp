@@ -2,6 +2,7 @@
 #include "formats/pdb/keep.hpp"
 #include "base/error.hpp"
 #include "formats/pdb/model_names.hpp"
+#include "formats/pdb/polymer.hpp"
 #include "formats/pdb/selection.hpp"
 #include "molecule/grouping.hpp"
 #include <algorithm>
@@ -221,8 +222,14 @@ void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, Pd
     report.hydrogens = drop_atoms(parsed, charge.hydrogens,
                                   [](Model, Chain, Residue) { return [](Atom a) { return a.is_hydrogen(); }; });
   if (!options.hetatm)
-    report.hetatms = drop_atoms(parsed, charge.hetatms, [](Model, Chain, Residue r) {
-      return [het = r.het_flag == 'H'](Atom) { return het; };
+    report.hetatms = drop_atoms(parsed, charge.hetatms, [&report](Model, Chain, Residue r) {
+      const bool ligand = r.het_flag == 'H' && r.flag != modified_residue;
+      if (ligand) {
+        PdbReport::Hetero& dropped = report.dropped_hetero[r.name];
+        dropped.atoms += static_cast<int64_t>(r.atoms.size());
+        ++dropped.residues;
+      }
+      return [ligand](Atom) { return ligand; };
     });
   std::vector<std::string> chains;
   if (options.select != "*") {

@@ -35,6 +35,20 @@ std::string charge_note(const PdbReport& report) {
   return note;
 }
 
+/// "NAG 3, CA 2": names and numbers of residues, those of the most atoms first; some, then "and 4 more".
+std::string listed(const PdbReport::Heteros& heteros) {
+  constexpr size_t most = 6;
+  std::vector<std::pair<std::string, PdbReport::Hetero>> order(heteros.begin(), heteros.end());
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.second.atoms > b.second.atoms; });
+  std::string list;
+  for (size_t i = 0; i < std::min(order.size(), most); ++i)
+    list += (i > 0 ? ", " : "") + order[i].first + " " + std::to_string(order[i].second.residues);
+  if (order.size() > most)
+    list += " and " + std::to_string(order.size() - most) + " more";
+  return list;
+}
+
 } // namespace
 
 void add_notes(PdbReport& report, const Parsed& parsed, const PdbOptions& options) {
@@ -54,6 +68,11 @@ void add_notes(PdbReport& report, const Parsed& parsed, const PdbOptions& option
   if (charges)
     kept += charge_note(report);
   notes.push_back(kept);
+  const std::string ligands = listed(report.ligands), modified = listed(report.modified);
+  if (!report.ligands.empty())
+    notes.push_back("kept ligands and ions (--hetatm): " + ligands);
+  if (!report.modified.empty())
+    notes.push_back("modified residues, links of the chains: " + modified);
 
   std::string dropped;
   const auto add = [&](int64_t n, const std::string& what, double charge = 0) {
@@ -68,7 +87,7 @@ void add_notes(PdbReport& report, const Parsed& parsed, const PdbOptions& option
   add(report.altlocs, "in other alternative locations (--altloc)");
   add(report.waters, "of waters (--waters)", charge.waters);
   add(report.hydrogens, "hydrogens (--hydrogens)", charge.hydrogens);
-  add(report.hetatms, "of hetero groups (--hetatm)", charge.hetatms);
+  add(report.hetatms, "of hetero groups (--hetatm: " + listed(report.dropped_hetero) + ")", charge.hetatms);
   add(report.unselected, "outside --select", charge.unselected);
   add(report.no_radius, "of radius 0 without a charge");
   add(report.unassembled, "in chains outside assembly " + options.assembly, charge.unassembled);

@@ -8,6 +8,7 @@
 #include "formats/pdb/gunzip.hpp"
 #include "formats/pdb/keep.hpp"
 #include "formats/pdb/notes.hpp"
+#include "formats/pdb/polymer.hpp"
 #include "formats/pdb/sha256.hpp"
 #include "formats/read_all.hpp"
 #include "molecule/molecular_body.hpp"
@@ -118,6 +119,7 @@ PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbO
   p.report.guessed_elements = p.parsed.guessed;
   gemmi::Structure& st = p.parsed.structure;
   merge_chain_parts(st);
+  mark_modified_residues(st, p.parsed.format == "PDB");
   if (needs_entities(options))
     gemmi::setup_entities(st);
   keep(p.parsed, name, options, p.report);
@@ -136,6 +138,12 @@ PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbO
   p.report.domains = static_cast<int64_t>(a.grouping.domain.size());
   for (int64_t r = 0; r < p.report.residues; ++r) {
     p.report.atoms += a.residue(r).end - a.residue(r).begin;
+    if (const gemmi::Residue& source = *a.residue(r).source; source.het_flag == 'H' && !source.is_water()) {
+      PdbReport::Heteros& kind = source.flag == modified_residue ? p.report.modified : p.report.ligands;
+      PdbReport::Hetero& hetero = kind[source.name];
+      hetero.atoms += a.residue(r).end - a.residue(r).begin;
+      ++hetero.residues;
+    }
     for (int64_t n = a.residue(r).begin; n < a.residue(r).end; ++n) {
       p.report.charge += std::isnan(a.flat.atom[n].charge) ? 0 : a.flat.atom[n].charge;
       p.report.charges_alone += a.flat.atom[n].radius == 0;

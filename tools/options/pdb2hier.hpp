@@ -42,7 +42,10 @@ inline void describe(cli::Table& t, Options& o) {
   t.add("--select", o.pdb.select, "keep only these atoms (gemmi's selection syntax)").unit("SELECTION");
   t.add("--hydrogens", o.hydrogens, "keep or drop").unit("WHAT").one_of(keep_or_drop);
   t.add("--waters", o.waters, "keep or drop").unit("WHAT").one_of(keep_or_drop);
-  t.add("--hetatm", o.hetatm, "hetero residues other than waters: keep or drop").unit("WHAT").one_of(keep_or_drop);
+  t.add("--hetatm", o.hetatm,
+        "ligands, ions, sugars (HETATM), without waters and modified residues of chains: keep or drop")
+      .unit("WHAT")
+      .one_of(keep_or_drop);
   t.add("--altloc", o.pdb.altloc,
         "alternative locations: occupancy (the highest), first, all, or the letter to prefer")
       .unit("WHICH");
