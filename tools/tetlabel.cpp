@@ -4,6 +4,7 @@
 #include "cli/text.hpp"
 #include "formats/pdb/hier_selection.hpp"
 #include "formats/vtu/vtu.hpp"
+#include "label/unseen_residues.hpp"
 #include "molecule/words.hpp"
 #include "tools/structure_labels.hpp"
 #include <algorithm>
@@ -35,6 +36,20 @@ std::vector<label::NamedBoundary> select(const Options& o, const Hierarchy& h) {
       std::transform(atom.begin(), atom.end(), same->atom.begin(), same->atom.begin(), std::bit_or<>());
   }
   return boundary;
+}
+
+/// Buried residues, and those whose atoms others cover: a boundary condition does not reach them.
+void note_unseen(const cli::Run& run, const label::UnseenResidues& u, const std::string& name) {
+  constexpr size_t most = 6;
+  if (u.unseen.empty())
+    return;
+  std::string line = "boundary " + name + ": " + std::to_string(u.unseen.size()) + " of its " +
+                     std::to_string(u.residues) + " residues have no triangle of the surface: ";
+  for (size_t i = 0; i < std::min(u.unseen.size(), most); ++i)
+    line += (i > 0 ? ", " : "") + u.unseen[i];
+  if (u.unseen.size() > most)
+    line += " and " + std::to_string(u.unseen.size() - most) + " more";
+  run.note(line);
 }
 
 /// 0: auto.
@@ -89,6 +104,7 @@ Status run_tool(const Options& o, cli::Run& run) {
       fail_input("--boundary " + boundary[b].name + ": no triangle of " + input.name() +
                  "'s surface belongs to it, expected at least one");
     run.counts["boundary " + boundary[b].name] = patches.count[b];
+    note_unseen(run, label::unseen_residues(h, places, labels, boundary[b]), boundary[b].name);
     names[patches.first + static_cast<int32_t>(b)] = boundary[b].name;
     run.made += ", boundary " + boundary[b].name + ": " + grouped(patches.count[b]);
   }

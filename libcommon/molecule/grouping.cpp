@@ -143,19 +143,14 @@ std::vector<int32_t> hierarchy_order(const Grouping& g, const Levels& levels) {
   return order;
 }
 
-namespace {
-
-/// As a selection wants it.
-std::string in_selection(const std::string& chain) {
-  if (chain.find_first_of("/,;:*![]()\" ") == std::string::npos)
-    return chain;
+std::string in_selection(const std::string& name) {
+  if (name.find_first_of("/,;:*![]()\" ") == std::string::npos)
+    return name;
   std::string quoted = "\"";
-  for (const char c : chain)
+  for (const char c : name)
     quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + '"';
 }
-
-} // namespace
 
 std::string chains_there(const std::vector<std::string>& names) {
   constexpr size_t most = 20;

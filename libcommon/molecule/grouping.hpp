@@ -70,6 +70,9 @@ void check_domains(const Grouping& g, const Levels& levels, const std::string& f
 /// that of the file.
 std::vector<int32_t> hierarchy_order(const Grouping& g, const Levels& levels);
 
+/// A name as a selection wants it: in double quotes if it has a character that means something there.
+std::string in_selection(const std::string& name);
+
 /// For a message about a selection that finds nothing: "; chains here: A, B, C (for example '//A', '//A/45-60')".
 /// Distinct names, at most twenty; empty where there are none.
 std::string chains_there(const std::vector<std::string>& names);

@@ -1,6 +1,7 @@
 // mesh_labels_test.cpp — labels in a mesh: which cells have them, named boundaries, and what tetsmooth carries on.
 #include "base/error.hpp"
 #include "label/mesh_labels.hpp"
+#include "label/unseen_residues.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/attribute_transfer.hpp"
 #include "unit/mesh/meshes.hpp"
@@ -150,4 +151,28 @@ TEST_CASE("Values of cells survive a change of the elements: nearest of the same
         CHECK(now.real[c] == a.real[from]);
     }
   }
+}
+
+TEST_CASE("Residues of a boundary without a triangle are named as selections") {
+  const TetMesh m = half_box();
+  const label::Places places = label::places_of(m, 1);
+  Hierarchy h;
+  h.level = {{"chain", {{"A", 1, 0, 2}, {"B 1", 1, 2, 3}}},
+             {"residue", {{"GLY:1", 0.3, 0, 2}, {"SER:2", 0.3, 2, 3}, {"TYS:63A", 0.3, 3, 4}}}};
+  h.atom = {{{1, 2, 1}, 1}, {{1, 2, 3}, 1}, {{1, 2, 2}, 0.01}, {{-30, 2, 2}, 1}};
+  const label::Labels labels = label::find_labels(h, places.centroid, {1, 1, 1});
+  const auto unseen = [&](const std::vector<uint8_t>& atoms) {
+    return label::unseen_residues(h, places, labels, {"x", atoms});
+  };
+  CHECK(unseen({1, 1, 0, 0}).unseen.empty());
+  CHECK(unseen({1, 0, 1, 1}).residues == 3);
+  CHECK(unseen({1, 0, 1, 1}).unseen == std::vector<std::string>{"//A/2(SER)", "//\"B 1\"/63A(TYS)"});
+  CHECK(unseen({0, 0, 0, 1}).unseen == std::vector<std::string>{"//\"B 1\"/63A(TYS)"});
+  // Of a residue of which one atom is selected, the others' triangles do not count.
+  h.atom[1].center.x = -30;
+  const label::Labels lower = label::find_labels(h, places.centroid, {1, 1, 1});
+  CHECK(label::unseen_residues(h, places, lower, {"x", {0, 1, 0, 0}}).unseen ==
+        std::vector<std::string>{"//A/1(GLY)"});
+  h.level.pop_back();
+  CHECK(label::unseen_residues(h, places, labels, {"x", {1, 1, 1, 1}}).residues == 0);
 }

@@ -1,0 +1,71 @@
+// unseen_residues.cpp — marks the atoms that own triangles, then looks at the atoms of each residue.
+#include "label/unseen_residues.hpp"
+#include "molecule/grouping.hpp"
+#include <algorithm>
+
+namespace molmesh::label {
+namespace {
+
+/// Of each group of the level: its first atom, and the end of all.
+std::vector<int64_t> first_atoms(const Hierarchy& h, size_t level) {
+  std::vector<int64_t> first;
+  for (const Group& group : h.level[level].group) {
+    int64_t begin = group.begin;
+    for (size_t below = level + 1; below < h.level.size(); ++below)
+      begin = h.level[below].group[begin].begin;
+    first.push_back(begin);
+  }
+  first.push_back(static_cast<int64_t>(h.atom.size()));
+  return first;
+}
+
+size_t find_level(const Hierarchy& h, const char* name) {
+  const auto found =
+      std::find_if(h.level.begin(), h.level.end(), [&](const Level& level) { return level.name == name; });
+  return static_cast<size_t>(found - h.level.begin());
+}
+
+/// "ASP:102" of chain A as "//A/102(ASP)".
+std::string as_selection(const std::string& chain, const std::string& residue) {
+  const size_t colon = residue.rfind(':');
+  const std::string name = in_selection(residue.substr(0, colon));
+  return "//" + (chain.empty() ? "*" : in_selection(chain)) + "/" +
+         (colon == std::string::npos ? "" : residue.substr(colon + 1)) + "(" + name + ")";
+}
+
+} // namespace
+
+UnseenResidues unseen_residues(const Hierarchy& h, const Places& places, const Labels& labels,
+                               const NamedBoundary& boundary) {
+  UnseenResidues result;
+  const size_t level = find_level(h, "residue"), chain_level = find_level(h, "chain");
+  if (level == h.level.size())
+    return result;
+  std::vector<uint8_t> owns(h.atom.size(), 0);
+  for (auto i = static_cast<size_t>(places.tets); i < places.cell.size(); ++i)
+    if (const int32_t atom = labels.index.back()[i]; atom >= 0)
+      owns[atom] = 1;
+  const std::vector<int64_t> first = first_atoms(h, level);
+  const bool chains = chain_level < h.level.size();
+  const std::vector<int64_t> first_of_chain = chains ? first_atoms(h, chain_level) : std::vector<int64_t>{};
+  for (size_t r = 0; r + 1 < first.size(); ++r) {
+    bool selected = false, seen = false;
+    for (int64_t a = first[r]; a < first[r + 1]; ++a) {
+      selected |= boundary.atom[a] != 0;
+      seen |= boundary.atom[a] != 0 && owns[a] != 0;
+    }
+    result.residues += selected;
+    if (!selected || seen)
+      continue;
+    std::string chain;
+    if (chains)
+      chain = h.level[chain_level]
+                  .group[std::upper_bound(first_of_chain.begin(), first_of_chain.end(), first[r]) -
+                         first_of_chain.begin() - 1]
+                  .name;
+    result.unseen.push_back(as_selection(chain, h.level[level].group[r].name));
+  }
+  return result;
+}
+
+} // namespace molmesh::label
