@@ -113,7 +113,7 @@ std::string followed(fs::path path) {
 }
 
 [[noreturn]] void refuse_terminal() {
-  fail(Status::usage, "--output: found a terminal, expected a file or a pipe for what is not text");
+  fail(Status::usage, "--output: found a terminal, expected a file, as by -o FILE, or a pipe");
 }
 
 } // namespace

@@ -59,7 +59,7 @@ struct CompleteFile {
 /// named pipe is written directly. Throws Error(not_written), and Error(usage) for binary content on a terminal.
 class OutputFile {
 public:
-  enum class Content { text, binary }; ///< binary: not to a terminal
+  enum class Content { text, binary }; ///< binary: not to a terminal; pages, too, which nobody reads there
   explicit OutputFile(const std::string& path, Content content = Content::text);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;

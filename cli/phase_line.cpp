@@ -1,6 +1,7 @@
 // phase_line.cpp — writes the line again and again, as wide as the terminal lets it be.
 #include "cli/phase_line.hpp"
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -26,6 +27,15 @@ std::string phase_text(const std::string& tool, const std::string& phase, double
     line += text;
   }
   return line;
+}
+
+double foreseen_share(double begin, double end, double seconds, double phase_seconds) {
+  const double before = seconds - phase_seconds;
+  if (begin <= 0 || before <= 0)
+    return begin;
+  constexpr double even = 0.8; // of what is foreseen for the phase
+  const double part = phase_seconds / (before / begin * (end - begin));
+  return begin + (end - begin) * (part < even ? part : 1 - (1 - even) * std::exp((even - part) / (1 - even)));
 }
 
 PhaseLine::PhaseLine(const std::string& tool, bool quiet) : tool_(tool) {
@@ -61,6 +71,18 @@ void PhaseLine::phase(const std::string& name) {
   phase_ = name;
   phase_begun_ = Clock::now();
   share_ = -1;
+  const size_t before = place_;
+  place_ = static_cast<size_t>(
+      std::find_if(foreseen_.begin(), foreseen_.end(), [&](const ForeseenPhase& p) { return p.name == name; }) -
+      foreseen_.begin());
+  if (place_ < foreseen_.size() && before < foreseen_.size() && place_ <= before)
+    pass_ = phase_begun_;
+}
+
+void PhaseLine::foresee(std::vector<ForeseenPhase> phases) {
+  const std::lock_guard lock(guard_);
+  foreseen_ = std::move(phases);
+  place_ = foreseen_.size();
 }
 
 void PhaseLine::share(double done) {
@@ -76,8 +98,15 @@ void PhaseLine::write() {
     return std::chrono::duration<double>(to - from).count();
   };
   const Clock::time_point now = Clock::now();
-  const std::string line =
-      phase_text(tool_, phase_, share_, seconds(begun_, now), seconds(phase_begun_, told_), seconds(told_, now));
+  std::string line;
+  if (place_ < foreseen_.size()) {
+    const double end = place_ + 1 < foreseen_.size() ? foreseen_[place_ + 1].begin : 1, all = seconds(pass_, now);
+    line = phase_text(tool_, phase_, foreseen_share(foreseen_[place_].begin, end, all, seconds(phase_begun_, now)),
+                      seconds(begun_, now), all);
+  } else {
+    line =
+        phase_text(tool_, phase_, share_, seconds(begun_, now), seconds(phase_begun_, told_), seconds(told_, now));
+  }
   winsize terminal{};
   const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &terminal) == 0 && terminal.ws_col > 1;
   const int most = known ? terminal.ws_col - 1 : static_cast<int>(line.size());

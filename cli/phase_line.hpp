@@ -5,8 +5,20 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace molmesh::cli {
+
+/// A phase, and which share of the whole work is mostly done when it begins, 0 to 1.
+struct ForeseenPhase {
+  std::string name;
+  double begin;
+};
+
+/// The share of the whole work after `seconds` of it, of which the present phase has lasted phase_seconds. What the
+/// phase takes is guessed from what those before it took; where it takes longer, the share goes on ever more
+/// slowly. begin, end: of the phase, as ForeseenPhase::begin.
+double foreseen_share(double begin, double end, double seconds, double phase_seconds);
 
 /// Nothing where standard error is no terminal, or with quiet. Written five times a second by a thread of its own,
 /// so that a phase that takes minutes is seen to run.
@@ -18,6 +30,9 @@ public:
   PhaseLine& operator=(const PhaseLine&) = delete;
 
   void phase(const std::string& name);
+  /// For work that tells no share: which phases there are, ascending. The line has the share of the whole then. If
+  /// a phase comes again the work has begun anew.
+  void foresee(std::vector<ForeseenPhase> phases);
   /// Of the phase's work, 0 to 1; negative: not known. From any thread.
   void share(double done);
   /// Takes the line away until it is next written: before other lines on standard error.
@@ -33,6 +48,9 @@ private:
   std::string phase_;
   double share_ = -1;
   Clock::time_point told_ = begun_; ///< when share_ was last told
+  std::vector<ForeseenPhase> foreseen_;
+  size_t place_ = 0;                ///< of the phase in foreseen_; their number: none of them
+  Clock::time_point pass_ = begun_; ///< when the first of them began
   bool over_ = false, shown_ = false;
   std::mutex guard_;
   std::condition_variable ending_;

@@ -9,6 +9,7 @@
 #include "cli/text.hpp"
 #include "par/par.hpp"
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -52,6 +53,13 @@ void Run::end_phase() {
     return;
   phases[open_].seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
   open_ = none;
+}
+
+void Run::show_phases(std::vector<ForeseenPhase> foreseen) {
+  line_ = std::make_unique<PhaseLine>(tool, quiet);
+  line_->foresee(std::move(foreseen));
+  if (open_ != none)
+    line_->phase(phases[open_].name);
 }
 
 void Run::note(const std::string& line) const {
@@ -133,31 +141,48 @@ bool blames_input(const Error& e, const Table& table) {
          });
 }
 
-/// " (this is a density grid (.vdb): run density2tet first)", where the message is of a file whose kind the program
-/// does not read; else empty.
-std::string wrong_kind(const Table& table, const std::string& message) {
+/// What an option's file holds, by what the program's page says of it.
+Kind wanted_kind(const Table& table, const Option& o) {
+  const std::string& says = o.name == "input" && !table.page.files.empty() ? table.page.files[0].name : o.meaning;
+  constexpr std::array<std::pair<const char*, Kind>, 10> signs = {{{".map", Kind::map},
+                                                                   {".pdb", Kind::structure},
+                                                                   {".join", Kind::plan},
+                                                                   {".hier", Kind::hierarchy},
+                                                                   {".vdb", Kind::density},
+                                                                   {".vtu", Kind::mesh},
+                                                                   {"run report", Kind::report},
+                                                                   {"mesh", Kind::mesh},
+                                                                   {"density", Kind::density},
+                                                                   {"lines", Kind::table}}};
+  for (const auto& [sign, kind] : signs)
+    if (says.find(sign) != std::string::npos)
+      return kind;
+  return o.meaning.find("file of ") != std::string::npos ? Kind::table : Kind::unknown;
+}
+
+/// "FILE:1: found a hierarchy of atoms (.hier), expected a density grid (.vdb): run hier2density first", where the
+/// message is of a file whose kind the program does not read; else the message.
+std::string with_kind(const Table& table, const std::string& message) {
   for (const Option& o : table.options)
     for (const std::string& path : o.argument || o.value_name == "FILE" ? o.given : std::vector<std::string>{}) {
       if (message.rfind(path + ':', 0) != 0)
         continue;
-      std::string head(4096, '\0');
-      std::ifstream in(path, std::ios::binary);
-      in.read(head.data(), static_cast<std::streamsize>(head.size()));
-      head.resize(static_cast<size_t>(in.gcount()));
-      const FileKind kind = file_kind(head);
-      const auto is_read = [&](const Page::File& f) {
-        return f.meaning.find("read") != std::string::npos && f.name.find(kind.ending) != std::string::npos;
-      };
-      const auto& files = table.page.files;
-      const auto last = o.name == "input" && !files.empty() ? files.begin() + 1 : files.end();
-      const bool reads = std::any_of(files.begin(), last, is_read); // the first is the input's
-      const bool here = table.program == "pdb2hier" && kind.ending == "structure";
-      if (!kind.ending.empty() && !reads && !here)
-        return " (this is " + kind.what + ": " +
-               (table.program == "densityjoin" && kind.ending == ".vdb" ? "name it with --piece" : kind.advice) +
-               ')';
+      const Kind wanted = wanted_kind(table, o);
+      const auto& [found, packed] = look_at_file(path);
+      const bool input = o.name == "input" && !table.page.files.empty();
+      const auto says = [&](const std::string& text, const char* word) { return text.find(word) != text.npos; };
+      const bool unpacks =
+          input && (says(table.page.files[0].name, ".gz") || says(table.page.files[0].meaning, ".gz"));
+      const bool reads =
+          found.kind == wanted || (wanted == Kind::map && found.kind == Kind::density) || wanted == Kind::unknown;
+      if (packed && !(unpacks && found.kind != Kind::density) && (reads || found.what.empty()))
+        return path + ":1: found " + (found.what.empty() ? "a file" : found.what) + " packed by gzip, expected " +
+               name_of(wanted) + ": run gunzip first";
+      if (!reads && !found.what.empty())
+        return path + ":1: found " + found.what + ", expected " + name_of(wanted) + ": " +
+               advice(found, wanted, table.program, o.name == "input" || o.name == "meshes");
     }
-  return {};
+  return message;
 }
 
 int failed(const Table& table, const Common& options, const std::exception& e) {
@@ -170,7 +195,7 @@ int failed(const Table& table, const Common& options, const std::exception& e) {
     status = Status::bad_input;
   }
   if (status == Status::bad_input)
-    text += wrong_kind(table, text);
+    text = with_kind(table, text);
   std::cerr << table.program << ": " << one_line(text) << '\n';
   return static_cast<int>(status);
 }

@@ -43,7 +43,8 @@ public:
   void phase(const std::string& name);
   void end_phase();
   /// From now on a terminal shows the phase (PhaseLine), until the work is over.
-  void show_phases() { line_ = std::make_unique<PhaseLine>(tool, quiet); }
+  /// foreseen: where the program tells no share itself.
+  void show_phases(std::vector<ForeseenPhase> foreseen = {});
   void hide_phases() { line_.reset(); }
   /// Of the present phase, where it is shown.
   void share(double done) {

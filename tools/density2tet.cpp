@@ -9,6 +9,7 @@
 #include "tools/device_report.hpp"
 #include "tools/domains.hpp"
 #include "tools/element_limit.hpp"
+#include "tools/foreseen_phases.hpp"
 #include "tools/mesh_line.hpp"
 #include "tools/plan.hpp"
 #include "tools/sizes.hpp"
@@ -46,7 +47,7 @@ Status run_tool(Options& o, cli::Run& run) {
   std::optional<cli::OutputFile> output;
   if (!o.plan)
     output.emplace(o.output, cli::OutputFile::Content::binary);
-  run.show_phases();
+  run.show_phases(foreseen_phases());
   auto packed = std::make_unique<const formats::PackedVdb>(input.stream(), input.name());
   choose_mode(o, *packed, options, run);
   std::unique_ptr<const Domains> domains;

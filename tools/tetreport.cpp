@@ -88,7 +88,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   const bool page = !o.output.empty() || o.png.empty();
   std::optional<cli::OutputFile> html, png;
   if (page)
-    html.emplace(o.output.empty() ? "-" : o.output);
+    html.emplace(o.output.empty() ? "-" : o.output, cli::OutputFile::Content::binary);
   if (!o.png.empty())
     png.emplace(o.png, cli::OutputFile::Content::binary);
   std::vector<formats::RunReport> runs;

@@ -46,6 +46,8 @@ TetMesh read_mesh(std::istream& in, const std::string& file, const MeshReading& 
     fail_input(
         file + ":1: found a surface (" + surface +
         "), expected a mesh of tetrahedra: fill the surface first, as tetgen -pqg does, whose .mesh is read");
+  if (!text.empty() && start.find('<') == start.npos)
+    fail_input(file + ":1: found no mesh of a format that is known, expected .vtu, .vtk, .msh or .mesh");
   return read_vtu(text, file, as, notes);
 }
 

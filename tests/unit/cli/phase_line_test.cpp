@@ -31,3 +31,17 @@ TEST_CASE("a quiet phase line starts no thread that would have to end") {
   line.share(0.5);
   CHECK(threads() == before);
 }
+
+TEST_CASE("the share of the whole is foreseen from the phases before") {
+  using molmesh::cli::foreseen_share;
+  CHECK(foreseen_share(0, 0.1, 3, 3) == 0); // nothing is known yet
+  CHECK(foreseen_share(0.2, 0.9, 2, 0) == Approx(0.2));
+  CHECK(foreseen_share(0.2, 0.9, 2 + 3.5, 3.5) == Approx(0.55)); // 7 s foreseen after 2
+  double before = 0;
+  for (double t = 0; t < 30; t += 0.25) { // ever on, never there
+    const double share = foreseen_share(0.2, 0.9, 2 + t, t);
+    CHECK(share > before);
+    CHECK(share < 0.9);
+    before = share;
+  }
+}
