@@ -50,7 +50,7 @@ std::string bodies_text(const BodyList& list) {
     bodies += b.region == Region::molecule || b.region > Region::cavity, cavities += b.region == Region::cavity;
   std::string s = list.file + ": " + counted(bodies, "body", "bodies");
   if (bodies == static_cast<int64_t>(list.body.size()))
-    s += " and nothing else: cavities are holes in it";
+    s += "; cavities are holes in this mesh of the inside alone: density2tet --region both has them listed";
   else
     s += ", " + counted(cavities, "cavity", "cavities");
   const bool round = !list.residues.empty();

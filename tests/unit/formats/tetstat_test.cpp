@@ -227,6 +227,10 @@ TEST_CASE("bodies and boundaries are listed, the largest first, and sum to the m
   CHECK(list.boundary[7].name == "site");
   CHECK(list.boundary[7].area == Approx(1.5));
   CHECK(has(formats::bodies_text(list), "1 body, 2 cavities"));
+  const TetMesh inside = cubes(3, [](Vec3i) -> int32_t { return Region::molecule; });
+  CHECK(has(
+      formats::bodies_text(formats::list_bodies(inside, "x.vtu", 1)),
+      "1 body; cavities are holes in this mesh of the inside alone: density2tet --region both has them listed\n"));
   const auto j = nlohmann::ordered_json::parse(formats::bodies_json(list));
   CHECK(j["bodies"].size() == 4);
   CHECK(j["boundaries"][7]["label"] == 8);
