@@ -8,7 +8,8 @@
 namespace molmesh {
 namespace {
 
-constexpr int most_looked_at = 48; // triangles for one closest point, usually
+constexpr int most_looked_at = 48;  // triangles for one closest point, usually
+constexpr int all_looked_at = 1024; // the nearest of these is taken: in the middle of a fan all are as near
 
 // Closest point of triangle a b c to p, by the regions of its corners, edges and face (Ericson 2005, 5.1.5).
 Vec3d closest_on(Vec3d a, Vec3d b, Vec3d c, Vec3d p) {
@@ -134,7 +135,8 @@ const ReferenceSurface::Triangle* ReferenceSurface::closest(Vec3d p, double reac
   if (tree_)
     tree_->near(p, best, [&](size_t i) {
       const Triangle& t = triangle_[i];
-      ++looked_at;
+      if (++looked_at > all_looked_at)
+        return -1.;
       const double off = dot(p - t.a, t.normal); // from its plane, of which no place is nearer
       if (off * off > best + rounding)
         return best;

@@ -9,7 +9,8 @@
 
 namespace molmesh {
 
-/// Closest points on a set of triangles, found through a tree of their boxes: also where thousands meet in a point.
+/// Closest points on a set of triangles, found through a tree of their boxes. Where over a thousand are about as
+/// near it may be a point of another one of these.
 class ReferenceSurface final : public Target {
 public:
   /// take [tris]: which triangles count. spacing() is a share of their mean edge, far longer ones left out.

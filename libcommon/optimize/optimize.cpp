@@ -117,6 +117,9 @@ constexpr size_t few_elements = 64;
 // Time is bounded by a multiple of the elements, whatever the mesh. A look takes some nanoseconds. Most meshes need
 // a quarter of these.
 constexpr int64_t looks_at_element = 10'000, looks_at_some = 5'000'000, looks_for_points = 20'000;
+// Operations that are done earn looks, so many of them: most meshes need one an element at most, but in a plate
+// that is far thinner than its elements are long there is always one more to do.
+constexpr int64_t earn_at_element = 4, earn_at_some = 2'000;
 
 constexpr double fitting_share = 0.1; // of the goal's sine
 const Guard fitting{40, 0.24, 0.5, 0};
@@ -178,14 +181,16 @@ float share_of(double share, float goal) {
 /// The tables applied to one mesh.
 class Improvement {
 public:
-  Improvement(DynamicMesh& m, const Target& target, Isosurface* isosurface, const Options& options, Result& result)
+  /// has_interfaces: with targets of their own.
+  Improvement(DynamicMesh& m, const Target& target, Isosurface* isosurface, bool has_interfaces,
+              const Options& options, Result& result)
       : m_(m), target_(target), isosurface_(isosurface), options_(options), course_(course_of(options.effort)),
         result_(result),
         // Edges of four spacings and more are those of merged cells.
         schedule_(
             m, &target,
             std::clamp(21 * mean_surface_edge(m, options.threads), 32 * target.spacing(), 256 * target.spacing()),
-            options.threads),
+            options.threads, !isosurface && !has_interfaces),
         goal_(goal_of(options)), usual_(std::min(goal_, goal_of(to_good))), at_first_(schedule_.worst()),
         // Angles count, where needles would let them fall further.
         no_worse_(std::min(goal_, static_cast<float>(std::min(angle_quality(result.before.min),
@@ -194,6 +199,7 @@ public:
         small_(schedule_.parts_at_surface(2) < fewest_parts),
         many_(isosurface && schedule_.below(goal_) >= many_elements) {
     schedule_.allow(looks_at_some + looks_at_element * elements_);
+    schedule_.let_earn(earn_at_some + earn_at_element * elements_);
   }
 
   /// Vertices go in the middle of the rounds: elements are good enough then to give way, and rounds repair what is
@@ -427,7 +433,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   const Target& target = density ? static_cast<const Target&>(*isosurface) : *input_surface;
 
   begin("improve");
-  Improvement run(m, target, isosurface.get(), options, result);
+  Improvement run(m, target, isosurface.get(), !interfaces.empty(), options, result);
   const FlowPass flow_here = interfaces.empty() ? flow : FlowPass{}; // which knows one target
   if (options.coarsen) {
     run.run_rounds(flow_here, 0, run.rounds_to_coarsening());

@@ -9,6 +9,10 @@
 namespace molmesh::optimize {
 namespace {
 
+// Where so many boxes meet one, as at the edge of a fan, the triangle counts as facing another: to look at all of
+// them takes time that grows with their square.
+constexpr int most_looked_at = 1024;
+
 // Whether b has a corner before the plane of a, or hardly behind it. Triangles that face away from each other
 // have elements between them, which keep them apart.
 bool reaches_before(const std::vector<Vec3d>& point, const FreeTriangle& a, const FreeTriangle& b, double hardly) {
@@ -77,7 +81,8 @@ double cell_for(const std::vector<FreeTriangle>& triangles) {
 
 std::vector<uint8_t> facing(const std::vector<Vec3d>& point, const std::vector<FreeTriangle>& triangle,
                             const Target& target, const FacingDistance& distance, int threads) {
-  const std::vector<float> off = deviations(point, triangle, target, threads);
+  const std::vector<float> off =
+      distance.none_is_off ? std::vector<float>(triangle.size()) : deviations(point, triangle, target, threads);
   const auto kept = static_cast<float>(distance.kept);
   const auto widened = [&](size_t n, double by) {
     const float reach = static_cast<float>(by) + off[n] + std::max(0.f, off[n] - kept);
@@ -92,7 +97,10 @@ std::vector<uint8_t> facing(const std::vector<Vec3d>& point, const std::vector<F
   std::vector<uint8_t> faces(triangle.size());
   par::for_n(static_cast<int64_t>(triangle.size()), threads, [&](int64_t t) {
     const FreeTriangle wide = widened(size_t(t), distance.apart);
+    int looked_at = 0;
     faces[t] = tree.any(wide, [&](size_t n) {
+      if (++looked_at > most_looked_at)
+        return true;
       const FreeTriangle& other = triangle[n];
       return !wide.runs_alike(other, false) && reaches_before(point, wide, other, hardly) &&
              reaches_before(point, other, wide, hardly);

@@ -16,8 +16,9 @@ double cell_for(const std::vector<FreeTriangle>& triangles);
 
 /// In Å.
 struct FacingDistance {
-  double apart; ///< of two triangles, beside what either is off the target
-  double kept;  ///< triangles come to be no farther off than this, or than they are
+  double apart;             ///< of two triangles, beside what either is off the target
+  double kept;              ///< triangles come to be no farther off than this, or than they are
+  bool none_is_off = false; ///< all are triangles of the target
 };
 
 /// Which of them face another one as near as that, one each.

@@ -85,9 +85,14 @@ bool FreeTriangles::move(int32_t id, const FreeTriangle& t) {
 }
 
 void FreeTriangles::put(int32_t& chain, int32_t id, uint8_t begins) {
-  size_t n = 0; // where there is room
+  constexpr int most_looked_at = 64; // eights of a cell, which a fan makes thousands of
+  size_t n = 0;                      // where there is room
   int32_t at = chain;
-  for (; at >= 0; at = eight_[at].next) {
+  for (int looked_at = 0; at >= 0; at = eight_[at].next) {
+    if (++looked_at > most_looked_at) {
+      at = -1;
+      break;
+    }
     const auto& held = eight_[at].id;
     n = size_t(std::find(held.begin(), held.end(), -1) - held.begin());
     if (n < held.size())

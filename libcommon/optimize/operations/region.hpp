@@ -58,6 +58,7 @@ struct Workspace {
 struct Looks {
   static constexpr int64_t earned = 20'000; ///< by an operation that is done: more than most cost
   int64_t done = 0, allowed = INT64_MAX / 2;
+  int64_t may_earn = INT64_MAX; ///< so many operations
 };
 
 class Region;
@@ -154,7 +155,7 @@ public:
   }
   /// Else nothing more is begun.
   bool looks_left() const {
-    return looks.done < looks.allowed + Looks::earned * counts.total();
+    return looks.done < looks.allowed + Looks::earned * std::min(counts.total(), looks.may_earn);
   }
   bool looked_beyond = false; ///< what the operation failed for is not all at its vertices
 

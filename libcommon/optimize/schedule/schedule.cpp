@@ -11,12 +11,12 @@ namespace molmesh::optimize {
 
 constexpr double looks_of_pass = 0.25; // of those left: what helps little is given up then
 
-Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads)
+Schedule::Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads, bool is_target)
     : m_(mesh), target_(target), cell_(cell), threads_(threads), free_triangles_(1) {
   const auto with_room = [&](auto& v, size_t n) { par::reserve_pages(v, n, n / 4, threads_); };
   with_room(stamp_, m_.element.size());
   with_room(parts_.owner, m_.point.size());
-  watch_crossings(guarded);
+  watch_crossings(guarded, is_target);
 }
 
 int64_t Schedule::parts_at_surface(double cell) {
@@ -29,7 +29,7 @@ int64_t Schedule::parts_at_surface(double cell) {
   return std::count(met.begin(), met.end(), uint8_t{1});
 }
 
-void Schedule::watch_crossings(double apart) {
+void Schedule::watch_crossings(double apart, bool is_target) {
   if (!target_ || watching_everywhere_)
     return;
   std::vector<FreeTriangle> triangle = find_free_triangles(m_, threads_);
@@ -38,11 +38,12 @@ void Schedule::watch_crossings(double apart) {
         return std::any_of(t.v.begin(), t.v.end(), [&](int32_t v) { return m_.vertex[v].kind == Kind::trace; });
       });
   ends_in_surface_ = !triangle.empty();
-  const std::vector<uint8_t> watched =
-      watching_everywhere_
-          ? std::vector<uint8_t>(triangle.size(), 1)
-          : facing(m_.point, triangle, *target_,
-                   {.apart = apart * target_->spacing(), .kept = guarded / 2 * target_->spacing()}, threads_);
+  const std::vector<uint8_t> watched = watching_everywhere_ ? std::vector<uint8_t>(triangle.size(), 1)
+                                                            : facing(m_.point, triangle, *target_,
+                                                                     {.apart = apart * target_->spacing(),
+                                                                      .kept = guarded / 2 * target_->spacing(),
+                                                                      .none_is_off = is_target},
+                                                                     threads_);
   for (Vertex& v : m_.vertex)
     v.watched = false;
   for (size_t t = 0; t < triangle.size(); ++t)
@@ -236,9 +237,12 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
     weights += job.weight;
     largest_first.push_back(&job);
   }
-  for (Job& job : jobs) // half of them by their weights
-    job.looks.allowed = static_cast<int64_t>(double(looks_.allowed - looks_.done) * looks_of_pass / 2 *
-                                             (double(job.weight) / double(weights) + 1 / double(jobs.size())));
+  for (Job& job : jobs) { // half of them by their weights
+    const double share = (double(job.weight) / double(weights) + 1 / double(jobs.size())) / 2;
+    job.looks.allowed = static_cast<int64_t>(double(looks_.allowed - looks_.done) * looks_of_pass * share);
+    if (double(looks_.may_earn) * share < 1e15)
+      job.looks.may_earn = static_cast<int64_t>(double(looks_.may_earn) * share);
+  }
   std::stable_sort(largest_first.begin(), largest_first.end(),
                    [](const Job* a, const Job* b) { return a->weight > b->weight; });
   FreeTriangles& free_now = free_triangles();
@@ -272,7 +276,9 @@ Counts Schedule::for_parts(const std::vector<int32_t>& items, const std::vector<
       for (const FreeTriangleChanges& of_part : changes)
         free_triangles_.merge(of_part);
     });
-  looks_.allowed += Looks::earned * sum.total();
+  const int64_t earn = std::min(sum.total(), looks_.may_earn);
+  looks_.allowed += Looks::earned * earn;
+  looks_.may_earn -= earn;
   return sum;
 }
 

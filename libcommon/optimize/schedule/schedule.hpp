@@ -21,7 +21,8 @@ struct PartShares {
 /// Runs passes over a mesh that lives as long as it.
 class Schedule {
 public:
-  Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads);
+  /// is_target: the target is the mesh's own surface, as it is now.
+  Schedule(DynamicMesh& mesh, const Target* target, double cell, int threads, bool is_target = false);
   /// Every part works off its elements below the goal, worst first. Parts are the cells of a coarse lattice,
   /// shifted from pass to pass: what lies across two parts now lies inside one the next time.
   Counts run(const Pass& pass);
@@ -39,12 +40,14 @@ public:
   /// Where the mesh ends in a curved surface, operations keep it from crossing itself: near triangles that face
   /// each other within `apart` spacings, beside what they are off the target; or everywhere, from now on.
   /// Everywhere where a wall cuts the surface: on a trace a triangle may leave its place by more.
-  void watch_crossings(double apart);
+  void watch_crossings(double apart, bool is_target = false);
   static constexpr double everywhere = 1e300;
   /// Each triangle stays within a quarter of a spacing (Guard::distance), or what it is off.
   static constexpr double guarded = 0.5;
   /// So many looks more, of which each pass takes a share of those left at most. Without, all that passes want.
   void allow(int64_t looks) { looks_.allowed = looks_.done + looks; }
+  /// So many operations earn looks for others. Without, all that are done.
+  void let_earn(int64_t operations) { looks_.may_earn = operations; }
   const Looks& looks() const { return looks_; }
   bool ends_in_surface() const { return ends_in_surface_; }
   float worst();
