@@ -62,6 +62,11 @@ bool short_decimal(std::string_view f, double& value) {
   return true;
 }
 
+std::string shortest(double v) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), v).ptr};
+}
+
 /// The entries of short names, found without hashing a string: atoms come in a few dozen kinds.
 class NameCache {
 public:
@@ -297,6 +302,7 @@ private:
     if (!level_number_.emplace(word, h_.level.size()).second)
       refuse("R4: found level " + shown(word) + " twice, expected distinct levels");
     h_.level.push_back({std::string(word), {}});
+    product_.push_back(1);
   }
 
   int64_t children(size_t l) const {
@@ -322,6 +328,12 @@ private:
     const std::string_view text = name("a name");
     Group g{std::string(text), 1, children(l), 0};
     g.exponent = positive("the exponent P", largest_exponent, "1000");
+    if (g.exponent < least_exponent)
+      refuse("R9: found an exponent P of " + shortest(g.exponent) + ", expected at least 0.0001");
+    product_[l] = g.exponent * (l == 0 ? 1 : product_[l - 1]);
+    if (!(product_[l] >= least_exponent && product_[l] <= largest_exponent))
+      refuse("R9: found exponents of groups within each other whose product is " + shortest(product_[l]) +
+             ", expected 0.0001 to 1000");
     if (version_ == 2 && at_ != stop_)
       g.weight = weight();
     expect_end(version_ == 1 ? "'LEVEL NAME P'" : "'LEVEL NAME P [WEIGHT]'");
@@ -415,7 +427,8 @@ private:
   int version_ = 1;
   bool any_body_ = false;
   bool has_source_ = false;
-  size_t open_ = 0; ///< levels [0, open_) have an open group
+  std::vector<double> product_; ///< [level]: of the exponents of its open group and those around it
+  size_t open_ = 0;             ///< levels [0, open_) have an open group
   int64_t line_ = 0;
   const char *at_ = nullptr, *stop_ = nullptr;
 };

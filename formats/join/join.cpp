@@ -4,6 +4,7 @@
 #include "formats/plan/motions.hpp"
 #include "molecule/limits.hpp"
 #include <algorithm>
+#include <cmath>
 #include <istream>
 
 namespace molmesh::formats {
@@ -83,11 +84,14 @@ Piece read_piece(const std::vector<std::string>& word, size_t first, const std::
     else if (key == "carve" && body == nullptr)
       p.carve = line.number(0, largest_radius, "a distance > 0 and at most 10000 Å");
     else if (key == "P_R")
-      p.residue = line.number(0, largest_exponent, "an exponent > 0 and at most 1000");
+      p.residue =
+          line.number(std::nextafter(least_exponent, 0.), largest_exponent, "an exponent from 0.0001 to 1000");
     else if (key == "P_C")
-      p.chain = line.number(0, largest_exponent, "an exponent > 0 and at most 1000");
+      p.chain =
+          line.number(std::nextafter(least_exponent, 0.), largest_exponent, "an exponent from 0.0001 to 1000");
     else if (key == "P_D")
-      p.domain_exponent = line.number(0, largest_exponent, "an exponent > 0 and at most 1000");
+      p.domain_exponent =
+          line.number(std::nextafter(least_exponent, 0.), largest_exponent, "an exponent from 0.0001 to 1000");
     else
       line.refuse(body == nullptr
                       ? "one of translate, rotate, matrix, helix, lattice, assembly, domain, chains, "

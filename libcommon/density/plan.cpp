@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <span>
 
 namespace molmesh::density {
@@ -22,6 +23,8 @@ constexpr Grown rows[] = {{0.125, 0.44, 0.65},   {0.25, 0.275, 0.55},  {0.375, 0
 constexpr double points_of_atom = 24;   // at 1 Å, no more
 constexpr double points_of_sphere = 45; // for each Å² of its radius squared
 constexpr double largest_radius = 6;    // Å, of beads that stand for groups of atoms
+constexpr double points_of_area = points_of_sphere / (4 * std::numbers::pi);
+constexpr double points_of_great = 1e7; // of bodies without atoms
 
 /// Between two spacings along ln h, beyond the table as between its last two.
 double interpolated(double Grown::*ln, double spacing) {
@@ -116,15 +119,46 @@ GridSize part_of(const Plan& plan, Tile tile) {
   return s;
 }
 
-double most_active_points(const Hierarchy& hierarchy) {
+namespace {
+
+// Of its surface, Å².
+double area_of(const Body& b) {
+  using Shape = Body::Shape;
+  const double s = b.size, u = norm(b.u), v = b.shape == Shape::slab ? s : norm(b.v);
+  constexpr double pi = std::numbers::pi;
+  switch (b.shape) {
+  case Shape::sphere:
+    return 4 * pi * s * s;
+  case Shape::capsule:
+    return 4 * pi * s * (s + u);
+  case Shape::cylinder:
+    return 2 * pi * s * (s + 2 * u);
+  case Shape::box:
+  case Shape::slab:
+    return 8 * (s * u + u * v + v * s);
+  }
+  return 0;
+}
+
+double points_of_bodies(const Hierarchy& hierarchy) {
   double n = 0;
+  for (const Body& b : hierarchy.body)
+    n += points_of_area * area_of(b);
+  return n;
+}
+
+} // namespace
+
+double most_active_points(const Hierarchy& hierarchy) {
+  double n = points_of_bodies(hierarchy);
   for (const Atom& a : hierarchy.atom)
     n += a.radius > largest_radius ? points_of_sphere * a.radius * a.radius : points_of_atom;
   return n;
 }
 
 bool of_great_balls(const Hierarchy& hierarchy) {
-  return most_active_points(hierarchy) > 100 * static_cast<double>(hierarchy.atom.size());
+  const double bodies = points_of_bodies(hierarchy), atoms = most_active_points(hierarchy) - bodies;
+  return bodies > points_of_great || atoms > 100 * static_cast<double>(hierarchy.atom.size());
 }
 
 Plan plan(const Hierarchy& hierarchy, const Options& options) {

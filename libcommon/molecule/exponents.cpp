@@ -3,6 +3,7 @@
 #include "molecule/limits.hpp"
 #include "molecule/molecular_body.hpp"
 #include "molecule/words.hpp"
+#include <cstdio>
 
 namespace molmesh {
 
@@ -33,6 +34,8 @@ Rule parse_rule(const std::string& text, const std::string& where, Status status
       fail(status, found + "a number > 0");
     if (**exponent > largest_exponent)
       fail(status, found + "at most 1000");
+    if (exponent != &rule.weight && **exponent < least_exponent)
+      fail(status, found + "at least 0.0001");
     if (exponent == &rule.weight && **exponent < least_weight)
       fail(status, found + "at least 0.001");
     rest = blank == std::string_view::npos ? std::string_view{} : trimmed(rest.substr(0, blank));
@@ -54,6 +57,26 @@ std::vector<Rule> read_rules(std::istream& in, const std::string& file) {
              [&](const std::string& line, const std::string& where) { rules.push_back(parse_rule(line, where)); });
   return rules;
 }
+
+namespace {
+
+/// Exponents of groups within each other.
+void check_products(const Grouping& g, const Levels& levels) {
+  const bool residues = has_level(levels, "residue"), chains = has_level(levels, "chain"),
+             domains = has_level(levels, "domain") && !g.domain.empty();
+  for (size_t r = 0; r < g.residue.size(); ++r) {
+    const double product = (residues ? g.residue_exponent[r] : 1) *
+                           (chains ? g.chain_exponent[g.residue[r].chain] : 1) *
+                           (domains ? g.domain_exponent[g.residue[r].domain] : 1);
+    if (product >= least_exponent && product <= largest_exponent)
+      continue;
+    char text[120];
+    std::snprintf(text, sizeof text, "found exponents whose product is %g in chain ", product);
+    fail(Status::usage, text + g.chain[g.residue[r].chain] + ", expected 0.0001 to 1000", {"rule"});
+  }
+}
+
+} // namespace
 
 void set_exponents(Grouping& g, const Exponents& defaults, const std::vector<Rule>& rules, const Levels& levels,
                    const StructureSelections& structure, std::vector<std::string>& notes) {
@@ -97,6 +120,7 @@ void set_exponents(Grouping& g, const Exponents& defaults, const std::vector<Rul
     note_idle(rule.chain, "P_C", "chain");
     note_idle(rule.domain, "P_D", "domain");
   }
+  check_products(g, levels);
 }
 
 } // namespace molmesh

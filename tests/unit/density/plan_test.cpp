@@ -52,3 +52,22 @@ TEST_CASE("a plan refuses a great ball whose values are beyond floats on the run
   o.spacing = 0.5;
   CHECK_THROWS_WITH(density::plan(ball(1000), o), Catch::Contains("beyond the file's single precision"));
 }
+
+TEST_CASE("a great body without atoms is known as one by its surface") {
+  Hierarchy h = ball(1);
+  Body b;
+  b.size = 2000;
+  b.skin = 1;
+  h.body.push_back(b);
+  CHECK(density::of_great_balls(h));
+  CHECK(density::most_active_points(h) > 4e7);
+  density::Options o;
+  o.spacing = 0.5;
+  const density::Plan plan = density::plan(h, o);
+  CHECK(plan.counted.spacing > 2);
+  const double share = double(plan.size.active_points) / (density::most_active_points(h) / (o.spacing * o.spacing));
+  CHECK(share > 0.6);
+  CHECK(share <= 1);
+  h.body[0].size = 200;
+  CHECK_FALSE(density::of_great_balls(h));
+}

@@ -36,6 +36,7 @@ TEST_CASE("a rule may give a weight") {
   CHECK(parse_rule("* P_R=0.4 W_R=0.6", "-r").weight == 0.6);
   CHECK(parse_rule("//A W_R=0.6", "-r").selection == "//A");
   CHECK_FALSE(parse_rule("* P_R=0.4", "-r").weight.has_value());
+  CHECK(message([] { parse_rule("* P_R=1e-300", "-r"); }) == "-r: found 'P_R=1e-300', expected at least 0.0001");
   CHECK(message([] { parse_rule("* W_R=0.0001", "-r"); }) == "-r: found 'W_R=0.0001', expected at least 0.001");
 }
 
