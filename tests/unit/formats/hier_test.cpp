@@ -165,6 +165,7 @@ TEST_CASE("random hierarchies read back to the last bit, whatever the block boun
         return v;
   };
   const auto positive = [&] { return std::max(std::abs(within(1000)), 5e-324); };
+  const auto exponent = [&] { return 0.01 + 31 * double(random() >> 11) * 0x1p-53; }; // products are in range, too
   const auto any_name = [&] {
     std::string s(1 + random() % 12, 'x');
     for (char& c : s)
@@ -175,9 +176,9 @@ TEST_CASE("random hierarchies read back to the last bit, whatever the block boun
   h.source = "random é";
   h.level = {{"domain", {}}, {"chain", {}}};
   for (int d = 0; d < 40; ++d) {
-    Group domain{any_name(), positive(), static_cast<int64_t>(h.level[1].group.size()), 0};
+    Group domain{any_name(), exponent(), static_cast<int64_t>(h.level[1].group.size()), 0};
     for (uint64_t c = 0; c <= random() % 4; ++c) {
-      Group chain{any_name(), positive(), static_cast<int64_t>(h.atom.size()), 0};
+      Group chain{any_name(), exponent(), static_cast<int64_t>(h.atom.size()), 0};
       for (uint64_t left = 1 + random() % 700; left > 0; --left) {
         Atom atom;
         const bool plain = random() % 2; // three decimals, or any double
