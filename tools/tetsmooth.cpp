@@ -53,7 +53,6 @@ Status run_tool(const Options& o, cli::Run& run) {
   optimize::Options options;
   options.iterations = o.iterations;
   options.threads = threads;
-  options.measure_later = true;
   options.effort = o.chosen();
   options.coarsen = o.coarsen;
   options.min_dihedral = o.min_dihedral;
@@ -83,7 +82,7 @@ Status run_tool(const Options& o, cli::Run& run) {
     fail(e.status, input.name() + ": " + e.what(), e.quantities);
   }
   run.phase("partition");
-  mesh.part = partition(mesh, o.parts, threads, std::move(result.across), [&] { result.measure(); });
+  mesh.part = partition(mesh, o.parts, threads, std::move(result.across));
   const optimize::Counts& c = result.counts;
   run.counts.add({{"elements", mesh.tet.size()},
                   {"points", mesh.point.size()},

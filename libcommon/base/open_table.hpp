@@ -34,7 +34,7 @@ public:
   /// -1 at first. Valid until the next call.
   int32_t& operator[](uint64_t key) {
     if (2 * (used_ + 1) > slot_.size())
-      resize(std::max<size_t>(64, 4 * slot_.size()));
+      resize(std::max<size_t>(64, 2 * slot_.size()));
     Slot& s = slot_[place(key)];
     if (!is_used(s)) {
       s = {key, -1, clock_};

@@ -13,8 +13,11 @@ namespace {
 
 static_assert(sizeof(idx_t) == sizeof(int32_t), "METIS with 32-bit indices");
 
-// METIS is serial and takes 100 bytes and 0.7 µs a tetrahedron: of a large mesh it gets clusters of this many.
-constexpr int64_t cluster_size = 32, large = 1 << 17;
+// METIS is serial and takes 100 bytes and 0.7 µs a node: of a large mesh it gets clusters of tetrahedra.
+constexpr int64_t most_in_cluster = 32;
+constexpr int64_t cluster_size(int64_t tets) {
+  return tets < 1 << 14 ? 1 : tets < 1 << 17 ? 8 : most_in_cluster;
+}
 // With fewer nodes a part METIS leaves parts empty, and says so on standard output where it has nothing to bisect.
 constexpr int64_t fewest_nodes = 20;
 
@@ -50,7 +53,7 @@ struct Graph {
 /// Values that come many times over, at most `most` in all.
 class FewValues {
 public:
-  static constexpr size_t most = 4 * cluster_size;
+  static constexpr size_t most = 4 * most_in_cluster;
   void clear() { size_ = 0, table_ = {}; }
   void add(int32_t value) {
     size_t at = (uint32_t(value) * 0x9E3779B9u >> 16) % table_.size();
@@ -164,26 +167,19 @@ void fill_empty_parts(const TetMesh& m, std::vector<int32_t>& part, int32_t part
 
 } // namespace
 
-std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeArray<int32_t> across,
-                               const std::function<void()>& meanwhile) {
+std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeArray<int32_t> across) {
   std::vector<int32_t> part;
   par::reserve_pages(part, m.tet.size(), 0, threads);
   part.resize(m.tet.size());
-  if (std::min<int64_t>(parts, int64_t(m.tet.size())) <= 1) {
-    if (meanwhile)
-      meanwhile();
+  if (std::min<int64_t>(parts, int64_t(m.tet.size())) <= 1)
     return part;
-  }
   const auto tets = static_cast<int64_t>(m.tet.size());
   auto k = static_cast<idx_t>(std::min<int64_t>(parts, tets));
-  int64_t size = tets < large ? 1 : cluster_size;
+  int64_t size = cluster_size(tets);
   while (size > 1 && tets < fewest_nodes * size * k)
     size /= 2;
-  if (tets < fewest_nodes * k) {
-    if (meanwhile)
-      meanwhile();
+  if (tets < fewest_nodes * k)
     return cut_curve(m, k, threads);
-  }
   if (across.empty()) {
     across = face_neighbors(m, threads);
     for (int32_t& f : across)
@@ -196,18 +192,10 @@ std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeAr
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = 1;
   options[METIS_OPTION_NUMBERING] = 0;
-  int status = METIS_OK;
-  par::for_n(2, threads, 1, [&](int64_t i) { // METIS is serial
-    if (i == 0) {
-      status =
-          METIS_PartGraphKway(&n, &constraints, g.begin.data(), g.neighbor.data(), g.node_weight.data(), nullptr,
-                              g.edge_weight.data(), &k, nullptr, nullptr, options, &cut, part_of.data());
-      return;
-    }
-    across = {};
-    if (meanwhile)
-      meanwhile();
-  });
+  across = {};
+  const int status =
+      METIS_PartGraphKway(&n, &constraints, g.begin.data(), g.neighbor.data(), g.node_weight.data(), nullptr,
+                          g.edge_weight.data(), &k, nullptr, nullptr, options, &cut, part_of.data());
   if (status != METIS_OK)
     fail(Status::failed, "METIS cannot partition this mesh (status " + std::to_string(status) + ")");
   par::for_n(int64_t(part.size()), threads, [&](int64_t t) { part[t] = part_of[g.cluster[t]]; });

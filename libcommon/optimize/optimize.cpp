@@ -202,6 +202,24 @@ public:
     schedule_.let_earn(earn_at_some + earn_at_element * elements_);
   }
 
+  /// False where nothing is better than it came. A flow knows one target.
+  bool run(const FlowPass& flow) {
+    if (options_.coarsen) {
+      run_rounds(flow, 0, course_.rounds_to_coarsening);
+      coarsen();
+      run_rounds(flow, course_.rounds_to_coarsening);
+    } else {
+      run_rounds(flow);
+    }
+    search();
+    if (options_.coarsen) {
+      search_widely();
+      put_further_out();
+    }
+    return result_.counts.total() > 0 && !is_worse();
+  }
+
+private:
   /// Vertices go in the middle of the rounds: elements are good enough then to give way, and rounds repair what is
   /// left. With fewer rounds than all no element falls under the goal.
   void coarsen() {
@@ -244,8 +262,6 @@ public:
       }
     }
   }
-
-  size_t rounds_to_coarsening() const { return course_.rounds_to_coarsening; }
 
   void run_rounds(const FlowPass& flow, size_t from = 0, size_t to = SIZE_MAX) {
     double cell_of_all = 0;
@@ -311,7 +327,6 @@ public:
     return schedule_.worst() < (repairs_ ? least : 0.9999f * least);
   }
 
-private:
   /// A floor for projection: with fewer rounds than all nothing repairs what falls to it.
   float at_least(float floor) const { return repairs_ ? floor : std::max(floor, no_worse_); }
 
@@ -414,8 +429,7 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   };
   Result result;
   begin("adjacency");
-  auto work = std::make_shared<DynamicMesh>(build(mesh, density ? 180 : options.sharp, options.threads));
-  DynamicMesh& m = *work;
+  DynamicMesh m = build(mesh, density ? 180 : options.sharp, options.threads);
   result.before = result.after = measure_angles(m, options.threads);
   if (options.iterations == 0 || mesh.tet.empty())
     return result;
@@ -433,21 +447,9 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
   const Target& target = density ? static_cast<const Target&>(*isosurface) : *input_surface;
 
   begin("improve");
-  Improvement run(m, target, isosurface.get(), !interfaces.empty(), options, result);
-  const FlowPass flow_here = interfaces.empty() ? flow : FlowPass{}; // which knows one target
-  if (options.coarsen) {
-    run.run_rounds(flow_here, 0, run.rounds_to_coarsening());
-    run.coarsen();
-    run.run_rounds(flow_here, run.rounds_to_coarsening());
-  } else {
-    run.run_rounds(flow_here);
-  }
-  run.search();
-  if (options.coarsen) {
-    run.search_widely();
-    run.put_further_out();
-  }
-  if (result.counts.total() == 0 || run.is_worse()) { // the file that came in, in its own order
+  const bool divided = !interfaces.empty();
+  if (!Improvement(m, target, isosurface.get(), divided, options, result).run(divided ? FlowPass{} : flow)) {
+    // the file that came in, in its own order
     result.rejected = result.counts.total() > 0;
     result.counts = {};
     m = DynamicMesh(); // two at a time are too much memory
@@ -459,15 +461,10 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     return result;
   }
   begin("result");
+  result.after = measure_angles(m, options.threads);
+  if (isosurface)
+    result.fidelity = measure_fidelity(m, *isosurface, options.threads);
   mesh = extract(m, options.threads, &result.across, std::move(mesh));
-  result.rest = [work = std::move(work), surface = std::shared_ptr<Isosurface>(std::move(isosurface)),
-                 interfaces = std::move(interfaces), threads = options.threads](Result& r) {
-    r.after = measure_angles(*work, threads);
-    if (surface)
-      r.fidelity = measure_fidelity(*work, *surface, threads);
-  };
-  if (!options.measure_later)
-    result.measure();
   return result;
 }
 

@@ -40,8 +40,6 @@ struct Options {
   /// Of a mesh with domains: where shares are equal, by the label of the interface. Others are kept on the
   /// interface that comes in.
   std::map<int32_t, std::shared_ptr<const Target>> interfaces = {};
-  /// The caller runs Result::measure(), beside what is serial. It still needs the density.
-  bool measure_later = false;
 };
 
 struct Result {
@@ -54,12 +52,6 @@ struct Result {
   Fidelity fidelity; ///< after (with a density)
   /// [4 tets] The tetrahedron beyond each face, -1: none; empty where the mesh stayed as it came.
   LargeArray<int32_t> across;
-  /// With measure_later: sets `after` and `fidelity`, and frees the working memory.
-  std::function<void(Result&)> rest;
-  void measure() {
-    if (rest)
-      std::exchange(rest, {})(*this);
-  }
 };
 
 /// Moves many points at once where no element below the pass' goal becomes worse: what a device does before each

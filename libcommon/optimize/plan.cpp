@@ -7,19 +7,18 @@ namespace molmesh::optimize {
 namespace {
 
 /// Seconds for each element and triangle, and for each split cell: where the surface is thin, points and elements
-/// are searched for that no single operation improves. Bytes that such a search saves, in each thread, in a
-/// large mesh.
+/// are searched for that no single operation improves. Bytes that such a search takes, in each thread.
 struct Effect {
-  double element, triangle, split, states;
+  double element, triangle, split, search;
 };
 Effect effect_of(Effort effort) {
   switch (effort) {
   case Effort::fast:
-    return {0.4e-6, 3e-6, 0.004, 14e6};
+    return {0.4e-6, 3e-6, 0.004, 2e6};
   case Effort::best:
-    return {1.6e-6, 15e-6, 0.028, 65e6};
+    return {1.6e-6, 15e-6, 0.028, 14e6};
   default:
-    return {1.6e-6, 0, 0.012, 14e6};
+    return {1.6e-6, 0, 0.016, 4e6};
   }
 }
 
@@ -32,8 +31,8 @@ Plan plan(const Work& work) {
   const bool improves = work.iterations > 0;
   Plan p;
   p.elements = work.elements;
-  p.memory = std::llround(13.5e6 + 70 * n + 720 * surface + 2200 * static_cast<double>(work.blocks) +
-                          (improves ? std::min(e.states, 250 * n) * work.threads : 0));
+  p.memory = std::llround(11e6 + 70 * n + 720 * surface + 2200 * static_cast<double>(work.blocks) +
+                          (improves ? std::min(e.search, 100 * n) * work.threads : 0));
   p.seconds = 0.03 + 3e-7 * n + (improves ? e.element * n + e.triangle * surface + e.split * split : 0);
   return p;
 }

@@ -6,7 +6,10 @@
 namespace molmesh::optimize {
 
 LowElements::LowElements(const DynamicMesh& m, const std::vector<int32_t>& slots, const ChangeLog& log, float goal)
-    : m_(m), slots_(slots), log_(log), goal_(goal), place_(slots) {}
+    : m_(m), slots_(slots), log_(log), goal_(goal), place_(std::make_shared<SmallNumbers>(slots)) {}
+
+LowElements::LowElements(const LowElements& other, float goal)
+    : m_(other.m_), slots_(other.slots_), log_(other.log_), goal_(goal), place_(other.place_) {}
 
 const std::vector<int32_t>& LowElements::operator()() {
   const auto is_low = [&](int32_t t) { return m_.element[t].alive() && m_.element[t].q < goal_; };
@@ -19,7 +22,7 @@ const std::vector<int32_t>& LowElements::operator()() {
                   [&](const auto& at) { return std::binary_search(written_.begin(), written_.end(), at.second); });
     for (const int32_t t : written_)
       if (t >= 0 && is_low(t))
-        by_place_.emplace_back(size_t(place_.find(t)), t);
+        by_place_.emplace_back(size_t(place_->find(t)), t);
     std::sort(by_place_.begin(), by_place_.end());
   } else {
     by_place_.clear();

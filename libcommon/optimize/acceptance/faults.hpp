@@ -3,6 +3,7 @@
 #include "optimize/acceptance/acceptance.hpp"
 #include "optimize/operations/region.hpp"
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,8 @@ class LowElements {
 public:
   /// slots: every slot that may hold an element of the part. log: the region's, which must be kept.
   LowElements(const DynamicMesh& m, const std::vector<int32_t>& slots, const ChangeLog& log, float goal);
+  /// Of the same part, below another goal.
+  LowElements(const LowElements& other, float goal);
   /// The list, in the order of the slots.
   const std::vector<int32_t>& operator()();
 
@@ -21,7 +24,7 @@ private:
   const std::vector<int32_t>& slots_;
   const ChangeLog& log_;
   const float goal_;
-  const SmallNumbers place_; ///< of the slots
+  const std::shared_ptr<const SmallNumbers> place_; ///< of the slots
   ChangeLog::Moment seen_;
   std::vector<std::pair<size_t, int32_t>> by_place_;
   std::vector<int32_t> low_, written_;
@@ -50,6 +53,7 @@ public:
   /// Faults::fewer_than holds, no more elements are below the goal, and the worst of these is no worse.
   bool better_than(const Faults& before, int64_t bent_for_a_point);
   std::vector<int32_t> points_off(); ///< ascending
+  const LowElements& low_elements() const { return low_; }
 
 private:
   void count_bad(Faults& f);

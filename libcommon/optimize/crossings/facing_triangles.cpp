@@ -59,6 +59,7 @@ std::vector<FreeTriangle> find_free_triangles(const DynamicMesh& m, int threads)
         return e.alive() && (ends(e, 0) || ends(e, 1) || ends(e, 2) || ends(e, 3));
       });
   std::vector<FreeTriangle> triangle;
+  triangle.reserve(element.size()); // few elements have two
   for (const int32_t t : element)
     for (size_t f = 0; f < 4; ++f)
       if (const Element& e = m.element[t]; ends(e, f))

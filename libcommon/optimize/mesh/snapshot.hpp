@@ -26,7 +26,7 @@ struct PartRoom {
   std::vector<int32_t> element, vertex;
 };
 
-/// The state of a part, for Region::restore().
+/// The state of a part, for Region::restore(), or what has changed in it, for Region::redo().
 struct Snapshot {
   struct Corner {
     int32_t id;

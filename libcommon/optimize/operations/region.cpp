@@ -182,24 +182,23 @@ float Region::worst(const std::vector<int32_t>& elements) const {
   return w;
 }
 
-Snapshot Region::save(const std::vector<int32_t>& inner) {
+// The elements, some of which may be free slots, with their corners and what faces them in other parts.
+Snapshot Region::record(std::vector<int32_t> elements) {
   Snapshot s;
   s.room = room;
   s.free_triangles = crossings.changes;
   s.counts = counts;
-  s.number = ++saved_;
-  log.keep();
-  s.taken = log.now();
-  std::vector<int32_t> ascending = inner;
-  if (!std::is_sorted(ascending.begin(), ascending.end()))
-    std::sort(ascending.begin(), ascending.end());
-  s.element.reserve(ascending.size());
-  s.corner_of.reserve(ascending.size());
+  if (!std::is_sorted(elements.begin(), elements.end()))
+    std::sort(elements.begin(), elements.end());
+  s.element.reserve(elements.size());
+  s.corner_of.reserve(elements.size());
   SmallNumbers vertices;
-  for (const int32_t t : ascending) {
+  for (const int32_t t : elements) {
     const Element& e = mesh.element[t];
     s.element.emplace_back(t, e);
     auto& corner = s.corner_of.emplace_back();
+    if (!e.alive())
+      continue;
     for (size_t i = 0; i < 4; ++i)
       corner[i] = static_cast<uint32_t>(vertices(e.v[i]));
     for (const int32_t n : e.n) {
@@ -217,12 +216,46 @@ Snapshot Region::save(const std::vector<int32_t>& inner) {
   return s;
 }
 
+Snapshot Region::save(const std::vector<int32_t>& inner) {
+  Snapshot s = record(inner);
+  s.number = ++saved_;
+  log.keep();
+  s.taken = log.now();
+  return s;
+}
+
+// Into written_. False where that is not known.
+bool Region::written_since(const Snapshot& s) {
+  return log.since(restored_ == s.number ? restored_then_ : s.taken, written_);
+}
+
+Snapshot Region::changes_since(const Snapshot& before) {
+  if (!written_since(before)) { // all of them may be
+    written_ = before.room.element;
+    for (const auto& [t, e] : before.element)
+      written_.push_back(t);
+  }
+  std::erase(written_, ChangeLog::beyond);
+  return record(written_);
+}
+
+void Region::redo(const Snapshot& changes) {
+  for (const int32_t v : changes.room.vertex)
+    mesh.incident[v] = -1;
+  write(changes);
+  if (!changes.side.empty())
+    log.add(ChangeLog::beyond);
+  for (const auto& [t, e] : changes.element)
+    log.add(t);
+  write_sides(changes);
+  put_back_rest(changes);
+}
+
 // Elements that were written since s was saved, or last brought back, and their corners then: an operation that
 // writes a vertex writes an element there. False, and nothing changed, where that is not known or not few.
 bool Region::restore_written(const Snapshot& s) {
   constexpr size_t most_log = size_t{1} << 20;
-  if (log.size() > most_log || !log.since(restored_ == s.number ? restored_then_ : s.taken, written_) ||
-      4 * written_.size() > s.element.size())
+  if (log.size() > most_log || !written_since(s) || 4 * written_.size() > s.element.size())
     return false;
   for (const int32_t t : written_) {
     log.add(t);
@@ -236,14 +269,8 @@ bool Region::restore_written(const Snapshot& s) {
       continue;
     }
     mesh.element[t] = at->second;
-    for (const uint32_t c : s.corner_of[at - s.element.begin()]) {
-      const Snapshot::Corner& corner = s.corner[c];
-      mesh.point[corner.id] = corner.point;
-      mesh.vertex[corner.id] = corner.vertex;
-      mesh.incident[corner.id] = corner.incident;
-      mesh.touched[corner.id] = corner.touched;
-      mesh.state[corner.id] = corner.state;
-    }
+    for (const uint32_t c : s.corner_of[at - s.element.begin()])
+      write(s.corner[c]);
   }
   return true;
 }
@@ -258,25 +285,41 @@ void Region::restore(const Snapshot& s) {
       mesh.element[t] = {};
       mesh.note_change(t);
     }
-    for (const auto& [t, e] : s.element) {
-      mesh.element[t] = e;
-      mesh.note_change(t);
-    }
-    for (const Snapshot::Corner& c : s.corner) {
-      mesh.point[c.id] = c.point;
-      mesh.vertex[c.id] = c.vertex;
-      mesh.incident[c.id] = c.incident;
-      mesh.touched[c.id] = c.touched;
-      mesh.state[c.id] = c.state;
-    }
+    write(s);
   }
   if (!some || (!written_.empty() && written_.front() == ChangeLog::beyond))
-    for (const Snapshot::Side& f : s.side) {
-      mesh.element[f.element].n[f.face] = f.n;
-      mesh.element[f.element].label[f.face] = f.label;
-    }
+    write_sides(s);
   restored_ = s.number;
   restored_then_ = log.now();
+  put_back_rest(s);
+}
+
+void Region::write(const Snapshot& s) {
+  for (const auto& [t, e] : s.element) {
+    mesh.element[t] = e;
+    mesh.note_change(t);
+  }
+  for (const Snapshot::Corner& c : s.corner)
+    write(c);
+}
+
+void Region::write(const Snapshot::Corner& c) {
+  mesh.point[c.id] = c.point;
+  mesh.vertex[c.id] = c.vertex;
+  mesh.incident[c.id] = c.incident;
+  mesh.touched[c.id] = c.touched;
+  mesh.state[c.id] = c.state;
+}
+
+void Region::write_sides(const Snapshot& s) {
+  for (const Snapshot::Side& f : s.side) {
+    mesh.element[f.element].n[f.face] = f.n;
+    mesh.element[f.element].label[f.face] = f.label;
+  }
+}
+
+// All but the mesh.
+void Region::put_back_rest(const Snapshot& s) {
   room = s.room;
   crossings.changes = s.free_triangles;
   counts = s.counts;

@@ -164,8 +164,18 @@ public:
   /// Everything as it was: operations since save() were on those elements and on reserved slots. What has not been
   /// written since is left alone.
   void restore(const Snapshot& s);
+  /// What is not as it was then, for redo(): far less than all.
+  Snapshot changes_since(const Snapshot& before);
+  /// Everything as it was when `changes` was made; restored to `before` of that comes first.
+  void redo(const Snapshot& changes);
 
 private:
+  Snapshot record(std::vector<int32_t> elements);
+  bool written_since(const Snapshot& s);
+  void write(const Snapshot& s);
+  void write(const Snapshot::Corner& c);
+  void write_sides(const Snapshot& s);
+  void put_back_rest(const Snapshot& s);
   struct Face;
   bool match(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface);
   Face& face_entry(const std::array<int32_t, 3>& v);

@@ -32,6 +32,7 @@ int64_t Schedule::parts_at_surface(double cell) {
 void Schedule::watch_crossings(double apart, bool is_target) {
   if (!target_ || watching_everywhere_)
     return;
+  free_triangles() = FreeTriangles(1); // two at a time are too much memory
   std::vector<FreeTriangle> triangle = find_free_triangles(m_, threads_);
   watching_everywhere_ =
       apart == everywhere || std::any_of(triangle.begin(), triangle.end(), [&](const FreeTriangle& t) {

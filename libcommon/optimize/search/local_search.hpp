@@ -22,7 +22,7 @@ public:
   /// accept: guard and goal, and worst_first as Strategy has it.
   LocalSearch(Region& r, const std::vector<int32_t>& slots, const Acceptance& accept, const Leeway& how_far)
       : faults(r, slots, accept), leeway(how_far), r_(r), slots_(slots), accept_(accept),
-        below_goal_(r.mesh, slots, r.log, accept.goal) {}
+        below_goal_(faults.low_elements(), accept.goal) {}
 
   FaultCount faults;
   Leeway leeway;

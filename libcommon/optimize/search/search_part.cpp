@@ -95,14 +95,14 @@ private:
         return true;
       }
       if (!is_careful())
-        remember(before);
+        remember(before, snapshot);
     }
     r_.restore(snapshot);
     return false;
   }
 
-  // Saves a state in which only elements are still below the goal.
-  void remember(const Faults& before) {
+  // Saves, as changes, a state in which only elements are still below the goal.
+  void remember(const Faults& before, const Snapshot& snapshot) {
     const Faults now = search_.faults();
     if (!now.fewer_than(before, search_.leeway.bent_for_point))
       return;
@@ -112,7 +112,7 @@ private:
       return; // the same, by another way
     if (at == nearly_.end() && nearly_.size() >= most_states)
       return;
-    nearly_.emplace(at, cost, r_.save(search_.elements()));
+    nearly_.emplace(at, cost, r_.changes_since(snapshot));
     if (nearly_.size() > most_states)
       nearly_.pop_back();
   }
@@ -127,7 +127,8 @@ private:
     int climbs = grazed ? std::min(strategy_.hill_climbing, trials_at_wall) : strategy_.hill_climbing,
         walks = grazed ? 0 : strategy_.threshold;
     for (const auto& [cost, state] : std::exchange(nearly_, {})) {
-      r_.restore(state);
+      r_.restore(snapshot);
+      r_.redo(state);
       search_.climb(before, climbs);
       if (walks > 0 && !search_.is_better(before))
         search_.walk(before, walks);
@@ -233,7 +234,7 @@ private:
   const Strategy& strategy_;
   LocalSearch search_;
   std::optional<Snapshot> here_;                    ///< of bring_back(): nothing has changed since
-  std::vector<std::pair<double, Snapshot>> nearly_; ///< cost, state; ascending
+  std::vector<std::pair<double, Snapshot>> nearly_; ///< cost, changes since the part last changed; ascending
 };
 
 } // namespace

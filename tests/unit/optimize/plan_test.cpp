@@ -22,7 +22,7 @@ TEST_CASE(
   CHECK(changed([](auto& w) { w.split = 2000; }).seconds > 2 * plan.seconds);
   CHECK(changed([](auto& w) { w.effort = Effort::fast; }).seconds < 0.6 * plan.seconds);
   CHECK(changed([](auto& w) { w.effort = Effort::best; }).seconds > 2 * plan.seconds);
-  CHECK(changed([](auto& w) { w.threads = 9; }).memory == plan.memory + 8 * 14'000'000);
+  CHECK(changed([](auto& w) { w.threads = 9; }).memory == plan.memory + 8 * 4'000'000);
   CHECK(changed([](auto& w) { w.blocks = 1000; }).memory == plan.memory + 2'200'000);
   const optimize::Plan none = changed([](auto& w) { w.iterations = 0; });
   CHECK(none.seconds < 0.1 * plan.seconds);
