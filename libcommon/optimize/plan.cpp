@@ -16,7 +16,7 @@ Effect effect_of(Effort effort) {
   case Effort::fast:
     return {0.4e-6, 3e-6, 0.004, 2e6};
   case Effort::best:
-    return {1.6e-6, 15e-6, 0.028, 14e6};
+    return {1.6e-6, 15e-6, 0.045, 14e6};
   default:
     return {1.6e-6, 0, 0.016, 4e6};
   }
