@@ -86,15 +86,23 @@ void list_residues(Arrangement& a) {
   Grouping& g = a.grouping;
   g.chain = chain_names(a.flat, a.placed);
   size_t count = 0;
+  const auto all_of = [&](const Placed& p) { return a.flat.chain[p.chain]; };
   for (const Placed& p : a.placed)
-    count += p.residues->size();
+    count += p.residues ? p.residues->size() : static_cast<size_t>(all_of(p).end - all_of(p).begin);
   g.residue.reserve(count);
   a.source.reserve(count);
-  for (size_t p = 0; p < a.placed.size(); ++p)
-    for (const int64_t r : *a.placed[p].residues) {
+  for (size_t p = 0; p < a.placed.size(); ++p) {
+    const auto add = [&](int64_t r) {
       g.residue.push_back({static_cast<int32_t>(p)});
       a.source.push_back(static_cast<int32_t>(r));
-    }
+    };
+    const Placed& placed = a.placed[p];
+    if (placed.residues)
+      std::for_each(placed.residues->begin(), placed.residues->end(), add);
+    else
+      for (int64_t r = all_of(placed).begin; r < all_of(placed).end; ++r)
+        add(r);
+  }
 }
 
 std::vector<std::string> domains_by_entity(const Arrangement& a, const gemmi::Structure& st) {

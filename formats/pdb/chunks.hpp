@@ -11,6 +11,13 @@
 
 namespace molmesh::formats {
 
+/// keep_freed_pages() keeps freed memory for arrays that come again; those of a structure do not.
+inline void give_back_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
 template <class T>
 class Chunks {
 public:
@@ -46,7 +53,7 @@ public:
       part.clear();
       if (size_ > first) { // each as soon as it has been moved
         std::vector<T>().swap(part);
-        give_back();
+        give_back_memory();
       }
     }
     chunk_.resize(size_ == 0 ? 0 : 1);
@@ -55,14 +62,7 @@ public:
 
 private:
   static constexpr size_t first = 4096;             ///< of the first chunk; all others are of `length`:
-  static constexpr size_t length = size_t{1} << 19; ///< so large that their memory is worth giving back
-
-  /// keep_freed_pages() keeps freed memory for arrays that come again; these do not.
-  static void give_back() {
-#ifdef __GLIBC__
-    malloc_trim(0);
-#endif
-  }
+  static constexpr size_t length = size_t{1} << 16; ///< so large that their memory is worth giving back
 
   std::vector<std::vector<T>> chunk_;
   size_t size_ = 0;

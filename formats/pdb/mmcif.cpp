@@ -139,8 +139,12 @@ Parsed from_document(cif::Document& document, AtomSite& atoms, Parsed& parsed, s
   const std::vector<gemmi::Assembly> assemblies = read_assemblies(*block, assembly, file);
   for (const cif::Item& other : block->items)
     if (const std::string& tag = tag_of(other);
-        !tag.empty() && !is_of_structure(tag) && !starts_with(gemmi::to_lower(tag), atom_site.c_str()))
-      ++parsed.passed_over[tag.substr(0, tag.find('.'))];
+        !tag.empty() && !is_of_structure(tag) && !starts_with(gemmi::to_lower(tag), atom_site.c_str())) {
+      constexpr size_t most = 1000; // the dictionary has some 600
+      std::string category = tag.substr(0, tag.find('.'));
+      const bool listed = parsed.passed_over.size() < most || parsed.passed_over.count(category) > 0;
+      ++parsed.passed_over[listed ? std::move(category) : "others"];
+    }
   // Other categories cost time and can only fail: _atom_site_anisotrop, _struct_conn, _pdbx_sifts_…
   cif::Block needed(block->name);
   for (cif::Item& other : block->items) {

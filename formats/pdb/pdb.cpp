@@ -125,7 +125,9 @@ PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbO
   keep(p.parsed, name, options, p.report);
 
   Arrangement& a = p.arrangement;
-  a.flat = flatten(p.parsed, name, options, p.report);
+  // Selections ask for atoms, and what is wrong with domains is said by one.
+  const bool let_go = options.rules.empty() && options.domains == PdbOptions::Domains::none;
+  a.flat = flatten(p.parsed, name, options, let_go, p.report);
   a.placed = place(a.flat, st, name, options.assembly, p.report);
   list_residues(a);
   set_domains(a, st, name, options);

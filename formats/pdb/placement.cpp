@@ -1,11 +1,14 @@
 // placement.cpp — fills the arrays; places the chains of an assembly.
 #include "formats/pdb/placement.hpp"
 #include "base/error.hpp"
+#include "formats/pdb/chunks.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <set>
+#include <string_view>
+#include <unordered_map>
 #include <unordered_set>
 
 namespace molmesh::formats {
@@ -47,15 +50,15 @@ std::vector<int64_t> generated(const Flat& flat, const Flat::Chain& chain, const
 } // namespace
 
 Vec3d Placed::position(Vec3d p) const {
-  if (!moved)
+  if (!transform)
     return p;
-  const gemmi::Vec3 v = transform.apply(gemmi::Vec3(p.x, p.y, p.z));
+  const gemmi::Vec3 v = transform->apply(gemmi::Vec3(p.x, p.y, p.z));
   // As many decimals as coordinates have in the files that assemblies come from.
   const auto rounded = [](double x) { return std::abs(x) < 1e9 ? std::round(x * 1000) / 1000 : x; };
   return {rounded(v.x), rounded(v.y), rounded(v.z)};
 }
 
-Flat flatten(const Parsed& parsed, const std::string& file, const PdbOptions& options, PdbReport& report) {
+Flat flatten(Parsed& parsed, const std::string& file, const PdbOptions& options, bool let_go, PdbReport& report) {
   Flat flat;
   size_t atoms = 0, residues = 0, chains = 0;
   for (const gemmi::Model& model : parsed.structure.models) {
@@ -70,10 +73,12 @@ Flat flatten(const Parsed& parsed, const std::string& file, const PdbOptions& op
   flat.residue.reserve(residues);
   flat.atom.reserve(atoms);
   std::string refused;
-  for (const gemmi::Model& model : parsed.structure.models)
-    for (const gemmi::Chain& chain : model.chains) {
+  constexpr size_t many = size_t{1} << 18; // atoms: their memory is worth giving back
+  size_t given_back = 0;
+  for (gemmi::Model& model : parsed.structure.models)
+    for (gemmi::Chain& chain : model.chains) {
       const auto first_residue = static_cast<int64_t>(flat.residue.size());
-      for (const gemmi::Residue& residue : chain.residues) {
+      for (gemmi::Residue& residue : chain.residues) {
         const auto first_atom = static_cast<int64_t>(flat.atom.size());
         for (const gemmi::Atom& a : residue.atoms) {
           Atom atom;
@@ -100,6 +105,12 @@ Flat flatten(const Parsed& parsed, const std::string& file, const PdbOptions& op
           flat.atom.push_back(atom);
         }
         flat.residue.push_back({&residue, first_atom, static_cast<int64_t>(flat.atom.size())});
+        if (let_go)
+          std::vector<gemmi::Atom>().swap(residue.atoms);
+        if (let_go && flat.atom.size() - given_back > many) {
+          given_back = flat.atom.size();
+          give_back_memory();
+        }
       }
       flat.chain.push_back({&model, &chain, first_residue, static_cast<int64_t>(flat.residue.size())});
     }
@@ -113,13 +124,8 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
   std::vector<Placed> placed;
   if (assembly == "none") {
     placed.reserve(flat.chain.size());
-    for (size_t c = 0; c < flat.chain.size(); ++c) {
-      auto residues = std::make_shared<std::vector<int64_t>>();
-      residues->reserve(static_cast<size_t>(flat.chain[c].end - flat.chain[c].begin));
-      for (int64_t r = flat.chain[c].begin; r < flat.chain[c].end; ++r)
-        residues->push_back(r);
-      placed.push_back({c, 1, false, {}, residues});
-    }
+    for (size_t c = 0; c < flat.chain.size(); ++c)
+      placed.push_back({c, 1, nullptr, nullptr});
     return placed;
   }
   const auto found = std::find_if(st.assemblies.begin(), st.assemblies.end(),
@@ -156,7 +162,8 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
           continue;
         const auto [part, is_new] = of_chain.try_emplace({copy, c}, placed.size());
         if (is_new) {
-          placed.push_back({c, copy, !op.transform.is_identity(), op.transform, parts[c]});
+          auto transform = op.transform.is_identity() ? nullptr : std::make_shared<gemmi::Transform>(op.transform);
+          placed.push_back({c, copy, std::move(transform), parts[c]});
           continue;
         }
         std::vector<int64_t> merged;
@@ -185,19 +192,22 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
 }
 
 std::vector<std::string> chain_names(const Flat& flat, const std::vector<Placed>& placed) {
-  std::map<std::string, int> times, seen;
-  std::set<std::string> taken;
+  std::unordered_map<std::string_view, int> times, seen;
+  std::unordered_set<std::string> taken;
+  times.reserve(placed.size());
+  bool all_once = true;
   for (const Placed& p : placed)
-    ++times[flat.chain[p.chain].source->name];
-  for (const auto& [name, n] : times)
-    if (n == 1)
-      taken.insert(name);
+    all_once &= ++times[flat.chain[p.chain].source->name] == 1;
+  if (!all_once)
+    for (const auto& [name, n] : times)
+      if (n == 1)
+        taken.emplace(name);
   std::vector<std::string> names;
   names.reserve(placed.size());
   for (const Placed& p : placed) {
     const std::string& name = flat.chain[p.chain].source->name;
     std::string unique = name;
-    if (times[name] > 1)
+    if (!all_once && times[name] > 1)
       do
         unique = name + "_" + std::to_string(++seen[name]);
       while (!taken.insert(unique).second);

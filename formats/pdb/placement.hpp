@@ -26,17 +26,16 @@ struct Flat {
 
 /// One copy of one chain, whole or in part.
 struct Placed {
-  size_t chain; ///< in Flat::chain
-  int copy;     ///< which operator of the assembly, from 1
-  bool moved;   ///< is the transform other than the identity?
-  gemmi::Transform transform;
-  std::shared_ptr<const std::vector<int64_t>> residues; ///< indices into Flat::residue, ascending
+  size_t chain;                                         ///< in Flat::chain
+  int copy;                                             ///< which operator of the assembly, from 1
+  std::shared_ptr<const gemmi::Transform> transform;    ///< null: the identity
+  std::shared_ptr<const std::vector<int64_t>> residues; ///< indices into Flat::residue, ascending; null: all
   Vec3d position(Vec3d p) const;
 };
 
-/// Radii and charges are resolved here; counts unknown elements. Throws Error(bad_input) when they are to be
-/// refused.
-Flat flatten(const Parsed& parsed, const std::string& file, const PdbOptions& options, PdbReport& report);
+/// Radii and charges are resolved here; counts unknown elements. let_go: residues give up their atoms, which nobody
+/// asks for then. Throws Error(bad_input) when elements are to be refused.
+Flat flatten(Parsed& parsed, const std::string& file, const PdbOptions& options, bool let_go, PdbReport& report);
 
 /// Every chain once, or as the assembly says. Throws Error(bad_input) when the assembly is not there.
 std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const std::string& file,

@@ -66,7 +66,13 @@ void StructureBuilder::close_residue() {
   if (atoms_.empty())
     return;
   std::vector<gemmi::Residue>& residues = chain().residues;
-  const auto [found, is_new] = slot_.try_emplace(run_, Slot{residues.size(), nullptr});
+  const size_t hash = std::hash<gemmi::ResidueId>()(run_);
+  auto [found, end] = slot_.equal_range(hash);
+  while (found != end && !residues[found->second.residue].matches(run_))
+    ++found;
+  const bool is_new = found == end;
+  if (is_new)
+    found = slot_.emplace(hash, Slot{residues.size(), nullptr});
   Slot& slot = found->second;
   if (!is_new && !repeats(slot)) {
     for (size_t a = 0; a < atoms_.size(); ++a)
@@ -123,7 +129,8 @@ int64_t part_restarted(gemmi::Structure& structure) {
     for (gemmi::Chain& chain : model.chains) {
       if (std::none_of(chain.residues.begin(), chain.residues.end(), stands_apart))
         continue;
-      std::vector<gemmi::Residue> parts;
+      Chunks<gemmi::Residue> parts;
+      bool any_empty = false;
       for (gemmi::Residue& residue : chain.residues) {
         std::vector<gemmi::Atom> atoms = std::move(residue.atoms);
         residue.atoms.clear();
@@ -135,7 +142,7 @@ int64_t part_restarted(gemmi::Structure& structure) {
                                                       atoms.begin() + static_cast<std::ptrdiff_t>(end),
                                                       [&](const auto& a) { return labels.count(label(a)) != 0; });
           if (again) {
-            parts.push_back(residue);
+            parts.emplace_back(residue);
             residue.atoms.clear();
             labels.clear();
             ++restarted;
@@ -145,12 +152,14 @@ int64_t part_restarted(gemmi::Structure& structure) {
             residue.atoms.push_back(std::move(atoms[a]));
           }
         }
-        parts.push_back(std::move(residue));
+        parts.emplace_back(std::move(residue));
+        any_empty |= parts.back().atoms.empty();
       }
-      std::stable_sort(parts.begin(), parts.end(), [](const gemmi::Residue& a, const gemmi::Residue& b) {
-        return !a.atoms.empty() && !b.atoms.empty() && a.atoms[0].serial < b.atoms[0].serial;
-      });
-      chain.residues = std::move(parts);
+      std::vector<gemmi::Residue>().swap(chain.residues);
+      parts.move_to(chain.residues);
+      if (!any_empty) // no two begin with the same atom
+        std::sort(chain.residues.begin(), chain.residues.end(),
+                  [](const auto& a, const auto& b) { return a.atoms[0].serial < b.atoms[0].serial; });
     }
   return restarted;
 }

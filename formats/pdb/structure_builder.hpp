@@ -44,9 +44,9 @@ private:
   gemmi::Structure& structure_;
   bool chain_open_ = false, after_ter_ = false;
   std::unordered_map<std::string, size_t> chains_; ///< of the model: the first of each name
-  std::unordered_map<gemmi::ResidueId, Slot> slot_;
-  gemmi::Residue run_;        ///< consecutive atoms of one residue
-  Chunks<gemmi::Atom> atoms_; ///< these
+  std::unordered_multimap<size_t, Slot> slot_;     ///< by the hash of what the residue is
+  gemmi::Residue run_;                             ///< consecutive atoms of one residue
+  Chunks<gemmi::Atom> atoms_;                      ///< these
   int64_t restarted_ = 0;
 };
 

@@ -329,6 +329,22 @@ const std::vector<Contrived> table = {
      100000},
     {".hier: groups of one atom", read_hier,
      [](size_t n) { return "hier 1\nlevels a\n" + repeated("a X 1\natom A C 0 0 0 1\n", n); }, 100000},
+    {".hier: groups of one group, eight deep", read_hier,
+     [](size_t n) {
+       std::string one;
+       for (const char level : {'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h'})
+         one += std::string(1, level) + " X 1\n";
+       return "hier 1\nlevels a b c d e f g h\n" + repeated(one + "atom A C 0 0 0 1\n", n);
+     },
+     100000},
+    {".hier: bodies without atoms", read_hier,
+     [](size_t n) { return "hier 2\nlevels a\n" + repeated("a X 1\nbody m sphere 0 0 0 3 1\n", n); }, 200000},
+    {".hier: names", read_hier,
+     [](size_t n) {
+       return "hier 1\nlevels a\n" +
+              lines(n, [](size_t i) { return "a " + number(i) + " 1\natom " + number(i) + " C 0 0 0 1\n"; });
+     },
+     300000},
     {".hier: one long line", read_hier, [](size_t n) { return "hier 1\nsource " + std::string(n, 'x') + "\n"; },
      4000000},
     {".hier: atoms in one place", read_hier,
@@ -356,6 +372,14 @@ const std::vector<Contrived> table = {
               lines(n, [](size_t i) { return "C 1.5 2.5 3.5 " + number(i) + "\n"; });
      },
      300000},
+    {".cif: a name for each atom", read_cif,
+     [](size_t n) { return cif_head + lines(n, [](size_t i) { return number(i) + " 0 0 0\n"; }); }, 600000},
+    {".cif: a residue for each atom, whose number starts again", read_cif,
+     [](size_t n) {
+       return cif_head + "_atom_site.label_comp_id\n_atom_site.auth_seq_id\n" +
+              lines(n, [](size_t i) { return "CA 1.23 4.56 7.89 ALA " + number(i % 2) + "\n"; });
+     },
+     400000},
     {".cif: a chain for each atom", read_cif,
      [](size_t n) {
        return cif_head + "_atom_site.label_comp_id\n_atom_site.auth_asym_id\n" +
@@ -378,6 +402,11 @@ const std::vector<Contrived> table = {
        return cif_head + "C 0 0 0\n" + lines(n, [](size_t i) { return "_a." + number(i) + " 1\n"; });
      },
      400000},
+    {".cif: categories", read_cif,
+     [](size_t n) {
+       return cif_head + "C 0 0 0\n" + lines(n, [](size_t i) { return "_" + number(i) + ".b 1\n"; });
+     },
+     600000},
     {".cif: data blocks", read_cif,
      [](size_t n) {
        return cif_head + "C 0 0 0\n" + lines(n, [](size_t i) { return "data_" + number(i) + "\n"; });
@@ -412,6 +441,26 @@ const std::vector<Contrived> table = {
        return lines(n, [](size_t i) { return "ATOM 1 CA ALA A " + number(i % 100000) + " 0 0 0 0 1\n"; });
      },
      200000},
+    {"mmJSON: values that are not used", read_cif,
+     [](size_t n) {
+       return "{\"data_x\":{\"x\":{\"a\":[0" + repeated(",0", n) +
+              "]},\"atom_site\":{\"label_atom_id\":[\"C\"],\"Cartn_x\":[0],\"Cartn_y\":[0],\"Cartn_z\":[0]}}}";
+     },
+     3000000},
+    {".xyzrn: a residue for each atom", read_xyzr,
+     [](size_t n) { return lines(n, [](size_t i) { return "1.2 3.4 5.6 1.7 1 CA_ALA_" + number(i) + "\n"; }); },
+     300000},
+    {".pqr: a chain for each atom", read_pqr,
+     [](size_t n) { return lines(n, [](size_t i) { return "ATOM 1 C ALA A" + number(i) + " 1 0 0 0 0 1\n"; }); },
+     150000},
+    {".pdb: a chain for each atom", read_structure,
+     [](size_t n) {
+       return lines(n, [](size_t i) {
+         return "ATOM      1  C   ALA " + std::string(1, static_cast<char>('A' + i % 26)) +
+                "   1       0.000   0.000   0.000\n";
+       });
+     },
+     150000},
     {"gzip of zeros", read_structure, [](size_t n) { return gzip(std::string(n, '\0')); }, 200000000},
 };
 
