@@ -1,6 +1,7 @@
 // file.cpp — which file a path means, and whether what was written is there.
 #include "cli/file.hpp"
 #include "base/error.hpp"
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -43,6 +44,41 @@ int standard_stream(const std::string& path) {
   return -1;
 }
 
+std::streamsize HeadKeepingBuffer::take(char* to, std::streamsize n) {
+  const std::streamsize taken = from_->sgetn(to, n);
+  if (head.size() < most)
+    head.append(to, std::min(most - head.size(), static_cast<std::size_t>(taken)));
+  return taken;
+}
+
+HeadKeepingBuffer::int_type HeadKeepingBuffer::underflow() {
+  const std::streamsize n = take(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+  if (n <= 0)
+    return traits_type::eof();
+  setg(buffer_.data(), buffer_.data(), buffer_.data() + n);
+  return traits_type::to_int_type(buffer_[0]);
+}
+
+std::streamsize HeadKeepingBuffer::xsgetn(char* to, std::streamsize n) {
+  const std::streamsize kept = std::min(n, static_cast<std::streamsize>(egptr() - gptr()));
+  std::copy_n(gptr(), kept, to);
+  setg(eback(), gptr() + kept, egptr());
+  return kept + (kept < n ? take(to + kept, n - kept) : 0);
+}
+
+namespace {
+
+HeadKeepingBuffer& standard_input() {
+  static HeadKeepingBuffer buffer(std::cin.rdbuf());
+  return buffer;
+}
+
+} // namespace
+
+const std::string& head_of_standard_input() {
+  return standard_input().head;
+}
+
 InputFile::InputFile(const std::string& path) : name_(path) {
   if (path == "-") {
     static bool asked_for = false;
@@ -65,7 +101,8 @@ InputFile::InputFile(const std::string& path) : name_(path) {
 }
 
 std::istream& InputFile::stream() {
-  return standard_ ? std::cin : file_;
+  static std::istream standard(&standard_input());
+  return standard_ ? standard : file_;
 }
 
 void NotingBuffer::note(bool failed) {

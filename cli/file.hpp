@@ -1,9 +1,11 @@
 // file.hpp — inputs that may be stdin, outputs that are whole or absent (I10).
 #pragma once
 #include "cli/work_file.hpp"
+#include <array>
 #include <fstream>
 #include <iosfwd>
 #include <memory>
+#include <streambuf>
 #include <string>
 
 namespace molmesh::cli {
@@ -14,6 +16,26 @@ bool same_file(const std::string& a, const std::string& b);
 /// Descriptor of the standard stream, output or error, that a path means: "-" or the regular file it was redirected
 /// to, by that file's name or as /dev/stdout. -1: neither.
 int standard_stream(const std::string& path);
+
+/// Passes standard input on and keeps its first bytes, for messages: nobody can read a pipe again.
+class HeadKeepingBuffer : public std::streambuf {
+public:
+  explicit HeadKeepingBuffer(std::streambuf* from) : from_(from) {}
+  static constexpr std::size_t most = 4096;
+  std::string head;
+
+protected:
+  int_type underflow() override;
+  std::streamsize xsgetn(char* to, std::streamsize n) override;
+
+private:
+  std::streamsize take(char* to, std::streamsize n);
+  std::streambuf* from_;
+  std::array<char, 1 << 14> buffer_{};
+};
+
+/// The first bytes of standard input, as far as they have been read.
+const std::string& head_of_standard_input();
 
 /// "-" is standard input. Throws Error(bad_input) when the file cannot be opened or is a directory.
 class InputFile {

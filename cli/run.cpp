@@ -164,11 +164,15 @@ Kind wanted_kind(const Table& table, const Option& o) {
 /// message is of a file whose kind the program does not read; else the message.
 std::string with_kind(const Table& table, const std::string& message) {
   for (const Option& o : table.options)
-    for (const std::string& path : o.argument || o.value_name == "FILE" ? o.given : std::vector<std::string>{}) {
+    for (const std::string& given : o.name == "input" && o.given.empty()   ? std::vector<std::string>{"-"}
+                                    : o.argument || o.value_name == "FILE" ? o.given
+                                                                           : std::vector<std::string>{}) {
+      const std::string path = given == "-" ? "<stdin>" : given;
       if (message.rfind(path + ':', 0) != 0)
         continue;
       const Kind wanted = wanted_kind(table, o);
-      const auto& [found, packed] = look_at_file(path);
+      const auto& [found, packed] =
+          given == "-" ? OpenedFile{file_kind(head_of_standard_input()), false} : look_at_file(path);
       const bool input = o.name == "input" && !table.page.files.empty();
       const auto says = [&](const std::string& text, const char* word) { return text.find(word) != text.npos; };
       const bool unpacks =

@@ -43,8 +43,9 @@ void note_unseen(const cli::Run& run, const label::UnseenResidues& u, const std:
   constexpr size_t most = 6;
   if (u.unseen.empty())
     return;
-  std::string line = "boundary " + name + ": " + std::to_string(u.unseen.size()) + " of its " +
-                     std::to_string(u.residues) + " residues have no triangle of the surface: ";
+  std::string line = "boundary " + name + ": no triangle of the surface belongs to " +
+                     std::to_string(u.unseen.size()) + " of its " +
+                     cli::counted(u.residues, "residue", "residues") + ": ";
   for (size_t i = 0; i < std::min(u.unseen.size(), most); ++i)
     line += (i > 0 ? ", " : "") + u.unseen[i];
   if (u.unseen.size() > most)
