@@ -4,7 +4,7 @@
 BIN: folder of the programs. DATA: folder of public structures (MOLMESH_TEST_DATA) with typical/ and large/. The table goes
 to standard output; where PAGE is given (docs/guide.md) it replaces the table there that begins with the same line. Seconds
 are those of one processor, for the four programs; memory is the largest of theirs. Where hier2density plans more than N
-elements on both sides (4 million by default), the row is that plan, marked ≈.
+elements on both sides (12 million by default), the row is that plan, marked ≈.
 """
 import argparse
 import json
@@ -29,7 +29,7 @@ def seconds(x):
 
 
 def planned(plan, name, spacing):
-    return [name, f"{spacing} Å", *(f"≈ {round(plan['tetsmooth'][r]['elements'], -5):,}" for r in REGIONS), "", "", "", "", "",
+    return [name, f"{spacing} Å, planned", *(f"≈ {round(plan['tetsmooth'][r]['elements'], -5):,}" for r in REGIONS), "", "", "", "", "",
             f"≈ {plan['tetsmooth']['both']['memory_bytes'] / 1e6:,.0f}", ""]
 
 
@@ -55,7 +55,7 @@ def row(chain, name, spacing, atoms, most):
 def main():
     p = argparse.ArgumentParser(description=__doc__)
     p.add_argument("bin", type=pathlib.Path), p.add_argument("data", type=pathlib.Path), p.add_argument("page", nargs="?")
-    p.add_argument("--most", type=float, default=4e6)
+    p.add_argument("--most", type=float, default=1.2e7)
     o = p.parse_args()
     lines = ["| " + " | ".join(HEAD) + " |", "|---" * len(HEAD) + "|"]
     with tempfile.TemporaryDirectory() as folder:
