@@ -4,7 +4,7 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 #include <zlib.h>
 
 namespace molmesh::cli {
@@ -42,6 +42,20 @@ bool is_gro(std::string_view head) {
   return count.find_first_of("0123456789") != std::string_view::npos &&
          count.find_first_not_of(" 0123456789") == std::string_view::npos && atom.size() >= 44 && atom[24] == '.' &&
          std::isdigit(static_cast<unsigned char>(atom[19])) != 0;
+}
+
+/// Four numbers in the first line, one at least with decimals (TetGen's .node has whole ones), and nothing but the
+/// name of an atom behind them.
+bool is_xyzr(std::string_view text) {
+  std::istringstream line{std::string(line_of(text, 0))};
+  std::string word, rest;
+  bool decimals = false;
+  for (int i = 0; i < 4; ++i) {
+    if (!(line >> word) || word.find_first_not_of("+-.0123456789") != std::string::npos)
+      return false;
+    decimals |= word.find('.') != std::string::npos;
+  }
+  return decimals && (!(line >> rest) || rest == "1");
 }
 
 /// STL with 80 bytes of a title, the number of triangles, little-endian, and 50 bytes for each.
@@ -174,6 +188,8 @@ FileKind file_kind(std::string_view head, uint64_t size) {
     return {Kind::structure, "a structure (.gro)", ""};
   if (is_pdb(text))
     return {Kind::structure, "a structure (PDB or PQR)", ""};
+  if (is_xyzr(text))
+    return {Kind::structure, "a structure (.xyzr)", ""};
   return {};
 }
 

@@ -15,6 +15,9 @@ TEST_CASE("a file's first bytes tell what it is") {
   CHECK(kind("data_1TII\n#\n") == Kind::structure);
   CHECK(kind("{\"data_1TII\": {") == Kind::structure);
   CHECK(kind("Title\n    2\n    1ALA      N    1   0.100   0.200   0.300\n") == Kind::structure);
+  CHECK(kind("1.5 2.0 -3.25 1.7\n") == Kind::structure);
+  CHECK(kind("1.5 2.0 -3.25 1.7 1 CA_ALA_1\n") == Kind::structure);
+  CHECK(kind("8 3 0 0\n1 0.5 0.5 0.5\n") == Kind::unknown); // TetGen's .node
   CHECK(kind(std::string(208, '\0') + "MAP " + std::string(20, ' ')) == Kind::map);
   CHECK(kind("object 1 class gridpositions counts 3 3 3\n") == Kind::map);
   CHECK(kind("join 1\n") == Kind::plan);
