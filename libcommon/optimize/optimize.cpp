@@ -88,6 +88,10 @@ const std::vector<Round> rounds_to_fair{
     {1, true, 8, true, relaxed},      {1, true, 8, false, within_a_tenth},   {1, true, 32, true, within_a_tenth},
 };
 
+// Where few elements are left below the promise, as beside features that a wall cuts. Then they are searched for.
+const std::vector<Round> rounds_to_promise{{1, true, 32, true, may_leave_surface},
+                                           {1, true, 32, false, may_leave_surface}};
+
 // How an effort keeps its promise.
 struct Course {
   double min_dihedral, max_dihedral; // degrees aimed at, more than is promised
@@ -306,11 +310,8 @@ private:
 
   // Where the rounds have done all they can.
   void search() {
-    if (course_.most_elements == 0) { // the promise alone: few meshes need it
-      if (repairs_ && schedule_.worst() < FaultCount::share * goal_)
-        search_elements(few_elements);
-      return;
-    }
+    if (course_.most_elements == 0)
+      return keep_promise();
     if (!(repairs_ || schedule_.worst() >= goal_))
       return;
     if (isosurface_) {
@@ -325,6 +326,18 @@ private:
   bool is_worse() {
     const float least = options_.coarsen ? std::min(at_first_, FaultCount::share * goal_) : at_first_;
     return schedule_.worst() < (repairs_ ? least : 0.9999f * least);
+  }
+
+  bool is_promise_kept() { return !repairs_ || schedule_.worst() >= FaultCount::share * goal_; }
+  // Few meshes need it.
+  void keep_promise() {
+    for (const Round& round : rounds_to_promise)
+      if (!is_promise_kept()) {
+        schedule_.watch_crossings(Schedule::everywhere);
+        count(schedule_.run(pass_of(round)));
+      }
+    if (!is_promise_kept())
+      search_elements(few_elements);
   }
 
   /// A floor for projection: with fewer rounds than all nothing repairs what falls to it.

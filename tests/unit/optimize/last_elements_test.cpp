@@ -1,7 +1,9 @@
 // last_elements_test.cpp — the last elements below the goal come over it, where they are few.
 #include "isosurface/isosurface.hpp"
 #include "optimize/acceptance/faults.hpp"
+#include "optimize/optimize.hpp"
 #include "optimize/schedule/schedule.hpp"
+#include "unit/optimize/cut_clusters.hpp"
 #include "unit/optimize/lattice_mesh.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -58,5 +60,21 @@ TEST_CASE("few elements below the goal are searched for, many are left alone") {
     const optimize::Counts counts = schedule.search(strategy);
     CHECK((many ? counts.total() == 0 : counts.total() > 0));
     CHECK((many ? schedule.below(fault) == below : schedule.below(fault) == 0));
+  }
+}
+
+TEST_CASE("Effort fast keeps its promise where a wall cuts features of a spacing") {
+  for (const uint32_t seed : {10U, 29U, 34U, 106U}) { // its six rounds leave 9 to 15 degrees
+    const BlockGrid grid = cluster(seed, 1.3);
+    TetMesh mesh = cut(grid, contour::Options::both, 2.3);
+    optimize::Options options;
+    options.effort = optimize::Effort::fast;
+    const optimize::Result r = optimize::improve(mesh, &grid, options);
+    CAPTURE(seed);
+    CHECK(r.after.min >= 15);
+    CHECK(r.after.max <= 155);
+    Validity v = check_validity(mesh, 1);
+    add_crossings(v, mesh, 1);
+    CHECK(v.valid());
   }
 }
