@@ -2,6 +2,7 @@
 #include "label/label.hpp"
 #include "unit/density/oracle.hpp"
 #include <catch2/catch.hpp>
+#include <hwy/targets.h>
 
 using namespace molmesh;
 
@@ -91,6 +92,25 @@ TEST_CASE("Labels do not depend on the number of threads, nor on the isovalue be
     for (size_t i = 0; i < place.size(); ++i)
       CHECK(other.share[l][i] == Approx(one.share[l][i]).margin(4e-6));
   }
+}
+
+TEST_CASE("Every instruction set of this machine finds the same labels") {
+  const Hierarchy h = test::with_bodies(test::random_chains(4, 20, 9, {0.4, 1.2}, 21));
+  const std::vector<Vec3d> place = places_near(h, 500, 4, 22);
+  const label::Labels best = label::find_labels(h, place, {0.3, 1, 1});
+  const int64_t here = hwy::SupportedTargets();
+  for (const int64_t set : {HWY_SCALAR, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
+    if (set != HWY_SCALAR && !(here & set))
+      continue;
+    hwy::SetSupportedTargetsForTest(set);
+    const label::Labels found = label::find_labels(h, place, {0.3, 1, 1});
+    for (size_t l = 0; l < best.level.size(); ++l) {
+      CHECK(found.index[l] == best.index[l]);
+      for (size_t i = 0; i < place.size(); ++i)
+        CHECK(found.share[l][i] == Approx(best.share[l][i]).margin(1e-9));
+    }
+  }
+  hwy::SetSupportedTargetsForTest(0);
 }
 
 TEST_CASE("Shares do not depend on which other places are asked for, near atoms and far from all") {
