@@ -5,9 +5,9 @@
 #include "par/par.hpp"
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <iterator>
 
 namespace molmesh::contour {
@@ -45,20 +45,21 @@ int64_t count_split(const Surface& surface, float isovalue, int threads) {
     may_split[inside] = t.split() || std::any_of(t.diagonal.begin(), t.diagonal.end(),
                                                  [](Diagonal d) { return d != Diagonal::none; });
   }
-  std::atomic<int64_t> n{0};
-  par::for_n(std::ssize(surface.cells), threads, 4096, [&](int64_t i) {
-    const SurfaceCell& cell = surface.cells[i];
-    unsigned inside = 0;
-    for (int c = 0; c < 8; ++c)
-      inside |= unsigned{cell.value[c] > isovalue} << c;
-    if (!may_split[inside])
-      return;
-    double value[8];
-    for (int c = 0; c < 8; ++c)
-      value[c] = over_isovalue(cell.value[c], isovalue);
-    n.fetch_add(cell_topology(value).split(), std::memory_order_relaxed);
-  });
-  return n;
+  return par::reduce(
+      std::ssize(surface.cells), threads, int64_t{0},
+      [&](int64_t i) {
+        const SurfaceCell& cell = surface.cells[i];
+        unsigned inside = 0;
+        for (int c = 0; c < 8; ++c)
+          inside |= unsigned{cell.value[c] > isovalue} << c;
+        if (!may_split[inside])
+          return int64_t{0};
+        double value[8];
+        for (int c = 0; c < 8; ++c)
+          value[c] = over_isovalue(cell.value[c], isovalue);
+        return int64_t{cell_topology(value).split()};
+      },
+      std::plus<int64_t>());
 }
 
 } // namespace
@@ -92,27 +93,32 @@ Leaves LeafCounter::count(const RefineOptions& refine) const {
   leaves.adapt = list.adapt / (1 << finer_.halvings);
   const Octree octree(lattice.cells, std::move(list), options.threads);
   const OctreeView& tree = octree.view();
-  std::atomic<int64_t> corners{0}, crossed{0}, beyond{0}; // inside the surface; leaves; beyond an outer sphere
-  par::for_n(tree.size(), options.threads, 4096, [&](int64_t i) {
-    const auto leaf = static_cast<int32_t>(i);
-    const Vec3i p = tree.corner(leaf);
-    const int32_t edge = tree.extent(leaf);
-    int64_t far = 0;
-    unsigned inside = 0; // by corner
-    for (int c = 0; c < 8; ++c) {
-      Vec3i q = p + edge * Vec3i{c & 1, c >> 1 & 1, c >> 2};
-      for (int a = 0; a < 3; ++a)
-        q[a] = std::min(q[a], lattice.cells[a]);
-      inside |= unsigned{lattice.value(q) > lattice.isovalue} << c;
-      far += options.box.is_sphere() && options.box.outer.height(lattice.position(q)) > 0;
-    }
-    beyond.fetch_add(far, std::memory_order_relaxed);
-    corners.fetch_add(std::popcount(inside), std::memory_order_relaxed);
-    crossed.fetch_add(inside != 0 && inside != 255, std::memory_order_relaxed);
-  });
-  leaves.all = tree.size() - static_cast<double>(beyond) / 8;
-  leaves.inside = static_cast<double>(corners) / 8;
-  leaves.surface = static_cast<double>(crossed);
+  struct Found {
+    int64_t corners = 0, crossed = 0, beyond = 0; // inside the surface; leaves; beyond an outer sphere
+  };
+  const Found found = par::reduce(
+      tree.size(), options.threads, Found{},
+      [&](int64_t i) {
+        const auto leaf = static_cast<int32_t>(i);
+        const Vec3i p = tree.corner(leaf);
+        const int32_t edge = tree.extent(leaf);
+        int64_t beyond = 0;
+        unsigned inside = 0; // by corner
+        for (int c = 0; c < 8; ++c) {
+          Vec3i q = p + edge * Vec3i{c & 1, c >> 1 & 1, c >> 2};
+          for (int a = 0; a < 3; ++a)
+            q[a] = std::min(q[a], lattice.cells[a]);
+          inside |= unsigned{lattice.value(q) > lattice.isovalue} << c;
+          beyond += options.box.is_sphere() && options.box.outer.height(lattice.position(q)) > 0;
+        }
+        return Found{std::popcount(inside), inside != 0 && inside != 255, beyond};
+      },
+      [](const Found& a, const Found& b) {
+        return Found{a.corners + b.corners, a.crossed + b.crossed, a.beyond + b.beyond};
+      });
+  leaves.all = tree.size() - static_cast<double>(found.beyond) / 8;
+  leaves.inside = static_cast<double>(found.corners) / 8;
+  leaves.surface = static_cast<double>(found.crossed);
   leaves.split = static_cast<double>(split_);
   return leaves;
 }
