@@ -2,11 +2,25 @@
 #pragma once
 #include "cli/value.hpp"
 #include "optimize/mesh/measures.hpp"
+#include <cstdio>
+#include <string>
 
 namespace molmesh {
 
 inline cli::Value angles_value(const optimize::Angles& a) {
   return {{"min_dihedral", a.min}, {"max_dihedral", a.max}, {"below_25", a.below_25}, {"above_140", a.above_140}};
+}
+
+/// Of what the isosurface encloses.
+inline double missing_share(const optimize::Fidelity& f) {
+  return f.volume > 0 ? f.missing / (f.volume + f.missing) : 0;
+}
+
+/// "1.3 %"
+inline std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %%", 100 * share);
+  return text;
 }
 
 inline cli::Value fidelity_value(const optimize::Fidelity& f) {

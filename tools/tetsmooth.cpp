@@ -109,6 +109,9 @@ Status run_tool(const Options& o, cli::Run& run) {
   else if (grid && o.iterations > 0 && 2 * result.fidelity.points_off > result.fidelity.points)
     run.note("off the isosurface: " + std::to_string(result.fidelity.points_off) + " of " +
              std::to_string(result.fidelity.points) + " surface points: too thin, or another density?");
+  else if (grid && o.iterations > 0 && missing_share(result.fidelity) >= 0.01)
+    run.note("the isosurface encloses " + percent(missing_share(result.fidelity)) +
+             " more: parts thinner than the grid are lost, which a density on a finer one keeps");
   if (size_t(o.parts) > mesh.tet.size() && o.parts != Options().parts)
     run.note("--parts: one for each of the " + std::to_string(mesh.tet.size()) + " elements, there are no more");
   arrays.put_into(mesh, threads);

@@ -38,6 +38,9 @@ gemmi::Element ion_element(std::string_view atom, std::string_view residue) {
   const std::string name = letters_of(atom);
   if (residue == "ION" || residue == "IONS") // GROMACS and others: the residue says what its atom is
     residue = atom;
+  for (const auto& [ion, element] : charmm) // NA of SOD, as programs write that know elements
+    if (residue == ion && name.size() <= 2 && gemmi::Element(name) == element)
+      return element;
   const size_t tail = residue.find_last_not_of("+-0123456789");
   if (name.empty() || tail == std::string_view::npos || letters_of(residue) != name || tail + 1 != name.size())
     return gemmi::El::X;

@@ -52,6 +52,9 @@ TEST_CASE("ions without an element are not taken for carbon or nitrogen") {
   CHECK(first_element(pdb_atom(" NA", " NA", "A", 1, 1, "  ")) == "Na");
   CHECK(first_element(pdb_atom(" CL", " CL", "A", 1, 1, "  ")) == "Cl");
   CHECK(first_element(pdb_atom("SOD", "SOD", "A", 1, 1, "  ")) == "Na");
+  CHECK(first_element(pdb_atom("NA", "SOD", "A", 1, 1, "  ")) == "Na");
+  CHECK(first_element(pdb_atom("CA", "CAL", "A", 1, 1, "  ")) == "Ca");
+  CHECK(first_element(pdb_atom("NA", "CLA", "A", 1, 1, "  ")) == "N"); // of chlorophyll
   CHECK(first_element(pdb_atom(" CLA", "CLA", "A", 1, 1, "  ")) == "Cl");
   CHECK(first_element(pdb_atom(" POT", "POT", "A", 1, 1, "  ")) == "K");
   CHECK(first_element(pdb_atom(" CAL", "CAL", "A", 1, 1, "  ")) == "Ca");
