@@ -16,7 +16,7 @@ using namespace molmesh;
 
 namespace {
 
-std::vector<label::NamedBoundary> select(const Options& o, const Hierarchy& h) {
+std::vector<label::NamedBoundary> select(const Options& o, const Hierarchy& h, const cli::Run& run) {
   std::vector<label::NamedBoundary> boundary;
   for (const std::string& text : o.boundary) {
     const size_t equals = text.find('=');
@@ -28,7 +28,11 @@ std::vector<label::NamedBoundary> select(const Options& o, const Hierarchy& h) {
       fail(Status::usage, "--boundary: found the name '" + name + "', expected letters, digits, _ and -");
     if (formats::is_own_name(name))
       fail(Status::usage, "--boundary: found the name '" + name + "', which is the meshes' own, expected another");
-    const std::vector<uint8_t> atom = formats::select_atoms(h, text.substr(equals + 1), "--boundary " + name);
+    std::vector<std::string> absent;
+    const std::vector<uint8_t> atom =
+        formats::select_atoms(h, text.substr(equals + 1), "--boundary " + name, &absent);
+    for (const std::string& number : absent)
+      run.note("boundary " + name + ": no residue fits " + number + " of '" + text.substr(equals + 1) + "'");
     const auto same = std::find_if(boundary.begin(), boundary.end(), [&](const auto& b) { return b.name == name; });
     if (same == boundary.end())
       boundary.push_back({name, atom});
@@ -79,7 +83,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   cli::InputFile structure(o.hierarchy), input(o.input);
   cli::OutputFile output(o.output, cli::OutputFile::Content::binary);
   const Hierarchy h = formats::read_hier(structure.stream(), structure.name());
-  const std::vector<label::NamedBoundary> boundary = select(o, h);
+  const std::vector<label::NamedBoundary> boundary = select(o, h, run);
   formats::MeshNotes notes;
   TetMesh mesh = read_mesh(run, input, o.mesh, formats::CellArrays::keep, notes);
   if (!o.other_structure)

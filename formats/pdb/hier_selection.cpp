@@ -62,7 +62,8 @@ void filter(const Hierarchy& h, size_t l, std::vector<uint8_t>& chosen, Take tak
 
 } // namespace
 
-std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& text, const std::string& where) {
+std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& text, const std::string& where,
+                                  std::vector<std::string>* absent) {
   const Selection s(text, where, true, Status::usage);
   const auto refuse = [&](const std::string& expected) {
     fail_input(where + ": found selection " + in_quotes(text) + ", expected " + expected);
@@ -83,6 +84,15 @@ std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& text, c
     if (residue == h.level.size())
       refuse("no residue: the .hier has no level 'residue'");
     gemmi::Residue r;
+    constexpr size_t most = 100;
+    if (const std::vector<std::string> numbers = s.numbers(); absent != nullptr && numbers.size() <= most)
+      for (size_t i = 0; i < numbers.size(); ++i) {
+        std::vector<uint8_t> fits = chosen;
+        filter(h, residue, fits,
+               [&](const Group& g) { return read_residue(g.name, r) && s.residue(r) && s.number_fits(i, r); });
+        if (std::find(fits.begin(), fits.end(), 1) == fits.end())
+          absent->push_back(numbers[i]);
+      }
     filter(h, residue, chosen,
            [&](const Group& g) { return (read_residue(g.name, r) || !s.numbers_residues()) && s.residue(r); });
   }

@@ -158,7 +158,7 @@ Selection::Selection(const std::string& text, const std::string& where, bool aro
         if (part.empty() && parts.size() > 1)
           wrong("a list of residues with nothing between two commas");
         const gemmi::Selection one("//*/" + std::string(part));
-        Range range{one.from_seqid, one.to_seqid};
+        Range range{one.from_seqid, one.to_seqid, std::string(part)};
         // gemmi 0.5.7 takes "45" for "45-"; in MMDB syntax, and in later gemmi, it is that residue alone.
         if (!range.first.empty() && range.last.empty() && part.back() != '-')
           range.last = range.first;
@@ -202,9 +202,17 @@ bool Selection::chain(const std::string& name, const std::string& copy) const {
 bool Selection::residue(const gemmi::Residue& r) const {
   if (!residues_.has(r.name) || !rest_.matches(r))
     return false;
-  return ranges_.empty() || std::any_of(ranges_.begin(), ranges_.end(), [&](const Range& range) {
-           return range.first.compare(r.seqid) <= 0 && range.last.compare(r.seqid) >= 0;
-         });
+  for (size_t i = 0; i < ranges_.size(); ++i)
+    if (number_fits(i, r))
+      return true;
+  return ranges_.empty();
+}
+
+std::vector<std::string> Selection::numbers() const {
+  std::vector<std::string> all;
+  for (const Range& range : ranges_)
+    all.push_back(range.text);
+  return all;
 }
 
 } // namespace molmesh::formats

@@ -38,6 +38,12 @@ public:
   bool names_chains() const { return !chains_.all; }
   bool names_residues() const { return !residues_.all || numbers_residues(); }
   bool numbers_residues() const { return !ranges_.empty(); }
+  /// The numbers and ranges of residues, as written; empty: all.
+  std::vector<std::string> numbers() const;
+  /// Fits the residue's number the i-th of them?
+  bool number_fits(size_t i, const gemmi::Residue& r) const {
+    return ranges_[i].first.compare(r.seqid) <= 0 && ranges_[i].last.compare(r.seqid) >= 0;
+  }
   /// Does it ask for what a .hier does not hold: other models than the first, alternative locations, occupancies …?
   bool beyond_hierarchy() const {
     return rest_.mdl > 1 || !rest_.altlocs.all || !rest_.entity_types.all || !rest_.atom_inequalities.empty();
@@ -48,6 +54,7 @@ public:
 private:
   struct Range {
     gemmi::Selection::SequenceId first, last;
+    std::string text;
   };
   gemmi::Selection rest_; ///< what the lists below leave to gemmi
   NameList chains_, residues_, atoms_;

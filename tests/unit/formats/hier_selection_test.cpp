@@ -195,3 +195,20 @@ TEST_CASE("a rule sets the weights of the residues in a hierarchy by their atoms
           formats::apply_rules(atoms, {parse_rule("* W_R=0.5", "here")});
         }) == "here: found W_R, expected exponents of levels that there are: there is no level residue");
 }
+
+TEST_CASE("numbers that no residue has are told") {
+  const auto absent = [](const std::string& selection) {
+    std::vector<std::string> numbers;
+    formats::select_atoms(hierarchy(), selection, "here", &numbers);
+    std::string all;
+    for (const std::string& number : numbers)
+      all += (all.empty() ? "" : " ") + number;
+    return all;
+  };
+  CHECK(absent("//A/1,2A").empty());
+  CHECK(absent("//A/1,7,2A,9-12") == "7 9-12");
+  CHECK(absent("//A_2/1,2A") == "2A"); // in that chain
+  CHECK(absent("//*/1,2A(GLY)") == "2A");
+  CHECK(absent("//A").empty());
+  CHECK(absent("around //A/1,7 3.0") == "7");
+}
