@@ -32,6 +32,7 @@ const plural = (n, one, many) => count(n) + ' ' + (n === 1 ? one : many);
 const css = c => `rgb(${c[0]},${c[1]},${c[2]})`;
 const regionName = (m, r) => m.regions.find(k => k.region === r).name;
 const bodiesOf = (m, r) => m.bodies.filter(b => b.region === r);
+const insideAlone = m => m.bodies.every(b => b.region === 1); // closed cavities are holes then, and not listed
 const pictureOf = m => 'data:image/png;base64,' + document.getElementById('picture-' + m.index).textContent.trim();
 
 function table(columns, rows, onRow) { // columns: [title, class, text of row]
@@ -389,7 +390,7 @@ class Detail {
     const names = {};
     const bodies = m.bodies.map(b => { names[b.region] = (names[b.region] || 0) + 1; return [b, `${b.region === 1 ? 'body' : regionName(m, b.region)} ${names[b.region]}`]; });
     columns.append(worst,
-      make('div', {class: 'card half'}, make('h2', {}, 'Bodies and cavities', make('small', {}, 'a click goes there')),
+      make('div', {class: 'card half'}, make('h2', {}, 'Bodies and cavities', make('small', {}, insideAlone(m) ? 'cavities are holes in a mesh of the inside alone' : 'a click goes there')),
         table([['', 'w', ([, n]) => n], ['volume, Å³', 'n', ([b]) => size(b.volume)], ['area, Å²', 'n', ([b]) => size(b.area)], ['tetrahedra', 'n', ([b]) => count(b.tets)],
           ['centre, Å', 'n', ([b]) => place(b.centre)], ['residues at its surface', 'l', ([b]) => b.residues ? b.residues + (b.residue_count > b.residues_named ? ` and ${b.residue_count - b.residues_named} more` : '') : '–']], bodies, ([b]) => this.goToBody(b))),
       make('div', {class: 'card'}, make('h2', {}, 'Boundaries'),
@@ -415,13 +416,13 @@ function ramp(x) { return View.prototype.rampColour.call({palette: REPORT.palett
 
 class Gallery {
   constructor() {
-    this.rows = REPORT.meshes.map(m => ({m, bodies: bodiesOf(m, 1).length, cavities: bodiesOf(m, 3).length,
+    this.rows = REPORT.meshes.map(m => ({m, bodies: bodiesOf(m, 1).length, cavities: insideAlone(m) ? null : bodiesOf(m, 3).length,
       volume: (bodiesOf(m, 1).length ? bodiesOf(m, 1) : m.bodies).reduce((s, b) => s + b.volume, 0), area: molecularBoundaries(m).reduce((s, b) => s + b.area, 0)}));
     this.kind = this.rows.length > 60 ? 'table' : 'pictures';
     this.key = null;
     this.body = make('div');
     this.columns = [['mesh', '', r => r.m.name, r => r.m.name], ['tetrahedra', 'n', r => r.m.tets, r => count(r.m.tets)], ['points', 'n', r => r.m.points, r => count(r.m.points)],
-      ['bodies', 'n', r => r.bodies, r => count(r.bodies)], ['cavities', 'n', r => r.cavities, r => count(r.cavities)], ['volume, Å³', 'n', r => r.volume, r => size(r.volume)],
+      ['bodies', 'n', r => r.bodies, r => count(r.bodies)], ['cavities', 'n', r => r.cavities, r => r.cavities === null ? '–' : count(r.cavities)], ['volume, Å³', 'n', r => r.volume, r => size(r.volume)],
       ['surface, Å²', 'n', r => r.area, r => size(r.area)], ['smallest angle', 'n', r => r.m.quality.dihedral.min, r => angle(r.m.quality.dihedral.min)],
       ['largest angle', 'n', r => r.m.quality.dihedral.max, r => angle(r.m.quality.dihedral.max)], ['smallest Q', 'n', r => r.m.quality.joe_liu_q.min, r => r.m.quality.joe_liu_q.min.toFixed(3)],
       ['check', '', r => String(r.m.valid), r => r.m.valid === null ? 'not asked' : make('span', {class: r.m.valid ? 'good' : 'bad'}, r.m.valid ? 'valid' : 'not valid')],
