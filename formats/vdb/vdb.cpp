@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <istream>
 
@@ -50,6 +51,7 @@ private:
   int64_t count(const char* name) const;
   void read_info();
   void read_extras();
+  void check_tail() const;
   double optional(const char* name) const { return in_.metadata.contains(name) ? number(name) : 0; }
   void read_frame();
   void read_leaves();
@@ -141,6 +143,22 @@ void Reader::read_extras() {
   if (!(1 <= extras.tile.number && extras.tile.number <= extras.tile.count))
     refuse("R12: tile " + std::to_string(extras.tile.number) + " of " + std::to_string(extras.tile.count) +
            ", expected 1 to their number");
+}
+
+// A density that falls over far more than its grid asks for the work of a far larger one.
+void Reader::check_tail() const {
+  if (!extras.tail.known())
+    return;
+  const GridFrame& f = grid_.frame;
+  constexpr double least_value = 1e-30, most = 100, least_decay = 1e-9;
+  const double across = norm(f.spacing * to_double(f.points)), reach = extras.tail.distance(least_value);
+  if (extras.tail.decay >= least_decay && reach <= most * (across + 1 / std::sqrt(extras.tail.decay)))
+    return;
+  char distance[40] = "no finite number of";
+  if (std::isfinite(reach))
+    std::snprintf(distance, sizeof distance, "%g", reach);
+  refuse("R7: the density falls to 1e-30 over " + std::string(distance) +
+         " Å by tail_log, tail_decay, tail_radius and tail_depth, expected at most 100 times the grid");
 }
 
 void Reader::read_frame() {
@@ -256,6 +274,7 @@ BlockGrid Reader::read(bool whole) {
   if (whole)
     refuse_tile();
   read_frame();
+  check_tail();
   read_tiles();
   read_leaves();
   for (const Vec3i& c : grid_.inside) // both ascending

@@ -126,6 +126,23 @@ TEST_CASE("an empty grid is a valid file") {
   CHECK(r.inside.empty());
 }
 
+TEST_CASE("a density that falls over far more than its grid is refused") {
+  BlockGrid g;
+  g.frame = {{0, 0, 0}, 1, {0, 0, 0}, {20, 20, 20}};
+  const auto with = [&](Tail tail) {
+    formats::VdbExtras extras;
+    extras.tail = tail;
+    std::ostringstream out;
+    formats::write_vdb(out, g, 1, extras);
+    return refusal(out.str());
+  };
+  for (const Tail& tail : {Tail{}, Tail{5, 1, 1.7, 1.4}, Tail{100, 1e-4, 0, 1.4}}) // the last of P = 0.0001
+    CHECK(with(tail).empty());
+  for (const Tail& tail : {Tail{1e300, 1, 0, 0}, Tail{1e9, 1, 0, 0}, Tail{5, 1e-15, 0, 0}, Tail{5, 1, 0, 1e6}})
+    CHECK(with(tail).find("x.vdb: R7: the density falls to 1e-30 over ") == 0);
+  CHECK(with({5, 1, 1e300, 0}).find("over no finite number of Å") != std::string::npos);
+}
+
 TEST_CASE("whatever is cut off a .vdb file is missed") {
   const std::string whole = bytes(example());
   for (size_t n = 0; n < whole.size(); n += n < 1600 ? 1 : 9973) {
