@@ -139,6 +139,7 @@ const Guard coarse{32, 0.1, 0.5, 0};
 // comes back, each time in other parts, and none of them where no point is left. After a point has come back, all
 // but the first begin anew, and a large mesh has many of these.
 constexpr int searches = 32;
+constexpr double share_of_rounds = 0.7; // of the time, where points are off; searches take the rest
 // Of many points the first searches bring most back, in smaller parts: more of these at once, and less to save for
 // each.
 constexpr int searches_of_many = 4;
@@ -291,6 +292,7 @@ private:
         if (cell > 0) {
           pass.cell = cell;
           done += count(schedule_.run(pass));
+          tell_progress();
         }
       if (isosurface_ && repairs_ && round.fits_surface) {
         pass.goal = share_of(fitting_share, goal_);
@@ -298,7 +300,6 @@ private:
         count(schedule_.fit_surface(pass));
       }
       ++result_.rounds;
-      tell_progress();
       if (isosurface_)
         project_after(k, goal);
       if (done == 0 && k + 1 >= course_.rounds.size())
@@ -353,6 +354,9 @@ private:
       if (many_ && k < searches_of_many) // what goes wrong is taken back: parts are small
         s.part_size = size_of_many;
       row = count(schedule_.search(s)) > 0 ? std::min<size_t>(row, 1) : row + 1;
+      if (options_.progress)
+        options_.progress(share_of_rounds + (1 - share_of_rounds) *
+                                                std::max(double(row) / double(rows.size()), double(k) / searches));
     }
     for (int k = 0; goal_ > usual_ && k < 4; ++k) { // searches have repaired to the usual goal
       Pass pass = pass_of({1, true, 8, k % 2 == 0, relaxed});
@@ -369,13 +373,12 @@ private:
     }
   }
 
-  // Recovery and the last elements come after the rounds: a tenth is left for them.
   void tell_progress() {
     if (!options_.progress)
       return;
     const int64_t left = schedule_.below(goal_);
     at_begin_ = std::max({at_begin_, left, int64_t{1}});
-    options_.progress(0.9 * (1 - double(left) / double(at_begin_)));
+    options_.progress(share_of_rounds * (1 - double(left) / double(at_begin_)));
   }
 
   int64_t count(const Counts& c) {
