@@ -14,6 +14,11 @@ inline const std::vector<std::pair<const char*, const char*>> mesh_endings = {
     {".m", "mcsf"},     {".stl", "stl"},     {".ply", "ply"},     {".off", "off"},
     {".inp", "abaqus"}, {".bdf", "nastran"}, {".nas", "nastran"}, {".vtu", "vtu"}};
 
+/// Whether the format holds the triangles of boundary 1 and nothing else.
+inline bool is_surface(const std::string& format) {
+  return format == "stl" || format == "ply" || format == "off";
+}
+
 inline std::string ending(const std::string& path) {
   const size_t name = path.rfind('/') + 1, dot = path.rfind('.');
   return dot == std::string::npos || dot <= name ? "" : path.substr(dot);

@@ -97,8 +97,8 @@ void note_losses(const cli::Run& run, const std::string& format, const TetMesh& 
   std::string lost;
   const auto lose = [&](const std::string& what) { lost += (lost.empty() ? "" : ", ") + what; };
   const bool gmsh = format == "gmsh" || format == "gmsh-binary", has_arrays = gmsh || format == "ply";
-  if (!m.part.empty() && !gmsh)
-    lose("part");
+  if (!m.part.empty() && !gmsh && !is_surface(format)) // parts are of tetrahedra
+    lose("parts for parallel solvers (tetsmooth --parts)");
   for (const CellArray& a : m.cell_array)
     if (!has_arrays && (a.name != "patch" || format == "stl" || format == "off"))
       lose(a.name);
@@ -129,8 +129,12 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.phase("write");
   const int64_t unplaced = write_mesh(run, outputs, o, format, mesh, input.name());
   note_losses(run, format, mesh, unplaced);
-  run.made = format + ": " + cli::counted(std::ssize(mesh.tet), "tetrahedron", "tetrahedra") + ", " +
-             cli::counted(std::ssize(mesh.tri), "triangle", "triangles") + run.made;
+  const int64_t triangles = is_surface(format)
+                                ? std::count(mesh.boundary.begin(), mesh.boundary.end(), Boundary::surface)
+                                : std::ssize(mesh.tri);
+  run.made = format + ": " +
+             (is_surface(format) ? "" : cli::counted(std::ssize(mesh.tet), "tetrahedron", "tetrahedra") + ", ") +
+             cli::counted(triangles, "triangle", "triangles") + run.made;
   return Status::good;
 }
 
