@@ -19,9 +19,13 @@ inline bool is_surface(const std::string& format) {
   return format == "stl" || format == "ply" || format == "off";
 }
 
+/// In small letters, with its dot; empty: none.
 inline std::string ending(const std::string& path) {
   const size_t name = path.rfind('/') + 1, dot = path.rfind('.');
-  return dot == std::string::npos || dot <= name ? "" : path.substr(dot);
+  std::string end = dot == std::string::npos || dot <= name ? "" : path.substr(dot);
+  for (char& c : end)
+    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return end;
 }
 
 /// Throws Error(usage) that lists what there is.

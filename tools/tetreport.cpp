@@ -5,6 +5,7 @@
 #include "formats/html/run_reports.hpp"
 #include "formats/png/png.hpp"
 #include "formats/read_all.hpp"
+#include "tools/report_names.hpp"
 #include <algorithm>
 #include <optional>
 #include <ostream>
@@ -79,6 +80,7 @@ std::string draw(const Loaded& l, const std::string& name, const Options& o, int
 }
 
 Status run_tool(const Options& o, cli::Run& run) {
+  check_report_names(o.output, o.png);
   std::vector<std::string> paths{o.input};
   paths.insert(paths.end(), o.meshes.begin(), o.meshes.end());
   if (!o.png.empty() && paths.size() > 1)
