@@ -37,7 +37,8 @@ inline std::string format_by_ending(const std::string& output) {
       return format;
     known += (known.empty() ? "" : ", ") + std::string(e);
   }
-  fail(Status::usage, "-o: found " + output + ", expected a name that ends in one of " + known + ", or --format");
+  fail(Status::usage, "-o: " + (output == "-" ? "none given" : "found " + output) +
+                          ", expected a name that ends in one of " + known + ", or --format");
 }
 
 } // namespace molmesh

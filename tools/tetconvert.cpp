@@ -116,9 +116,8 @@ Status run_tool(const Options& o, cli::Run& run) {
   run.phase("read");
   cli::InputFile input(o.input);
   Outputs outputs;
-  const bool binary = format == "stl" || format == "vtu" || format == "gmsh-binary";
   for (const std::string& name : o.outputs())
-    outputs.emplace_back(name, binary ? cli::OutputFile::Content::binary : cli::OutputFile::Content::text);
+    outputs.emplace_back(name, cli::OutputFile::Content::binary); // nobody reads a mesh on a terminal
   formats::MeshNotes notes;
   TetMesh mesh = read_mesh(run, input, o.mesh, formats::CellArrays::keep, notes);
   if (mesh.creator.empty())
