@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 namespace molmesh::optimize {
 namespace {
@@ -29,17 +30,105 @@ bool fold_up(const DynamicMesh& m, const std::array<int32_t, 3>& a, const std::a
 
 } // namespace
 
-// Whether t and three triangles of beyond_, one across each of its edges, close a hole that is inside out.
-bool CrossingGuard::turns_over(const std::array<int32_t, 3>& t) const {
-  const auto across = [&](int k, int32_t apex) {
+// Whether a triangle of these vertices is there.
+bool CrossingGuard::is_there(std::array<int32_t, 3> v, uint32_t leaving) {
+  std::sort(v.begin(), v.end());
+  const auto same = [&](std::array<int32_t, 3> w) {
+    std::sort(w.begin(), w.end());
+    return v == w;
+  };
+  return std::any_of(now_.begin(), now_.end(), same) || std::any_of(near_.begin(), near_.end(), [&](Near& n) {
+           return same(n.triangle.v) && stays_near(n, leaving);
+         });
+}
+
+// Whether t is a side of a hole that is inside out: of four triangles, or of six, which are two tips over one
+// triangle. Those at t's edges are in beyond_.
+bool CrossingGuard::turns_over(const std::array<int32_t, 3>& t, uint32_t leaving) {
+  const auto across = [&](size_t k, int32_t apex) {
     return std::any_of(beyond_.begin(), beyond_.end(),
-                       [&](const Beyond& b) { return b.edge == k && b.apex == apex; });
+                       [&](const Beyond& b) { return b.edge == int(k) && b.apex == apex; });
   };
   const auto p = [&](int32_t v) { return m_.point[v]; };
   return std::any_of(beyond_.begin(), beyond_.end(), [&](const Beyond& b) {
-    return b.edge == 0 && across(1, b.apex) && across(2, b.apex) &&
-           !(orient3d(p(t[0]), p(t[1]), p(t[2]), p(b.apex)) > 0);
+    const auto i = size_t(b.edge), j = (i + 1) % 3, k = (i + 2) % 3;
+    if (across(j, b.apex) && across(k, b.apex))
+      return i == 0 && !(orient3d(p(t[0]), p(t[1]), p(t[2]), p(b.apex)) > 0);
+    // t[i] is a tip: its three triangles stand on t[j], t[k] and this one.
+    const auto third = std::find_if(beyond_.begin(), beyond_.end(), [&](const Beyond& c) {
+      return c.edge == int(j) && c.apex != b.apex && across(k, c.apex);
+    });
+    if (third == beyond_.end() || !is_there({b.apex, third->apex, t[j]}, leaving) ||
+        !is_there({b.apex, third->apex, t[k]}, leaving))
+      return false;
+    const auto part = [&](int32_t from, int32_t to) { return tet_volume(p(t[i]), p(from), p(to), p(b.apex)); };
+    return !(part(t[j], t[k]) + part(t[k], third->apex) + part(third->apex, t[j]) > 0);
   });
+}
+
+// Whether triangles at a tip, each with the same vertex beyond the edge opposite the tip, close a hole that is
+// inside out.
+bool CrossingGuard::is_inside_out(const std::vector<std::array<int32_t, 3>>& fan, int32_t tip,
+                                  int32_t other) const {
+  double volume = 0;
+  std::vector<int32_t> rim;
+  for (const auto& t : fan) {
+    volume += tet_volume(m_.point[t[0]], m_.point[t[1]], m_.point[t[2]], m_.point[other]);
+    std::copy_if(t.begin(), t.end(), std::back_inserter(rim), [&](int32_t v) { return v != tip; });
+  }
+  if (volume > 0)
+    return false;
+  std::sort(rim.begin(), rim.end());
+  for (size_t i = 0; i < rim.size(); i += 2)
+    if (rim[i] != rim[i + 1] || (i > 0 && rim[i] == rim[i - 1]))
+      return false; // it goes on elsewhere
+  return true;
+}
+
+bool CrossingGuard::fan_turns_over() const {
+  for (size_t k = 0; k < 3 && now_.size() > 2; ++k) {
+    const int32_t tip = now_[0][k], other = opposite_[0][k];
+    const auto beyond = [&](size_t i) {
+      const auto at = size_t(std::find(now_[i].begin(), now_[i].end(), tip) - now_[i].begin());
+      return at < 3 ? opposite_[i][at] : -1;
+    };
+    bool all = other >= 0;
+    for (size_t i = 1; all && i < now_.size(); ++i)
+      all = beyond(i) == other;
+    if (all && is_inside_out(now_, tip, other))
+      return true;
+  }
+  return false;
+}
+
+// Whether one of the fans of near_ closes such a hole.
+bool CrossingGuard::any_fan_turns_over() const {
+  std::vector<std::array<int32_t, 4>> edge, stand; // ends, triangle, corner opposite; tip, beyond, triangle, 0
+  for (size_t n = 0; n < near_.size(); ++n)
+    for (size_t k = 0; k < 3; ++k) {
+      const auto& v = near_[n].triangle.v;
+      const auto [low, high] = std::minmax(v[(k + 1) % 3], v[(k + 2) % 3]);
+      edge.push_back({low, high, int32_t(n), v[k]});
+    }
+  std::sort(edge.begin(), edge.end());
+  for (size_t i = 1; i < edge.size(); ++i) {
+    const auto &a = edge[i - 1], &b = edge[i];
+    if (a[0] == b[0] && a[1] == b[1]) {
+      stand.push_back({a[3], b[3], a[2], 0});
+      stand.push_back({b[3], a[3], b[2], 0});
+    }
+  }
+  std::sort(stand.begin(), stand.end());
+  std::vector<std::array<int32_t, 3>> fan;
+  for (size_t i = 0; i < stand.size(); ++i) {
+    fan.push_back(near_[size_t(stand[i][2])].triangle.v);
+    if (i + 1 < stand.size() && stand[i + 1][0] == stand[i][0] && stand[i + 1][1] == stand[i][1])
+      continue;
+    if (fan.size() > 2 && is_inside_out(fan, stand[i][0], stand[i][1]))
+      return true;
+    fan.clear();
+  }
+  return false;
 }
 
 // near_: what may stand in the way of any triangle of now_. Triangles of other parts change meanwhile, each in its
@@ -106,6 +195,7 @@ bool CrossingGuard::cross(uint32_t leaving) {
     return false;
   near_.clear();
   near_box_.clear();
+  opposite_.assign(now_.size(), {-1, -1, -1});
   gather_near(changes, around, false);
   gather_near(*free_, around, true);
   for (size_t i = 0; i < now_.size(); ++i) {
@@ -122,10 +212,12 @@ bool CrossingGuard::cross(uint32_t leaving) {
       for (uint32_t met = eight.met(now); met; met &= met - 1)
         if (crosses(now, near_[eight.id[std::countr_zero(met)]], leaving))
           return true;
-    if (turns_over(now.v))
+    if (turns_over(now.v, leaving))
       return true;
+    for (const Beyond& b : beyond_)
+      opposite_[i][size_t(b.edge)] = b.apex;
   }
-  return false;
+  return fan_turns_over();
 }
 
 void CrossingGuard::add_at(const std::vector<int32_t>& elements, int32_t v, int32_t without) {
@@ -148,6 +240,7 @@ void CrossingGuard::note_moved() {
 
 bool CrossingGuard::any_crosses(std::vector<int64_t> face) {
   par::sort_unique(face, 1);
+  clear();
   near_.clear();
   moved_.clear();
   OpenTable has_moved;
@@ -167,17 +260,17 @@ bool CrossingGuard::any_crosses(std::vector<int64_t> face) {
   });
   const BoxTree tree(near_.size(), [&](size_t n) { return near_[n].triangle; });
   // Each with those after it: the first of a hole's four has the others at its edges.
-  for (size_t i = 0; i < face.size(); ++i) {
+  bool crossing = false;
+  for (size_t i = 0; i < face.size() && !crossing; ++i) {
     const FreeTriangle& now = near_[i].triangle;
     beyond_.clear();
-    if (tree.any(
-            now, [&](size_t n) { return crosses(now, near_[n], 0); }, i + 1) ||
-        turns_over(now.v)) {
-      moved_.clear();
-      return true;
-    }
+    crossing = tree.any(
+                   now, [&](size_t n) { return crosses(now, near_[n], 0); }, i + 1) ||
+               turns_over(now.v, 0);
   }
-  return false;
+  if (crossing || any_fan_turns_over())
+    moved_.clear();
+  return moved_.empty() && !face.empty();
 }
 
 FreeTriangleChanges CrossingGuard::take_changes() const {

@@ -57,7 +57,11 @@ private:
   bool crosses(const FreeTriangle& now, Near& near, uint32_t leaving);
   void gather_near(const FreeTriangles& from, const Boxf& around, bool may_be_stale);
   bool stays_near(Near& n, uint32_t leaving) const;
-  bool turns_over(const std::array<int32_t, 3>& t) const;
+  bool is_there(std::array<int32_t, 3> v, uint32_t leaving);
+  bool turns_over(const std::array<int32_t, 3>& t, uint32_t leaving);
+  bool is_inside_out(const std::vector<std::array<int32_t, 3>>& fan, int32_t tip, int32_t other) const;
+  bool fan_turns_over() const;
+  bool any_fan_turns_over() const;
 
   const DynamicMesh& m_;
   const FreeTriangles* free_;
@@ -70,7 +74,8 @@ private:
   std::vector<Near> near_;
   std::vector<EightBoxes> near_box_; ///< of these; EightBoxes::id: index into near_
   std::vector<Beyond> beyond_;
-  std::vector<FreeTriangle> moved_; ///< of any_crosses(): known to cross none
+  std::vector<std::array<int32_t, 3>> opposite_; ///< now_: the apex across the edge opposite each vertex, -1: none
+  std::vector<FreeTriangle> moved_;              ///< of any_crosses(): known to cross none
 };
 
 } // namespace molmesh::optimize

@@ -349,3 +349,62 @@ TEST_CASE("a hole of four triangles is not turned inside out or closed, though n
   }
   CHECK(moved > 10);
 }
+
+TEST_CASE("a hole between two tips is not turned inside out, though none of its triangles crosses another") {
+  const Field ball = [](Vec3d p) { return std::exp(-0.8 * (norm2(p - Vec3d{4.9, 5.05, 5.1}) - 2.4 * 2.4)); };
+  TetMesh full = lattice_mesh(ball, {0, 0, 0}, 0.5, 20, 1);
+  const BlockGrid grid = lattice_grid(ball, {0, 0, 0}, 0.5, 20);
+  optimize::improve(full, &grid, {});
+  const optimize::DynamicMesh inner = optimize::build(full, 180, 1);
+  const auto place = [](const Tet& t, int32_t v) { return size_t(std::find(t.begin(), t.end(), v) - t.begin()); };
+  const double way = GENERATE(1.6, 0.6); // to beyond the other tip, or before it
+  int moved = 0, tried = 0;
+  for (size_t t = 0; t < full.tet.size() && tried < 200; ++t) {
+    const int32_t tip = full.tet[t][t % 4], other = full.tet[t][(t + 1) % 4];
+    std::vector<size_t> hole; // the ring of the edge between them: two triangles of each element
+    for (size_t u = 0; u < full.tet.size(); ++u)
+      if (place(full.tet[u], tip) < 4 && place(full.tet[u], other) < 4)
+        hole.push_back(u);
+    const bool is_inner = std::all_of(hole.begin(), hole.end(), [&](size_t u) {
+      return std::all_of(full.tet[u].begin(), full.tet[u].end(),
+                         [&](int32_t w) { return inner.vertex[w].kind == optimize::Kind::interior; });
+    });
+    if (!is_inner || hole.size() > 5)
+      continue;
+    TetMesh mesh = full;
+    const Vec3d middle = 0.5 * (full.point[tip] + full.point[other]),
+                half = 0.12 * (full.point[tip] - full.point[other]);
+    mesh.point[tip] = middle + half; // a flat hole
+    mesh.point[other] = middle - half;
+    for (const size_t u : hole)
+      for (const int32_t v : {tip, other}) {
+        const auto out = optimize::outward_triangle(full.tet[u], place(full.tet[u], v));
+        mesh.tri.push_back({out[0], out[2], out[1]});
+        mesh.boundary.push_back(Boundary::surface);
+      }
+    std::sort(hole.rbegin(), hole.rend());
+    for (const size_t u : hole) {
+      mesh.tet.erase(mesh.tet.begin() + std::ptrdiff_t(u));
+      mesh.region.pop_back();
+    }
+    if (std::any_of(mesh.tet.begin(), mesh.tet.end(), [&](const Tet& e) {
+          return tet_volume(mesh.point[e[0]], mesh.point[e[1]], mesh.point[e[2]], mesh.point[e[3]]) <= 0;
+        }))
+      continue;
+    ++tried;
+    optimize::DynamicMesh m = optimize::build(mesh, 180, 1);
+    Draw target;
+    target.from = m.point[tip];
+    target.to = middle + (1 - 2 * way) * half;
+    optimize::Schedule schedule(m, &target, 100, 1);
+    moved += schedule.project(1e-6f, {180, 1e3, 9, 0}).moves == 1;
+    double volume = 0;
+    for (const size_t u : hole)
+      volume += tet_volume(m.point[full.tet[u][0]], m.point[full.tet[u][1]], m.point[full.tet[u][2]],
+                           m.point[full.tet[u][3]]);
+    CAPTURE(hole.size());
+    CHECK(volume > 0);
+  }
+  CHECK(tried > 50);
+  CHECK(moved > (way < 1 ? 10 : -1));
+}
