@@ -14,7 +14,7 @@ struct Effect {
 Effect effect_of(Effort effort) {
   switch (effort) {
   case Effort::fast:
-    return {0.4e-6, 3e-6, 0.004, 2e6};
+    return {0.4e-6, 3e-6, 0.0025, 2e6};
   case Effort::best:
     return {1.6e-6, 15e-6, 0.045, 14e6};
   default:
@@ -33,7 +33,7 @@ Plan plan(const Work& work) {
   p.elements = work.elements;
   p.memory = std::llround(11e6 + 70 * n + 720 * surface + 2200 * static_cast<double>(work.blocks) +
                           (improves ? std::min(e.search, 100 * n) * work.threads : 0));
-  p.seconds = 0.03 + 3e-7 * n + (improves ? e.element * n + e.triangle * surface + e.split * split : 0);
+  p.seconds = 0.02 + 3e-7 * n + (improves ? e.element * n + e.triangle * surface + e.split * split : 0);
   return p;
 }
 
