@@ -25,7 +25,7 @@ std::string usual_colour(const TetMesh& m, const std::vector<CellLabel>& labels)
 
 picture::Colouring colouring_by(const std::string& name, const TetMesh& m, const TriangleSides& sides,
                                 const MeshBodies& bodies, const std::vector<CellLabel>& labels) {
-  picture::Colouring c{name, {}, {}};
+  picture::Colouring c{name, {}, {}, {}};
   if (name == "plain")
     return {};
   const CellLabel* const label = find_label(labels, name);
@@ -53,6 +53,9 @@ picture::Colouring colouring_by(const std::string& name, const TetMesh& m, const
     c.triangle.push_back(picture::label_colour(value));
   }
   const std::map<int32_t, std::string> regions = region_names(m);
+  if (name == "region")
+    for (const auto& [region, text] : regions)
+      c.region[region] = picture::label_colour(region - 1);
   std::vector<std::string> body_name; // "body 2", "cavity 1", counted in each region
   std::map<int32_t, int> pieces;
   for (const MeshBody& b : bodies.body)

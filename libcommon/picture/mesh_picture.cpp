@@ -104,7 +104,8 @@ Drawn facets(const TetMesh& m, const Colouring& colouring, const PictureOptions&
       const double share = range[1] > range[0]
                                ? (smallest_dihedral(m, static_cast<int64_t>(i)) - range[0]) / (range[1] - range[0])
                                : 1;
-      const Rgb colour = ramp_colour(share);
+      const auto of_region = colouring.region.find(m.region[i]);
+      const Rgb colour = of_region != colouring.region.end() ? of_region->second : ramp_colour(share);
       for (int f = 0; f < 4; ++f)
         d.scene.facet.push_back({{t[tet_face(f, 0)], t[tet_face(f, 1)], t[tet_face(f, 2)]}, colour, false});
     }
@@ -303,7 +304,7 @@ Image draw_mesh(const TetMesh& m, const Colouring& colouring, const PictureOptio
     Caption caption(image, size);
     caption.title(m, o.title);
     caption.legend(colouring);
-    if (drawn.cut)
+    if (drawn.cut && colouring.region.empty())
       caption.bar(range);
     caption.lengths(camera.scale);
   }

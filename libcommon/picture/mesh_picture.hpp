@@ -2,6 +2,7 @@
 #pragma once
 #include "mesh/tet_mesh.hpp"
 #include "picture/raster.hpp"
+#include <map>
 #include <optional>
 #include <string>
 
@@ -12,6 +13,7 @@ struct Colouring {
   std::string title;         ///< "chain"
   std::vector<Rgb> triangle; ///< [triangles]; empty: all plain
   std::vector<std::pair<std::string, Rgb>> legend;
+  std::map<int32_t, Rgb> region = {}; ///< of the tetrahedra at the cut; empty: by their smallest dihedral angle
 };
 
 /// What is taken away: cells of which all corners lie where every plane's dot(normal, x) > offset. One plane is a

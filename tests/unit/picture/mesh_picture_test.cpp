@@ -65,6 +65,12 @@ TEST_CASE("a cut takes cells away, keeps those that it passes through whole, and
   CHECK(pixels(cut, best) > 500);
   CHECK(pixels(cut, {40, 40, 200}) < surface);
 
+  Colouring by_region = c;
+  by_region.region[1] = {200, 40, 40};
+  const Image in_colour = draw_mesh(m, by_region, o, 1);
+  CHECK(pixels(in_colour, {200, 40, 40}) > 500);
+  CHECK(pixels(in_colour, best) == 0);
+
   o.cut.plane = {{{0, -1, 0}, -100}}; // all is beyond: nothing is left
   const Image none = draw_mesh(m, c, o, 1);
   CHECK(std::all_of(none.rgb.begin(), none.rgb.end(), [](uint8_t v) { return v == 255; }));
