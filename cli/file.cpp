@@ -46,6 +46,7 @@ int standard_stream(const std::string& path) {
 
 std::streamsize HeadKeepingBuffer::take(char* to, std::streamsize n) {
   const std::streamsize taken = from_->sgetn(to, n);
+  ended = ended || taken < n;
   if (head.size() < most)
     head.append(to, std::min(most - head.size(), static_cast<std::size_t>(taken)));
   return taken;
@@ -77,6 +78,10 @@ HeadKeepingBuffer& standard_input() {
 
 const std::string& head_of_standard_input() {
   return standard_input().head;
+}
+
+bool standard_input_was_empty() {
+  return standard_input().ended && standard_input().head.empty();
 }
 
 InputFile::InputFile(const std::string& path) : name_(path) {

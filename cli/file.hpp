@@ -23,6 +23,7 @@ public:
   explicit HeadKeepingBuffer(std::streambuf* from) : from_(from) {}
   static constexpr std::size_t most = 4096;
   std::string head;
+  bool ended = false; ///< there was nothing more to read
 
 protected:
   int_type underflow() override;
@@ -36,6 +37,9 @@ private:
 
 /// The first bytes of standard input, as far as they have been read.
 const std::string& head_of_standard_input();
+
+/// It was read, and held nothing: the program before in a pipe has stopped.
+bool standard_input_was_empty();
 
 /// "-" is standard input. Throws Error(bad_input) when the file cannot be opened or is a directory.
 class InputFile {

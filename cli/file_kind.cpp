@@ -193,6 +193,10 @@ FileKind file_kind(std::string_view head, uint64_t size) {
   return {};
 }
 
+FileKind empty_file() {
+  return {Kind::other, "an empty file", "has the program stopped that should have written it?"};
+}
+
 OpenedFile look_at_file(const std::string& path) {
   OpenedFile file;
   std::error_code error;
@@ -202,7 +206,7 @@ OpenedFile look_at_file(const std::string& path) {
   if (error)
     return file;
   if (size == 0)
-    return {{Kind::other, "an empty file", "has the program stopped that should have written it?"}, false};
+    return {empty_file(), false};
   std::string head(4096, '\0');
   if (const gzFile in = gzopen(path.c_str(), "rb")) { // reads other files as they are
     file.packed = gzdirect(in) == 0;

@@ -19,6 +19,9 @@ struct FileKind {
 /// head: the first bytes of the file, 4,096 are enough. size: of the whole file in bytes; 0: not known.
 FileKind file_kind(std::string_view head, uint64_t size = 0);
 
+/// Of a file of 0 bytes, or of a pipe that ended before its first.
+FileKind empty_file();
+
 struct OpenedFile {
   FileKind kind;
   bool packed = false; ///< by gzip; `kind` is that of what is in it

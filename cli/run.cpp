@@ -172,7 +172,9 @@ std::string with_kind(const Table& table, const std::string& message) {
         continue;
       const Kind wanted = wanted_kind(table, o);
       const auto& [found, packed] =
-          given == "-" ? OpenedFile{file_kind(head_of_standard_input()), false} : look_at_file(path);
+          given == "-"
+              ? OpenedFile{standard_input_was_empty() ? empty_file() : file_kind(head_of_standard_input()), false}
+              : look_at_file(path);
       const bool input = o.name == "input" && !table.page.files.empty();
       const auto says = [&](const std::string& text, const char* word) { return text.find(word) != text.npos; };
       const bool unpacks =
