@@ -76,9 +76,14 @@ void ForeignCells::spend(uint64_t bytes, const std::string& what) {
     in_.refuse("R8", "with " + what + " the values of cells take over 8 times the size of the file");
 }
 
+std::string no_tetrahedron(bool triangles, const std::string& way) {
+  return triangles ? "a surface, expected a mesh of tetrahedra: " + way : "no tetrahedron";
+}
+
 TetMesh ForeignCells::finish(const MeshReading& as) {
   if (m.tet.empty())
-    in_.refuse("R7", "no tetrahedron");
+    in_.refuse("R7", no_tetrahedron(!m.tri.empty(),
+                                    "fill it with tetrahedra first, as tetgen -pqg does, whose .mesh is read"));
   m.region.assign(m.tet.size(), 1);
   m.boundary.assign(m.tri.size(), 1);
   // Arrays of the names that we use ourselves, as in our own meshes that came through another program.

@@ -43,6 +43,10 @@ private:
 /// Values of tetrahedra and of triangles as one array.
 CellArray joined(std::string name, Values tets, Values triangles);
 
+/// What R7 says of a file without tetrahedra. triangles: it has some, so that it is a surface. way: what to do with
+/// that.
+std::string no_tetrahedron(bool triangles, const std::string& way);
+
 /// Points, tetrahedra and triangles of a file that is no .vtu; regions and labels are found by complete_mesh().
 class ForeignCells {
 public:

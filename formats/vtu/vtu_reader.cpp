@@ -1,6 +1,7 @@
 // vtu_reader.cpp — tetrahedra, triangles and labels out of a VTK unstructured grid (VTUv1.md).
 #include "base/error.hpp"
 #include "formats/read_all.hpp"
+#include "formats/vtu/cells.hpp"
 #include "formats/vtu/foreign.hpp"
 #include "formats/vtu/vtk_array.hpp"
 #include "formats/vtu/vtu.hpp"
@@ -63,7 +64,9 @@ public:
     for (size_t a = 0; a < m_.cell_array.size(); ++a)
       append(m_.cell_array[a], triangles_[a]);
     if (m_.tet.empty())
-      d_.refuse(d_.piece.front().line, "R7", "no tetrahedron");
+      d_.refuse(
+          d_.piece.front().line, "R7",
+          no_tetrahedron(!m_.tri.empty(), "open it in ParaView, which shows data of its points, as a potential"));
     if (m_.part.size() != m_.tet.size())
       m_.part.clear(); // pieces with and without
     read_field();
