@@ -2,6 +2,7 @@
 #include "formats/pdb/selection.hpp"
 #include "formats/hier/text.hpp"
 #include "formats/pdb/parse.hpp"
+#include "formats/pdb/selection_advice.hpp"
 #include "molecule/words.hpp"
 
 namespace molmesh::formats {
@@ -179,10 +180,11 @@ Selection::Selection(const std::string& text, const std::string& where, bool aro
                              (atoms.empty() ? "" : "/" + atoms) + extensions);
   } catch (const Error&) {
     throw;
-  } catch (const std::invalid_argument& e) {
-    fail(status, where + ": found selection " + in_quotes(text) + ", expected gemmi's syntax" + e.what());
   } catch (const std::exception& e) {
-    fail(status, where + ": found selection " + in_quotes(text) + ", expected gemmi's syntax" + reason(e.what()));
+    const bool own = dynamic_cast<const std::invalid_argument*>(&e) != nullptr;
+    const std::string meant = selection_advice(cid), why = own ? e.what() : reason(e.what());
+    fail(status, where + ": found selection " + in_quotes(text) + ", expected " +
+                     (meant.empty() ? "gemmi's syntax, as '//D', '//D/45-60' or '//D/(HEM)'" + why : meant));
   }
 }
 

@@ -172,6 +172,30 @@ TEST_CASE("Residues may be a list of numbers and ranges, their and atoms' names 
   }
 }
 
+TEST_CASE("a selection of residues that is no syntax is refused with the one that is meant") {
+  const auto expected = [](const std::string& selection) {
+    const std::string text = refusal(selection, hierarchy(), Status::usage);
+    const size_t at = text.find("expected ");
+    return at == std::string::npos ? text : text.substr(at + 9);
+  };
+  CHECK(expected("//H/ANS") == "names of residues in parentheses: '//H/(ANS)'");
+  CHECK(expected("//H/SO4,NAG/O1") == "names of residues in parentheses: '//H/(SO4,NAG)/O1'");
+  CHECK(expected("H/ANS") == "names of residues in parentheses: 'H/(ANS)'");
+  CHECK(expected("around //H/ANS 5.0") == "names of residues in parentheses: '//H/(ANS)'");
+  CHECK(expected("//H/HIS57,ASP102") == "numbers of residues without names: '//H/57,102'");
+  CHECK(expected("//H/HIS57-GLY60,102/CA") == "numbers of residues without names: '//H/57-60,102/CA'");
+  CHECK(expected("//H/SER221A") == "numbers of residues without names: '//H/221.A'");
+  CHECK(expected("!(NA)") == "'!' within the parentheses: '//*/(!NA)'");
+  CHECK(expected("//A/!(NA,CL)") == "'!' within the parentheses: '//A/(!NA,CL)'");
+  CHECK(expected("//A/!NA") == "'!' within the parentheses: '//A/(!NA)'");
+  CHECK(expected("//A///x/y").find("gemmi's syntax, as '//D'") == 0);
+  CHECK(expected("//A/x/y/z").find("gemmi's syntax, as '//D'") == 0);
+  CHECK(expected("//A/57,x-y").find("gemmi's syntax") == 0);
+  for (const char* fixed : {"//A/(ANS)", "//A/57,102", "//A/221.A", "//A/57-60,102/CA"})
+    CHECK(test::refusal(Status::bad_input, [&] { selected(fixed); }).find("some atom fits") != std::string::npos);
+  CHECK(selected("//*/(!ZN)") == "0 1 2 3 5");
+}
+
 TEST_CASE("a rule sets the weights of the residues in a hierarchy by their atoms, and P_R alone makes them 1") {
   Hierarchy h;
   h.level = {{"chain", {{"A", 1, 0, 3}}},
