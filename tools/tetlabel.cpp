@@ -57,6 +57,17 @@ void note_unseen(const cli::Run& run, const label::UnseenResidues& u, const std:
   run.note(line);
 }
 
+[[noreturn]] void refuse_empty(const std::vector<label::NamedBoundary>& boundary, size_t b,
+                               const label::Patches& patches, const std::string& mesh) {
+  const std::string which = "--boundary " + boundary[b].name + ": ";
+  std::string later;
+  for (const size_t l : patches.taken_by[b])
+    later += (later.empty() ? "" : ", ") + boundary[l].name;
+  fail_input(later.empty()
+                 ? which + "no triangle of " + mesh + "'s surface belongs to it, expected at least one"
+                 : which + "all its triangles belong to " + later + ", given later: expected it after " + later);
+}
+
 /// 0: auto.
 double parse_decay(const std::string& text) {
   if (text == "auto")
@@ -106,8 +117,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   std::map<int32_t, std::string> names;
   for (size_t b = 0; b < boundary.size(); ++b) {
     if (patches.count[b] == 0)
-      fail_input("--boundary " + boundary[b].name + ": no triangle of " + input.name() +
-                 "'s surface belongs to it, expected at least one");
+      refuse_empty(boundary, b, patches, input.name());
     run.counts["boundary " + boundary[b].name] = patches.count[b];
     note_unseen(run, label::unseen_residues(h, places, labels, boundary[b]), boundary[b].name);
     names[patches.first + static_cast<int32_t>(b)] = boundary[b].name;

@@ -64,13 +64,17 @@ Patches add_patches(TetMesh& m, const Places& places, const Labels& labels,
   for (const int32_t b : m.boundary)
     result.first = std::max(result.first, b + 1);
   result.count.assign(boundary.size(), 0);
+  result.taken_by.resize(boundary.size());
   for (auto i = static_cast<size_t>(places.tets); i < places.cell.size(); ++i) {
     const int32_t atom = labels.index.back()[i];
+    size_t winner = boundary.size();
     for (size_t b = boundary.size(); atom >= 0 && b-- > 0;)
-      if (boundary[b].atom[atom]) {
+      if (boundary[b].atom[atom] && winner < boundary.size())
+        result.taken_by[b].insert(winner);
+      else if (boundary[b].atom[atom]) {
+        winner = b;
         patch.integer[places.cell[i]] = result.first + static_cast<int32_t>(b);
         ++result.count[b];
-        break;
       }
   }
   m.cell_array.push_back(std::move(patch));

@@ -2,6 +2,7 @@
 #pragma once
 #include "label/label.hpp"
 #include "mesh/tet_mesh.hpp"
+#include <set>
 
 namespace molmesh::label {
 
@@ -27,6 +28,8 @@ struct NamedBoundary {
 struct Patches {
   int32_t first = 0;          ///< label of the first of them; the others follow
   std::vector<int64_t> count; ///< triangles of each
+  /// [boundaries] the later ones that have triangles of its atoms, ascending
+  std::vector<std::set<size_t>> taken_by;
 };
 
 /// Adds the Int32 cell array `patch`: 0 for tetrahedra, `boundary` for triangles, and for those whose atom is

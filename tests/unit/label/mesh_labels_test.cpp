@@ -54,6 +54,20 @@ void label_mesh(TetMesh& m, const std::vector<label::NamedBoundary>& boundary, l
 
 } // namespace
 
+TEST_CASE("a triangle of several boundaries is the last one's, and it is known who took those of an earlier one") {
+  TetMesh m = half_box();
+  label::Patches patches;
+  label_mesh(m, {{"upper", {0, 1}}, {"lower", {1, 0}}, {"none", {0, 0}}, {"all", {1, 1}}}, patches);
+  CHECK(patches.count[0] == 0);
+  CHECK(patches.count[3] == std::count(m.boundary.begin(), m.boundary.end(), Boundary::surface));
+  CHECK(patches.taken_by == std::vector<std::set<size_t>>{{3}, {3}, {}, {}});
+  TetMesh again = half_box();
+  label_mesh(again, {{"all", {1, 1}}, {"lower", {1, 0}}, {"upper", {0, 1}}}, patches);
+  CHECK(patches.count[0] == 0);
+  CHECK(patches.count[1] > 0);
+  CHECK(patches.taken_by == std::vector<std::set<size_t>>{{1, 2}, {}, {}});
+}
+
 TEST_CASE("Molecule and surface are labelled by what is nearest, nothing else is") {
   TetMesh m = half_box();
   label::Patches patches;
