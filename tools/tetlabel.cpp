@@ -1,11 +1,10 @@
 // tetlabel.cpp — a mesh (.vtu) and its structure (.hier) to the mesh with the structure's labels.
 #include "tools/options/tetlabel.hpp"
-#include "base/grouped.hpp"
 #include "cli/text.hpp"
 #include "formats/pdb/hier_selection.hpp"
 #include "formats/vtu/vtu.hpp"
-#include "label/unseen_residues.hpp"
 #include "molecule/words.hpp"
+#include "tools/boundary_notes.hpp"
 #include "tools/structure_labels.hpp"
 #include <algorithm>
 #include <cmath>
@@ -40,32 +39,6 @@ std::vector<label::NamedBoundary> select(const Options& o, const Hierarchy& h, c
       std::transform(atom.begin(), atom.end(), same->atom.begin(), same->atom.begin(), std::bit_or<>());
   }
   return boundary;
-}
-
-/// Buried residues, and those whose atoms others cover: a boundary condition does not reach them.
-void note_unseen(const cli::Run& run, const label::UnseenResidues& u, const std::string& name) {
-  constexpr size_t most = 6;
-  if (u.unseen.empty())
-    return;
-  std::string line = "boundary " + name + ": no triangle of the surface belongs to " +
-                     std::to_string(u.unseen.size()) + " of its " +
-                     cli::counted(u.residues, "residue", "residues") + ": ";
-  for (size_t i = 0; i < std::min(u.unseen.size(), most); ++i)
-    line += (i > 0 ? ", " : "") + u.unseen[i];
-  if (u.unseen.size() > most)
-    line += " and " + std::to_string(u.unseen.size() - most) + " more";
-  run.note(line);
-}
-
-[[noreturn]] void refuse_empty(const std::vector<label::NamedBoundary>& boundary, size_t b,
-                               const label::Patches& patches, const std::string& mesh) {
-  const std::string which = "--boundary " + boundary[b].name + ": ";
-  std::string later;
-  for (const size_t l : patches.taken_by[b])
-    later += (later.empty() ? "" : ", ") + boundary[l].name;
-  fail_input(later.empty()
-                 ? which + "no triangle of " + mesh + "'s surface belongs to it, expected at least one"
-                 : which + "all its triangles belong to " + later + ", given later: expected it after " + later);
 }
 
 /// 0: auto.
@@ -121,7 +94,7 @@ Status run_tool(const Options& o, cli::Run& run) {
     run.counts["boundary " + boundary[b].name] = patches.count[b];
     note_unseen(run, label::unseen_residues(h, places, labels, boundary[b]), boundary[b].name);
     names[patches.first + static_cast<int32_t>(b)] = boundary[b].name;
-    run.made += ", boundary " + boundary[b].name + ": " + grouped(patches.count[b]);
+    run.made += ", boundary " + boundary[b].name + ": " + counted_triangles(patches, b);
   }
   label::add_labels(mesh, places, std::move(labels));
   formats::add_level_names(mesh, h);

@@ -1,6 +1,7 @@
 // mesh_labels.cpp — takes centroids out of the mesh and puts labels into it.
 #include "label/mesh_labels.hpp"
 #include "base/error.hpp"
+#include "mesh/cavity_walls.hpp"
 #include "mesh/region_order.hpp"
 #include "par/par.hpp"
 #include <algorithm>
@@ -64,7 +65,9 @@ Patches add_patches(TetMesh& m, const Places& places, const Labels& labels,
   for (const int32_t b : m.boundary)
     result.first = std::max(result.first, b + 1);
   result.count.assign(boundary.size(), 0);
+  result.walls.assign(boundary.size(), 0);
   result.taken_by.resize(boundary.size());
+  const std::vector<uint8_t> wall = boundary.empty() ? std::vector<uint8_t>{} : cavity_walls(m);
   for (auto i = static_cast<size_t>(places.tets); i < places.cell.size(); ++i) {
     const int32_t atom = labels.index.back()[i];
     size_t winner = boundary.size();
@@ -75,6 +78,7 @@ Patches add_patches(TetMesh& m, const Places& places, const Labels& labels,
         winner = b;
         patch.integer[places.cell[i]] = result.first + static_cast<int32_t>(b);
         ++result.count[b];
+        result.walls[b] += wall[static_cast<size_t>(places.cell[i]) - m.tet.size()];
       }
   }
   m.cell_array.push_back(std::move(patch));

@@ -28,6 +28,7 @@ struct NamedBoundary {
 struct Patches {
   int32_t first = 0;          ///< label of the first of them; the others follow
   std::vector<int64_t> count; ///< triangles of each
+  std::vector<int64_t> walls; ///< of which on walls of closed cavities (mesh/cavity_walls.hpp)
   /// [boundaries] the later ones that have triangles of its atoms, ascending
   std::vector<std::set<size_t>> taken_by;
 };

@@ -68,6 +68,17 @@ TEST_CASE("a triangle of several boundaries is the last one's, and it is known w
   CHECK(patches.taken_by == std::vector<std::set<size_t>>{{1, 2}, {}, {}});
 }
 
+TEST_CASE("triangles of a boundary on walls of closed cavities are counted") {
+  TetMesh m = testing::cubes(7, [](Vec3i p) {
+    const bool inside = std::min({p.x, p.y, p.z}) >= 1 && std::max({p.x, p.y, p.z}) <= 5;
+    return p == Vec3i{3, 3, 3} ? 3 : inside ? 1 : 2;
+  });
+  label::Patches patches;
+  label_mesh(m, {{"all", {1, 1}}, {"none", {0, 0}}}, patches);
+  CHECK(patches.count == std::vector<int64_t>{2 * (6 * 25 + 6), 0});
+  CHECK(patches.walls == std::vector<int64_t>{2 * 6, 0});
+}
+
 TEST_CASE("Molecule and surface are labelled by what is nearest, nothing else is") {
   TetMesh m = half_box();
   label::Patches patches;
