@@ -186,6 +186,7 @@ def prepare(page, folder):
     shell("""pdb2hier -q 1tii.pdb -o 1tii.hier && hier2density -q --spacing 2 1tii.hier -o 1tii.vdb
         density2tet -q 1tii.vdb -o 1tii.tet.vtu && tetsmooth -q --density 1tii.vdb 1tii.tet.vtu -o 1tii.vtu
         tetlabel -q 1tii.vtu 1tii.hier -o 1tii.labels.vtu
+        pdb2hier -q X.pqr -o X.hier && hier2density -q X.hier | density2tet -q -o X.vtu
         mkdir FOLDER && cp 1tii.vtu FOLDER/a.vtu && cp 1tii.vtu FOLDER/b.vtu
         for name in FILAMENT MEMBRANE PAIR; do printf 'join 1\\npiece MODEL.hier\\npiece OTHER.hier\\n' >$name.join; done
         printf 'join 1\\npiece MODEL.vdb\\npiece MODEL.vdb translate=60,0,0\\n' >LATTICE.join

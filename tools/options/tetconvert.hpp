@@ -32,11 +32,12 @@ inline void describe(cli::Table& t, Options& o) {
       "become the format's own tags: region 1 is 1, boundary 1 is 11, so that no two have one number. What a "
       "format has "
       "no place for is said on standard error. A format of several files is named by any of them.";
-  t.page.examples = {{"tetconvert 1tii.vtu -o 1tii.msh", "for Gmsh, with physical groups and their names"},
-                     {"tetconvert 1tii.vtu -o 1tii.xdmf", "for DOLFINx: writes 1tii.xdmf and 1tii.h5"},
-                     {"tetconvert --charges 1tii.hier 1tii.vtu -o 1tii.mesh", "for FreeFEM, with 1tii.charges"},
-                     {"tetconvert 1tii.vtu -o 1tii.stl", "the molecular surface alone"},
-                     {"tetconvert --scale 10 PART.msh -o part.vtu", "a mesh of Gmsh in nanometres as .vtu in Å"}};
+  t.page.examples = {
+      {"tetconvert 1tii.vtu -o 1tii.msh", "for Gmsh, with physical groups and their names"},
+      {"tetconvert 1tii.vtu -o 1tii.xdmf", "for DOLFINx: writes 1tii.xdmf and 1tii.h5"},
+      {"tetconvert --charges X.hier X.vtu -o X.mesh", "for FreeFEM, with X.charges; X.hier is of a PQR file"},
+      {"tetconvert 1tii.vtu -o 1tii.stl", "the molecular surface alone"},
+      {"tetconvert --scale 10 PART.msh -o part.vtu", "a mesh of Gmsh in nanometres as .vtu in Å"}};
   t.page.files = {{".vtu", "mesh (VTK), read and written: formats/vtu/VTUv1.md"},
                   {".msh, .msh2", "Gmsh 4.1 and 2.2, read and written: formats/gmsh/GMSH.md"},
                   {".mesh", "MEDIT, for FreeFEM and Mmg, read and written: formats/medit/MEDIT.md"},
