@@ -282,8 +282,10 @@ Image draw_mesh(const TetMesh& m, const Colouring& colouring, const PictureOptio
           low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
       }
   const double size = std::clamp(o.raster.height / 52., 9., 60.);
-  const double border = o.caption ? 1.5 * size : 0.03 * o.raster.width, foot = o.caption ? 5.2 * size : border,
-               head = o.caption ? 4.2 * size : border;
+  // As below: something is left for the mesh.
+  const bool caption_fits = o.caption && o.raster.height > 9.4 * size && o.raster.width > 3 * size;
+  const double border = caption_fits ? 1.5 * size : std::min(0.03 * o.raster.width, 0.1 * o.raster.height),
+               foot = caption_fits ? 5.2 * size : border, head = caption_fits ? 4.2 * size : border;
   if (low[0] <= high[0]) {
     const double width = std::max(high[0] - low[0], 1e-9), height = std::max(high[1] - low[1], 1e-9);
     camera.scale = std::min((o.raster.width - 2 * border) / width, (o.raster.height - head - foot) / height);
@@ -300,7 +302,7 @@ Image draw_mesh(const TetMesh& m, const Colouring& colouring, const PictureOptio
     drawn.scene.edge_opacity = std::clamp((pixels - 2) / 10, 0., 0.6);
   }
   Image image = draw_scene(drawn.scene, o.raster, threads);
-  if (o.caption) {
+  if (caption_fits) {
     Caption caption(image, size);
     caption.title(m, o.title);
     caption.legend(colouring);

@@ -39,7 +39,7 @@ struct PictureOptions {
   Cut cut;
   std::vector<int32_t> region; ///< what is shown of the mesh
   bool edges = true;
-  bool caption = true; ///< title, legend, bar of lengths
+  bool caption = true; ///< title, legend, bar of lengths; none where the picture is too small for them
   std::string title;
 };
 

@@ -162,3 +162,21 @@ TEST_CASE("text leaves ink where its glyphs are, and as much as their outlines e
   CHECK(text_width(cut, 10) <= 60);
   CHECK(cut.substr(cut.size() - 3) == "…");
 }
+
+TEST_CASE("a picture too small for its caption shows the mesh without it") {
+  const TetMesh m = ball_in_box();
+  PictureOptions o = plain_options();
+  o.caption = true;
+  o.title = "ball";
+  for (const auto& [width, height] : std::vector<std::array<int, 2>>{
+           {64, 64}, {160, 80}, {160, 85}, {64, 100}, {600, 64}, {64, 2000}, {150, 2000}}) {
+    INFO(width << " x " << height);
+    o.raster.width = width;
+    o.raster.height = height;
+    o.caption = true;
+    const Image with = draw_mesh(m, {"test", {}, {}}, o, 1);
+    o.caption = false;
+    CHECK((with.rgb == draw_mesh(m, {"test", {}, {}}, o, 1).rgb) ==
+          (height < 85 || (width == 64 && height == 2000)));
+  }
+}
