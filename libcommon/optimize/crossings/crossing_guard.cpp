@@ -71,16 +71,16 @@ bool CrossingGuard::turns_over(const std::array<int32_t, 3>& t, uint32_t leaving
 bool CrossingGuard::is_inside_out(const std::vector<std::array<int32_t, 3>>& fan, int32_t tip,
                                   int32_t other) const {
   double volume = 0;
-  std::vector<int32_t> rim;
+  std::vector<int32_t> border;
   for (const auto& t : fan) {
     volume += tet_volume(m_.point[t[0]], m_.point[t[1]], m_.point[t[2]], m_.point[other]);
-    std::copy_if(t.begin(), t.end(), std::back_inserter(rim), [&](int32_t v) { return v != tip; });
+    std::copy_if(t.begin(), t.end(), std::back_inserter(border), [&](int32_t v) { return v != tip; });
   }
   if (volume > 0)
     return false;
-  std::sort(rim.begin(), rim.end());
-  for (size_t i = 0; i < rim.size(); i += 2)
-    if (rim[i] != rim[i + 1] || (i > 0 && rim[i] == rim[i - 1]))
+  std::sort(border.begin(), border.end());
+  for (size_t i = 0; i < border.size(); i += 2)
+    if (border[i] != border[i + 1] || (i > 0 && border[i] == border[i - 1]))
       return false; // it goes on elsewhere
   return true;
 }

@@ -79,7 +79,7 @@ struct Growth {
 };
 Growth growth(const std::function<void()>& one, const std::function<void()>& four) {
   Growth g;
-  for (int i = 0; i < 5 && (i == 0 || !g.is_linear()); ++i) {
+  for (int i = 0; i < 10 && (i == 0 || !g.is_linear()); ++i) {
     g.one = std::min(g.one, seconds(one));
     g.four = std::min(g.four, seconds(four));
   }
