@@ -174,9 +174,9 @@ TEST_CASE("Residues may be a list of numbers and ranges, their and atoms' names 
 
 TEST_CASE("a selection of residues that is no syntax is refused with the one that is meant") {
   const auto expected = [](const std::string& selection) {
-    const std::string text = refusal(selection, hierarchy(), Status::usage);
-    const size_t at = text.find("expected ");
-    return at == std::string::npos ? text : text.substr(at + 9);
+    const std::string line = refusal(selection, hierarchy(), Status::usage);
+    const size_t at = line.find("expected ");
+    return at == std::string::npos ? line : line.substr(at + 9);
   };
   CHECK(expected("//H/ANS") == "names of residues in parentheses: '//H/(ANS)'");
   CHECK(expected("//H/SO4,NAG/O1") == "names of residues in parentheses: '//H/(SO4,NAG)/O1'");
