@@ -1,5 +1,6 @@
 // hier_reader.cpp — .hier in blocks of whole lines; every rule of HIERv1.md and HIERv2.md that a reader must check.
 #include "base/error.hpp"
+#include "base/shortest.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/hier/text.hpp"
 #include "molecule/limits.hpp"
@@ -60,11 +61,6 @@ bool short_decimal(std::string_view f, double& value) {
   if (negative)
     value = -value;
   return true;
-}
-
-std::string shortest(double v) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), v).ptr};
 }
 
 /// The entries of short names, found without hashing a string: atoms come in a few dozen kinds.

@@ -3,6 +3,7 @@
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/selection.hpp"
 #include "geom/near_points.hpp"
+#include "molecule/find_level.hpp"
 #include "molecule/grouping.hpp"
 #include "molecule/molecular_body.hpp"
 #include "molecule/words.hpp"
@@ -36,13 +37,6 @@ std::string copied(const std::string& name, const std::set<std::string>& chains)
     return name;
   const std::string base = name.substr(0, bar);
   return chains.count(base) == 0 && chains.count(base + "_1") && chains.count(base + "_2") ? base : name;
-}
-
-size_t find_level(const Hierarchy& h, const char* name) {
-  size_t l = 0;
-  while (l < h.level.size() && h.level[l].name != name)
-    ++l;
-  return l;
 }
 
 /// Sets `chosen` of all atoms of the groups of level l that take(group) does not take to 0.

@@ -1,6 +1,7 @@
 // pqr.cpp — PQR: atoms with charge and radius. Fields between blanks, as APBS reads them; where coordinates run
 // together, the columns of the PDB format. GROMACS and Open Babel add the element.
 #include "base/error.hpp"
+#include "base/shortest.hpp"
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/model_names.hpp"
 #include "formats/pdb/parse.hpp"
@@ -33,11 +34,6 @@ bool has_gromacs_columns(std::string_view line) {
   return line.size() >= 66 &&
          std::all_of(points.begin(), points.end(), [&](size_t at) { return line[at] == '.'; }) &&
          std::all_of(blanks.begin(), blanks.end(), [&](size_t at) { return line[at] == ' '; });
-}
-
-std::string shortest(double v) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), v).ptr};
 }
 
 class PqrLines {

@@ -3,16 +3,13 @@
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/selection.hpp"
 #include "molecule/words.hpp"
+#include <algorithm>
 #include <vector>
 
 namespace molmesh::formats {
 namespace {
 
 using std::string_view;
-
-bool is_letter(char c) {
-  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
-}
 
 /// As "ANS" or "SO4". Numbers, and numbers with an insertion code, are none.
 bool is_name(string_view s) {

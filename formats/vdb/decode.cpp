@@ -1,10 +1,10 @@
 // decode.cpp — OpenVDB file versions 222 to 224, as written by OpenVDB 2 to 10 to a file or a stream.
 #include "formats/vdb/decode.hpp"
 #include "base/error.hpp"
+#include "base/shortest.hpp"
 #include <array>
 #include <bit>
 #include <blosc.h>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <zlib.h>
@@ -215,12 +215,8 @@ void tree(Cursor& in, FloatGrid& grid) {
   }
 }
 
-/// As short as it is exact: to_string() writes 300 digits.
 std::string number_text(double v) {
-  if (v != v)
-    return "NaN"; // without a sign
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, v).ptr};
+  return v != v ? "NaN" : shortest(v); // without a sign
 }
 
 void transform(Cursor& in, FloatGrid& grid) {

@@ -1,5 +1,6 @@
 // unseen_residues.cpp — marks the atoms that own triangles, then looks at the atoms of each residue.
 #include "label/unseen_residues.hpp"
+#include "molecule/find_level.hpp"
 #include "molecule/grouping.hpp"
 #include <algorithm>
 
@@ -17,12 +18,6 @@ std::vector<int64_t> first_atoms(const Hierarchy& h, size_t level) {
   }
   first.push_back(static_cast<int64_t>(h.atom.size()));
   return first;
-}
-
-size_t find_level(const Hierarchy& h, const char* name) {
-  const auto found =
-      std::find_if(h.level.begin(), h.level.end(), [&](const Level& level) { return level.name == name; });
-  return static_cast<size_t>(found - h.level.begin());
 }
 
 /// "ASP:102" of chain A as "//A/102(ASP)".

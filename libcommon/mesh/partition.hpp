@@ -8,8 +8,8 @@ namespace molmesh {
 /// Parts of fewer than 20 tetrahedra are runs of equal length along a Hilbert curve.
 /// [tets] Part, 0 … parts - 1, of the dual graph (tetrahedra that share a face), by METIS k-way with a fixed seed.
 /// Exactly as many parts as asked for, or as tetrahedra where those are fewer; none is empty. across [4 tets]: the
-/// tetrahedron on the other side of each face, -1: none; found here when empty. Same
-/// result at any number of threads. Throws Error(failed) when METIS gives up.
+/// tetrahedron on the other side of each face, -1: none; found here when empty. Same result at
+/// any number of threads. Throws Error(failed) when METIS gives up.
 std::vector<int32_t> partition(const TetMesh& m, int parts, int threads, LargeArray<int32_t> across = {});
 
 } // namespace molmesh

@@ -103,7 +103,8 @@ bool CrossingGuard::fan_turns_over() const {
 
 // Whether one of the fans of near_ closes such a hole.
 bool CrossingGuard::any_fan_turns_over() const {
-  std::vector<std::array<int32_t, 4>> edge, stand; // ends, triangle, corner opposite; tip, beyond, triangle, 0
+  std::vector<std::array<int32_t, 4>> edge;  // ends, triangle, corner opposite
+  std::vector<std::array<int32_t, 3>> stand; // tip, beyond, triangle
   for (size_t n = 0; n < near_.size(); ++n)
     for (size_t k = 0; k < 3; ++k) {
       const auto& v = near_[n].triangle.v;
@@ -114,8 +115,8 @@ bool CrossingGuard::any_fan_turns_over() const {
   for (size_t i = 1; i < edge.size(); ++i) {
     const auto &a = edge[i - 1], &b = edge[i];
     if (a[0] == b[0] && a[1] == b[1]) {
-      stand.push_back({a[3], b[3], a[2], 0});
-      stand.push_back({b[3], a[3], b[2], 0});
+      stand.push_back({a[3], b[3], a[2]});
+      stand.push_back({b[3], a[3], b[2]});
     }
   }
   std::sort(stand.begin(), stand.end());
@@ -268,9 +269,10 @@ bool CrossingGuard::any_crosses(std::vector<int64_t> face) {
                    now, [&](size_t n) { return crosses(now, near_[n], 0); }, i + 1) ||
                turns_over(now.v, 0);
   }
-  if (crossing || any_fan_turns_over())
-    moved_.clear();
-  return moved_.empty() && !face.empty();
+  if (!crossing && !any_fan_turns_over())
+    return false;
+  moved_.clear();
+  return true;
 }
 
 FreeTriangleChanges CrossingGuard::take_changes() const {
