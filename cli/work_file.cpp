@@ -47,7 +47,7 @@ WorkFile::WorkFile(const std::string& target, Name name) : target_(target), fold
       fd_ = -1;
     }
   }
-  if (fd_ < 0 && !make_named(0666))
+  if (fd_ < 0 && !make_named())
     return;
   if (replaces && !note(fchmod(fd_, old.st_mode & 07777) == 0))
     return;
@@ -66,21 +66,28 @@ bool WorkFile::note(bool good) {
   return good;
 }
 
-bool WorkFile::make_named(unsigned mode) {
+template <class Make>
+bool WorkFile::take_random_name(Make&& make) {
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     name_ = random_name(folder_);
-    if (!note(!name_.empty()))
-      return false;
+    if (name_.empty())
+      break;
     temporary_ = std::make_unique<Temporary>(name_); // before the file: a signal may come between
-    fd_ = open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
-    if (fd_ >= 0)
+    if (make(name_.c_str()))
       return true;
-    temporary_->keep();
+    temporary_->keep(); // it is another's
     temporary_ = nullptr;
     if (errno != EEXIST)
       break;
   }
   return note(false);
+}
+
+bool WorkFile::make_named() {
+  return take_random_name([&](const char* name) {
+    fd_ = open(name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    return fd_ >= 0;
+  });
 }
 
 bool WorkFile::write_out(const char* from, std::streamsize n) {
@@ -128,19 +135,9 @@ bool WorkFile::complete() {
 }
 
 bool WorkFile::link_named() {
-  for (int attempt = 0; attempt < most_attempts; ++attempt) {
-    name_ = random_name(folder_);
-    if (name_.empty())
-      break;
-    temporary_ = std::make_unique<Temporary>(name_);
-    if (linkat(AT_FDCWD, open_name(fd_).c_str(), AT_FDCWD, name_.c_str(), AT_SYMLINK_FOLLOW) == 0)
-      return true;
-    temporary_->keep();
-    temporary_ = nullptr;
-    if (errno != EEXIST)
-      break;
-  }
-  return note(false);
+  return take_random_name([&](const char* name) {
+    return linkat(AT_FDCWD, open_name(fd_).c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
+  });
 }
 
 bool WorkFile::publish() {

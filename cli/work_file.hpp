@@ -32,7 +32,9 @@ protected:
   int sync() override;
 
 private:
-  bool make_named(unsigned mode);
+  template <class Make> ///< make(name): whether it could be made
+  bool take_random_name(Make&& make);
+  bool make_named();
   bool link_named();
   bool write_out(const char* from, std::streamsize n);
   bool note(bool good);
