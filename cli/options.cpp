@@ -141,6 +141,16 @@ std::string unknown_option(const Table& table, int argc, char** argv) {
   return {};
 }
 
+/// Of arguments beyond those that the program takes: "b.vdb: one argument too many, expected input".
+std::string too_many(const Table& table, const std::vector<std::string>& beyond) {
+  std::string takes;
+  for (const Option& o : table.options)
+    if (o.argument)
+      takes += (takes.empty() ? "" : " and ") + o.name;
+  return beyond.front() + ": one argument too many, expected " + (takes.empty() ? "options alone" : takes) +
+         (table.page.several.empty() ? "" : "; " + table.page.several);
+}
+
 /// What is wrong with the command line: of a number outside its range, the range as the help shows it.
 std::string plain_error(const Table& table, const CLI::ParseError& e) {
   const std::string text = e.what();
@@ -269,8 +279,10 @@ int parse(Table& table, int argc, char** argv) {
     return print(app.version() + '\n');
   } catch (const CLI::ParseError& e) {
     note_given();
-    const std::string unknown = dynamic_cast<const CLI::ExtrasError*>(&e) ? unknown_option(table, argc, argv) : "";
-    return refuse(unknown.empty() ? plain_error(table, e) : unknown);
+    if (!dynamic_cast<const CLI::ExtrasError*>(&e))
+      return refuse(plain_error(table, e));
+    const std::string unknown = unknown_option(table, argc, argv);
+    return refuse(unknown.empty() ? too_many(table, app.remaining()) : unknown);
   }
 }
 

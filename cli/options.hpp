@@ -65,6 +65,7 @@ struct Page {
   std::vector<Example> examples;
   std::vector<File> files;
   std::vector<std::string> see_also; ///< programs
+  std::string several;               ///< how to name more than one input, where a user may try
 };
 
 class Table {

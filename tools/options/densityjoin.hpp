@@ -55,6 +55,7 @@ inline void describe(cli::Table& t, Options& o) {
       {"densityjoin --piece ALL.vdb --piece 'PORE.vdb combine=subtract' -o open.vdb", "one body without another"}};
   t.page.files = {{".join", "plan of pieces, read: formats/plan/PLAN.md"},
                   {".vdb", "density grids (OpenVDB), read and written: formats/vdb/VDBv1.md"}};
+  t.page.several = "name several with --piece each";
   t.page.see_also = {"hier2density", "density2tet"};
 }
 

@@ -47,6 +47,7 @@ inline void describe(cli::Table& t, Options& o) {
       {".join", "plan, read: formats/join/JOINv1.md"},
       {".hier", "molecular hierarchy, read and written: formats/hier/HIERv1.md, formats/hier/HIERv2.md"},
       {".pdb, .cif", "structure with an assembly, read where the plan names one: formats/pdb/PDB.md"}};
+  t.page.several = "several stand in a plan, a line each";
   t.page.see_also = {"pdb2hier", "hier2density"};
 }
 
