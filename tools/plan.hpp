@@ -65,6 +65,24 @@ inline void add_improvement(cli::Value& plan, const optimize::Plan& p, double sp
   plan.add({{"elements", p.elements}, {"memory_bytes", p.memory}, {"seconds", p.seconds / speed}});
 }
 
+/// Of a plan's grid, or of the cubes that stand for it. meshed: both.
+inline contour::Leaves leaves_of(const density::Plan& plan, contour::Options options) {
+  if (plan.sample.empty())
+    return contour::count_leaves(to_block_grid(plan.band, options.threads), options);
+  contour::Leaves all;
+  options.box.kind = contour::BoxRequest::corners;
+  for (const density::PlanSample& s : plan.sample) {
+    options.box.lower = s.low;
+    options.box.upper = s.high;
+    const BlockGrid grid = to_block_grid(s.band, options.threads);
+    const auto inside = [&](float v) { return v > static_cast<float>(grid.info.isovalue); };
+    if (std::any_of(grid.value.begin(), grid.value.end(), inside) &&
+        !std::all_of(grid.value.begin(), grid.value.end(), inside)) // else no surface
+      all.add(contour::count_leaves(grid, options), s.weight);
+  }
+  return all;
+}
+
 /// hier2density: with --plan writes what all three programs take and returns true. Throws Error(failed) where the
 /// memory is too small.
 inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, const density::Options& d,
@@ -86,7 +104,7 @@ inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, 
     if (limit < 0 || (d.grid_points == 0 && bound <= limit))
       return false;
   }
-  density::Plan plan = density::plan(h, d);
+  const density::Plan plan = density::quick_plan(h, d);
   const density::GridSize own = density::part_of(plan, d.tile);
   const density::Cost cost = density::cost(own, atoms);
   if (!p.plan) {
@@ -111,7 +129,7 @@ inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, 
   Options both;
   both.meshed = Options::both;
   both.threads = d.threads;
-  const Chain counted{plan.counted, contour::count_leaves(to_block_grid(plan.band, d.threads), both)};
+  const Chain counted{plan.counted, leaves_of(plan, both)};
   const Chain chain = counted.at(plan.size.spacing);
   for (const auto& [region, meshed] :
        {std::pair{"interior", Options::interior}, std::pair{"both", Options::both}}) {

@@ -18,6 +18,14 @@ struct Leaves {
   Leaves times(double share) const {
     return {share * all, share * inside, halvings, adapt, share * surface, split};
   }
+  /// Of a part of the structure that is as so many.
+  void add(const Leaves& part, double weight) {
+    all += weight * part.all;
+    inside += weight * part.inside;
+    surface += weight * part.surface;
+    split += weight * part.split;
+    adapt = part.adapt;
+  }
 };
 
 /// The octrees of one grid. Throws as contour().

@@ -73,6 +73,11 @@ void check_values(BandBlocks blocks) {
 
 } // namespace
 
+void check(const Options& o, double h) {
+  check_band(o);
+  check_spacing(o, h);
+}
+
 Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const BandFinder& find) {
   if (!all_have_bodies(hierarchy))
     return compute(bodies_of(hierarchy).hierarchy, o, counts, find);

@@ -22,6 +22,9 @@ struct Options {
   BandSink take; ///< receives the band's blocks; the returned Band is then empty. Empty: the band keeps them
 };
 
+/// What compute() refuses of the options, at a grid's spacing of h Å. Throws Error(usage).
+void check(const Options& options, double h);
+
 struct Counts {
   SearchCounts search;
   double margin = 0; ///< Å, as used

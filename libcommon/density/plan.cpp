@@ -1,5 +1,6 @@
 // plan.cpp — counts a coarse band; how the surface grows with the resolution is measured on many structures.
 #include "density/plan.hpp"
+#include "density/sampled_plan.hpp"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -25,6 +26,8 @@ constexpr double points_of_sphere = 45; // for each Å² of its radius squared
 constexpr double largest_radius = 6;    // Å, of beads that stand for groups of atoms
 constexpr double points_of_area = points_of_sphere / (4 * std::numbers::pi);
 constexpr double points_of_great = 1e7; // of bodies without atoms
+constexpr double countable = 3e6;
+constexpr double coarsest = 1.5; // Å, where atoms show
 
 /// Between two spacings along ln h, beyond the table as between its last two.
 double interpolated(double Grown::*ln, double spacing) {
@@ -162,11 +165,31 @@ bool of_great_balls(const Hierarchy& hierarchy) {
   return bodies > points_of_great || atoms > 100 * static_cast<double>(hierarchy.atom.size());
 }
 
+namespace {
+
+double countable_spacing(double spacing, double most_points, double most_spacing) {
+  while (spacing * 2 <= most_spacing && most_points / (spacing * spacing) > countable)
+    spacing *= 2;
+  return spacing;
+}
+
+} // namespace
+
+double counted_spacing(double spacing, int64_t atoms) {
+  return countable_spacing(spacing, points_of_atom * double(atoms), coarsest);
+}
+
+Plan quick_plan(const Hierarchy& hierarchy, const Options& options) {
+  constexpr size_t many = 2'000'000; // all of less is counted in seconds
+  constexpr int64_t sampled = 1'500'000;
+  if (hierarchy.atom.size() > many)
+    if (std::optional<Plan> p = sampled_plan(hierarchy, options, sampled))
+      return std::move(*p);
+  return plan(hierarchy, options);
+}
+
 Plan plan(const Hierarchy& hierarchy, const Options& options) {
-  constexpr double countable = 3e6;
   const bool smooth = of_great_balls(hierarchy);
-  const double coarsest = smooth ? HUGE_VAL : 1.5;
-  const double most = smooth ? most_active_points(hierarchy) : points_of_atom * double(hierarchy.atom.size());
   Options o = options;
   o.progress = {};
   o.take = {};
@@ -197,9 +220,8 @@ Plan plan(const Hierarchy& hierarchy, const Options& options) {
               (static_cast<double>(options.grid_points) - walls);
     o.grid_points = 0;
   }
-  o.spacing = spacing;
-  while (o.spacing * 2 <= coarsest && most / (o.spacing * o.spacing) > countable)
-    o.spacing *= 2;
+  o.spacing = smooth ? countable_spacing(spacing, most_active_points(hierarchy), HUGE_VAL)
+                     : counted_spacing(spacing, std::ssize(hierarchy.atom));
   o.any_values = o.spacing > spacing;
   count();
   if (o.any_values)

@@ -31,10 +31,18 @@ struct Cost {
 };
 Cost cost(const GridSize& size, int64_t atoms);
 
+/// A cube of a grid too large to count.
+struct PlanSample {
+  Band band;
+  Vec3d low, high;   ///< Å, on planes of its grid
+  double weight = 0; ///< what it holds times this, summed over the samples, is what the whole holds
+};
+
 struct Plan {
-  GridSize size, counted; ///< of the run, and of the grid that was counted: the run's own, or a coarser one
-  Band band;              ///< of the counted grid
-  double margin = 0;      ///< Å
+  GridSize size, counted;         ///< of the run, and of the grid that was counted: the run's own, or a coarser one
+  Band band;                      ///< of the counted grid; empty with samples
+  std::vector<PlanSample> sample; ///< instead of the whole
+  double margin = 0;              ///< Å
 };
 
 /// What a tile of the planned grid holds, as the counted band is distributed.
@@ -43,5 +51,9 @@ GridSize part_of(const Plan& plan, Tile tile);
 /// Counts the band on a grid of h, 2h, 4h, …, the first of some three million active points, and but for great
 /// balls no coarser than 1.5 Å where h is finer; throws as compute().
 Plan plan(const Hierarchy& hierarchy, const Options& options);
+/// The grid of plan() for so many atoms that are no great balls.
+double counted_spacing(double spacing, int64_t atoms);
+/// The same, of millions of atoms from samples.
+Plan quick_plan(const Hierarchy& hierarchy, const Options& options);
 
 } // namespace molmesh::density
