@@ -224,6 +224,78 @@ TEST_CASE("three decimals are written as three decimals") {
   CHECK(std::stod(number(0.1 + 0.2)) == 0.1 + 0.2);
 }
 
+TEST_CASE("numbers of every length and form are those of strtod, the last bit too") {
+  std::vector<std::string> texts = {"0",        "-0",      "-0.0",      "5.",        ".5",      "-.5",
+                                    "00012.50", "1234567", "123456.7",  "1234567.8", "1e-3",    "-1E+4",
+                                    "1.5e2",    "0.1",     "9.9999999", "1e-300",    "4.9e-324"};
+  std::mt19937 random(3);
+  for (int i = 0; i < 20'000; ++i) { // with a point anywhere, or none
+    std::string t;
+    const auto n = 1 + random() % 18, point = random() % (n + 1);
+    for (unsigned k = 0; k < n; ++k)
+      t += std::string(k == point ? "." : "") + static_cast<char>('0' + random() % 10);
+    if (std::abs(std::stod(t)) <= 1e7)
+      texts.push_back((random() % 2 ? "-" : "") + t);
+  }
+  std::string text = "hier 1\nlevels\n";
+  for (size_t i = 0; i < texts.size(); ++i)
+    text += "atom C" + std::to_string(i % 100) + (i % 3 ? " C " : "\tC  ") + texts[i] + (i % 5 ? " " : " \t") +
+            texts[texts.size() - 1 - i] + " 0 1.5" + (i % 7 ? "\n" : " " + texts[i] + " \n");
+  const Hierarchy h = read_text(text);
+  REQUIRE(h.atom.size() == texts.size());
+  for (size_t i = 0; i < texts.size(); ++i) {
+    INFO(texts[i]);
+    REQUIRE(bits(h.atom[i].center.x) == bits(std::strtod(texts[i].c_str(), nullptr)));
+    REQUIRE(bits(h.atom[i].center.y) == bits(std::strtod(texts[texts.size() - 1 - i].c_str(), nullptr)));
+    REQUIRE((i % 7 ? std::isnan(h.atom[i].charge) : bits(h.atom[i].charge) == bits(h.atom[i].center.x)));
+    REQUIRE(h.names[h.atom[i].name] == "C" + std::to_string(i % 100));
+  }
+}
+
+TEST_CASE("what looks like an atom and is none is refused in the rule's words") {
+  const auto of_line = [](const std::string& line) {
+    return message("hier 1\nlevels\natom C C 0 0 0 1\n" + line + "\n");
+  };
+  for (const char* x : {".", "-", "-.", "+1", "1.2.3", "1-2", "--1", "1e", "0x10", "1,5", "inf", "nan", "1e999",
+                        "12345678901234567x"})
+    CHECK(of_line("atom C C " + std::string(x) + " 0 0 1") ==
+          "x.hier:4: R8: found '" + std::string(x) + "', expected x, a finite decimal number");
+  CHECK(of_line("atom C C 0 0 10000001 1") ==
+        "x.hier:4: R8: found '10000001', expected z of at most 1e7 Å in magnitude");
+  CHECK(of_line("atom C C 0 0 0 0") == "x.hier:4: R9: found '0', expected the radius > 0");
+  CHECK(of_line("atom C C 0 0 0 -1") == "x.hier:4: R9: found '-1', expected the radius > 0");
+  CHECK(of_line("atom C C 0 0 0 10001") == "x.hier:4: R9: found '10001', expected the radius of at most 10000 Å");
+  CHECK(of_line("atom C C 0 0 0") == "x.hier:4: R6: the line ends, expected the radius");
+  CHECK(of_line("atom C") == "x.hier:4: R6: the line ends, expected the element");
+  CHECK(of_line("atom ") == "x.hier:4: R6: the line ends, expected the atom's name");
+  CHECK(of_line("atom C C 0 0 0 1 0 0") ==
+        "x.hier:4: R6: found '0' more, expected 'atom NAME ELEMENT X Y Z RADIUS [CHARGE]'");
+  CHECK(of_line("atom C% C 0 0 0 1") == "x.hier:4: R7: found 'C%25', expected % with two hexadecimal digits");
+  CHECK(of_line("atomC C 0 0 0 1").find("x.hier:4: R5: found 'atomC'") == 0);
+  CHECK(of_line("atom C C 0 0 0 1\r").find("x.hier:4: R1: found a carriage return") == 0);
+}
+
+TEST_CASE("a wrong line is named by its number wherever the reader's blocks end") {
+  constexpr size_t block = size_t{1} << 18;
+  const std::string line = "atom CA C 12.345 -6.789 101.112 1.7\n";
+  std::string text = "hier 1\nlevels chain\nchain A 0.5\n";
+  const size_t atoms = (block - text.size()) / line.size();
+  for (size_t i = 0; i + 1 < atoms; ++i)
+    text += line;
+  const std::string wrong = "atom CA C 12.345 -6.789 101.112x 1.7\n";
+  for (size_t shift = 0; shift < 3 * line.size(); ++shift) {
+    std::string t = text + "#" + std::string(shift, '-') + "\n";
+    REQUIRE(read_text(t + line + line).atom.size() == atoms + 1);
+    const std::string at = "x.hier:" + std::to_string(atoms + 4), next = "x.hier:" + std::to_string(atoms + 5);
+    const std::string said = ": R8: found '101.112x', expected z, a finite decimal number";
+    CHECK(message(t + wrong + line) == at + said);
+    CHECK(message(t + line + wrong) == next + said);
+    CHECK(message(t + "chain B 1\nchain C 1\n") == next + ": R11: chain 'B' ends without an atom, expected one");
+    CHECK(message(t + line + "atom CA C 1") ==
+          next + ": R1: the last line 'atom CA C 1' has no end, expected a complete file");
+  }
+}
+
 TEST_CASE("any prefix of a file is refused or read, never worse") {
   const std::string text =
       "hier 1\nsource s\nlevels chain residue\nchain A 1\nresidue G%20:1 0.5\natom N N 12.345 1 -3.2 "
