@@ -2,7 +2,6 @@
 #include "base/error.hpp"
 #include "base/shortest.hpp"
 #include "formats/hier/hier.hpp"
-#include "formats/hier/plain_fields.hpp"
 #include "formats/hier/text.hpp"
 #include "molecule/limits.hpp"
 #include <algorithm>
@@ -33,6 +32,37 @@ std::string shown(std::string_view text) {
   return s + (text.size() > 40 ? "…'" : "'");
 }
 
+/// Plain decimals of up to 15 digits, as coordinates are: digits and power of ten are exact doubles, and so their
+/// quotient is correctly rounded. False for anything else.
+bool short_decimal(std::string_view f, double& value) {
+  static constexpr double power[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                     1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+  const bool negative = f[0] == '-';
+  if (negative)
+    f.remove_prefix(1);
+  if (f.empty() || f.size() > 15)
+    return false;
+  int64_t digits = 0;
+  size_t decimals = 0, points = 0;
+  for (const char c : f) {
+    if (c == '.') {
+      ++points;
+      continue;
+    }
+    const unsigned digit = static_cast<unsigned char>(c) - unsigned{'0'};
+    if (digit > 9)
+      return false;
+    digits = digits * 10 + digit;
+    decimals += points;
+  }
+  if (points > 1 || f.size() == points)
+    return false;
+  value = static_cast<double>(digits) / power[decimals];
+  if (negative)
+    value = -value;
+  return true;
+}
+
 /// The entries of short names, found without hashing a string: atoms come in a few dozen kinds.
 class NameCache {
 public:
@@ -41,13 +71,9 @@ public:
       return names.add(text);
     uint64_t key = text.size() << 56; // the length tells "A" from "A\0"
     std::memcpy(&key, text.data(), text.size());
-    return entry(key, names);
-  }
-  /// The key of PlainFields::name().
-  int32_t entry(uint64_t key, Names& names) {
     Slot& slot = slots_[(key * 0x9E3779B97F4A7C15u) >> 56];
     if (slot.key != key || slot.entry < 0)
-      slot = {key, names.add({reinterpret_cast<const char*>(&key), static_cast<size_t>(key >> 56)})};
+      slot = {key, names.add(text)};
     return slot.entry;
   }
 
@@ -64,13 +90,12 @@ public:
   HierReader(std::istream& in, const std::string& file) : in_(in), file_(file) {}
 
   Hierarchy read() {
-    constexpr size_t padding = PlainFields::padding;
-    std::string block((size_t{1} << 18) + padding, '\0');
+    std::string block(size_t{1} << 18, '\0');
     size_t kept = 0;
     for (;;) {
-      if (kept + padding == block.size())
+      if (kept == block.size())
         block.resize(2 * block.size());
-      in_.read(block.data() + kept, static_cast<std::streamsize>(block.size() - padding - kept));
+      in_.read(block.data() + kept, static_cast<std::streamsize>(block.size() - kept));
       const auto got = static_cast<size_t>(in_.gcount());
       if (in_.bad())
         refuse("cannot read");
@@ -103,10 +128,6 @@ private:
       odd |= static_cast<unsigned>(c >= 0x7F) | static_cast<unsigned>(c < 0x20 && c != '\n' && c != '\t');
     }
     while (p != end) {
-      if (odd == 0 && begins_with_atom(p) && plain_atom(p)) {
-        ++line_;
-        continue;
-      }
       const auto* stop = static_cast<const char*>(std::memchr(p, '\n', static_cast<size_t>(end - p)));
       ++line_;
       if (odd != 0)
@@ -377,27 +398,6 @@ private:
       a.charge = number("the charge");
     expect_end("'atom NAME ELEMENT X Y Z RADIUS [CHARGE]'");
     h_.atom.push_back(a);
-  }
-
-  /// An atom as writers write it; moves p behind its line. False, and nothing is changed, where it may be wrong.
-  bool plain_atom(const char*& p) {
-    if (stage_ != Stage::body || open_ != h_.level.size() || !h_.body.empty())
-      return false;
-    PlainFields f(p + 5);
-    uint64_t name = 0, element = 0;
-    Atom a;
-    if (!f.name(name) || !f.name(element) || !f.number(a.center.x) || !f.number(a.center.y) ||
-        !f.number(a.center.z) || !f.number(a.radius) || !(f.at_end() || (f.number(a.charge) && f.at_end())))
-      return false;
-    const double farthest = std::max({std::abs(a.center.x), std::abs(a.center.y), std::abs(a.center.z)});
-    if (!(farthest <= largest_coordinate && a.radius > 0 && a.radius <= largest_radius))
-      return false;
-    a.name = cache_.entry(name, h_.names);
-    a.element = cache_.entry(element, h_.names);
-    any_body_ = true;
-    h_.atom.push_back(a);
-    p = f.at() + 1;
-    return true;
   }
 
   void end() {
