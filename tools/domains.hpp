@@ -8,7 +8,7 @@
 #include "label/divide.hpp"
 #include "label/equal_shares.hpp"
 #include "mesh/same_source.hpp"
-#include "molecule/hierarchy.hpp"
+#include "molecule/bodies.hpp"
 #include <algorithm>
 #include <map>
 #include <memory>
@@ -117,9 +117,8 @@ inline void check_regions(const std::string& regions, const std::string& hier, c
 inline Hierarchy read_structure(const std::string& file, const FieldInfo& field) {
   cli::InputFile input(file);
   Hierarchy h = formats::read_hier(input.stream(), input.name());
-  const int64_t atoms = std::count_if(h.atom.begin(), h.atom.end(), [](const Atom& a) { return a.radius > 0; });
-  if (other_structure(h.source, field.source) || atoms != field.atoms)
-    fail_input(file + ": " + std::to_string(atoms) + " atoms of " + h.source + ", expected the " +
+  if (other_structure(h.source, field.source) || !may_be_of(h, field.atoms))
+    fail_input(file + ": " + std::to_string(atoms_with_body(h)) + " atoms of " + h.source + ", expected the " +
                std::to_string(field.atoms) + " atoms of the density's " + field.source);
   return h;
 }

@@ -12,11 +12,25 @@
 
 namespace molmesh {
 
+[[noreturn]] inline void refuse_selection(const Hierarchy& h, const std::string& file, const std::string& shown,
+                                          const std::string& or_else) {
+  fail_input(file + ": another selection of " + h.source.substr(0, h.source.find(' ')) + ", " + shown +
+             ": expected the atoms of the mesh" + or_else);
+}
+
 /// or_else: what else may be done, for the message. Throws Error(bad_input).
 inline void require_same_structure(const Hierarchy& h, const std::string& file, const TetMesh& mesh,
                                    const std::string& or_else = "") {
   if (other_structure(h.source, mesh.source))
     fail_input(file + ": the structure is of " + h.source + ", expected the mesh's " + mesh.source + or_else);
+}
+
+/// The same, of a file that may be the mesh's with another selection.
+inline void require_same_atoms(const Hierarchy& h, const std::string& file, const TetMesh& mesh,
+                               const std::string& or_else = "") {
+  require_same_structure(h, file, mesh, or_else);
+  if (const std::string shown = label::other_number(h, mesh); !shown.empty())
+    refuse_selection(h, file, shown, or_else);
 }
 
 /// A note where the places of the surface are far from the isosurface. file: of the hierarchy; Error(bad_input)
@@ -26,8 +40,7 @@ inline label::Labels labels_at(const label::Places& places, const Hierarchy& h, 
                                const std::string& or_else = "") {
   label::Labels labels = label::find_labels(h, places.centroid, {decay, mesh.isovalue, threads});
   if (const std::string shown = label::other_selection(h, mesh, places, labels); !file.empty() && !shown.empty())
-    fail_input(file + ": another selection of " + h.source.substr(0, h.source.find(' ')) + ", " + shown +
-               ": expected the atoms of the mesh" + or_else);
+    refuse_selection(h, file, shown, or_else);
   if (const double off = label::median_offset(places, labels, mesh.isovalue); std::fabs(off) > std::log(3.)) {
     std::ostringstream factor;
     factor.precision(3);
@@ -42,7 +55,7 @@ inline label::Labels labels_at(const label::Places& places, const Hierarchy& h, 
 inline void label_surface(TetMesh& mesh, const std::string& file, int threads, const cli::Run& run) {
   cli::InputFile input(file);
   const Hierarchy h = formats::read_hier(input.stream(), input.name());
-  require_same_structure(h, input.name(), mesh);
+  require_same_atoms(h, input.name(), mesh);
   label::Places places = label::places_of(mesh, threads);
   places.cell.erase(places.cell.begin(), places.cell.begin() + places.tets);
   places.centroid.erase(places.centroid.begin(), places.centroid.begin() + places.tets);

@@ -71,7 +71,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   formats::MeshNotes notes;
   TetMesh mesh = read_mesh(run, input, o.mesh, formats::CellArrays::keep, notes);
   if (!o.other_structure)
-    require_same_structure(h, structure.name(), mesh, ", or --other-structure");
+    require_same_atoms(h, structure.name(), mesh, ", or --other-structure");
 
   run.phase("label");
   const label::Places places = label::places_of(mesh, o.resolved_threads());

@@ -15,6 +15,7 @@
 #include "tools/mesh_line.hpp"
 #include "tools/optimization_report.hpp"
 #include "tools/plan.hpp"
+#include "tools/structure_labels.hpp"
 #include <optional>
 #include <utility>
 
@@ -61,8 +62,7 @@ Status run_tool(const Options& o, cli::Run& run) {
     options.sharp = 180; // an isosurface is smooth: folds of its first mesh are no features
   options.progress = [&](double share) { run.share(share); };
   if (hierarchy && grid && !level.empty()) {
-    if (other_structure(hierarchy->source, mesh.source))
-      fail_input(structure->name() + ": of " + hierarchy->source + ", expected the mesh's " + mesh.source);
+    require_same_atoms(*hierarchy, structure->name(), mesh);
     const Domains domains(*hierarchy, structure->name(), level, {grid->info.decay, grid->info.isovalue, threads});
     options.interfaces = domains.interfaces(mesh, grid->frame, structure->name());
   } else if (!level.empty() && o.iterations > 0) {

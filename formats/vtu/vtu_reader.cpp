@@ -259,6 +259,9 @@ private:
     if (const ArrayTag* a = find(d_.field, "decay")) // another program's may be anything
       if (const Column c = decoder_.decode(*a); c.size() == 1 && c.real(0) > 0 && std::isfinite(c.real(0)))
         m_.decay = c.real(0);
+    if (const ArrayTag* a = find(d_.field, "atoms"); a && a->type == ValueType::float64)
+      if (const Column c = decoder_.decode(*a); c.size() == 1 && c.real(0) > 0 && c.real(0) < 1e15)
+        m_.atoms = static_cast<int64_t>(c.real(0));
     if (const ArrayTag* a = find(d_.field, "sphere"); a && a->type != ValueType::uint8)
       if (const Column c = decoder_.decode(*a); c.size() == 4) {
         const Sphere s{{c.real(0), c.real(1), c.real(2)}, c.real(3)};

@@ -44,9 +44,9 @@ Array bytes_array(const std::string& name, const std::string& s) {
           [&s](std::ostream& out) { write_bytes(out, s.data(), s.size()); }};
 }
 
-Array number_array(const char* name, const double& value) {
+Array number_array(const char* name, double value) {
   return {"Float64", name, " NumberOfTuples=\"1\"", sizeof value,
-          [&value](std::ostream& out) { write_bytes(out, &value, sizeof value); }};
+          [value](std::ostream& out) { write_bytes(out, &value, sizeof value); }};
 }
 
 Array sphere_array(const Sphere& s) {
@@ -107,6 +107,8 @@ void write_vtu(std::ostream& out, const TetMesh& m) {
                               bytes_array("creator", m.creator)};
   if (m.decay > 0)
     field.push_back(number_array("decay", m.decay));
+  if (m.atoms > 0)
+    field.push_back(number_array("atoms", static_cast<double>(m.atoms)));
   if (m.sphere)
     field.push_back(sphere_array(*m.sphere));
   for (const NamedText& t : m.named_text)

@@ -44,6 +44,7 @@ TetMesh contour(const BlockGrid& grid, const Options& asked, Summary& summary,
   mesh.isovalue = grid.info.isovalue;
   mesh.decay = grid.info.decay;
   mesh.source = grid.info.source;
+  mesh.atoms = grid.info.atoms;
 
   stages.count(summary);
   for (const Component& c : parts) {

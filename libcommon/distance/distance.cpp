@@ -173,7 +173,7 @@ Band compute(const Hierarchy& h, const Body& body, const density::Options& o, de
   band.info.band_upper = o.band_upper;
   band.info.tolerance = o.tolerance;
   band.info.inside_value = static_cast<float>(std::max(2.0, o.band_upper));
-  band.info.atoms = static_cast<int64_t>(h.atom.size());
+  band.info.atoms = static_cast<int64_t>(balls.ball.size());
   band.info.source = h.source;
   for (const Level& l : h.level)
     band.info.levels += (band.info.levels.empty() ? "" : " ") + l.name;

@@ -1,5 +1,7 @@
 // other_selection.cpp — compares a mesh's surface with the atoms that should have made it.
 #include "label/other_selection.hpp"
+#include "base/grouped.hpp"
+#include "molecule/bodies.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +9,10 @@ namespace molmesh::label {
 namespace {
 
 constexpr double most_share = 0.05;
+
+bool same_file(const Hierarchy& h, const TetMesh& mesh) {
+  return !h.source.empty() && h.source == mesh.source;
+}
 
 /// Share of the triangles where G is not near the isovalue of any surface: e^-25 is 3.6 Å beyond a carbon atom.
 double share_bare(const TetMesh& mesh, const Places& places, const Labels& labels) {
@@ -38,8 +44,15 @@ double share_beyond(const Hierarchy& h, const TetMesh& mesh, const Places& place
 
 } // namespace
 
+std::string other_number(const Hierarchy& h, const TetMesh& mesh) {
+  if (!same_file(h, mesh) || may_be_of(h, mesh.atoms))
+    return "";
+  const int64_t n = atoms_with_body(h);
+  return grouped(n) + (n == 1 ? " atom" : " atoms") + " where the mesh has " + grouped(mesh.atoms);
+}
+
 std::string other_selection(const Hierarchy& h, const TetMesh& mesh, const Places& places, const Labels& labels) {
-  if (h.source.empty() || h.source != mesh.source)
+  if (!same_file(h, mesh))
     return "";
   const double bare = share_bare(mesh, places, labels), beyond = share_beyond(h, mesh, places);
   if (std::max(bare, beyond) <= most_share)

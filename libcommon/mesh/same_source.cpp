@@ -1,6 +1,7 @@
-// same_source.cpp — compares checksums of structures, isovalues and decay rates.
+// same_source.cpp — compares checksums of structures, isovalues, decay rates and numbers of atoms.
 #include "mesh/same_source.hpp"
 #include "base/error.hpp"
+#include "base/grouped.hpp"
 #include <cmath>
 #include <sstream>
 
@@ -24,6 +25,9 @@ void require_same_source(const TetMesh& m, bool has_isovalue, const FieldInfo& f
     fail_input(density + ": the density of " + field.source + ", expected the mesh's " + m.source);
   if (m.source.empty())
     return;
+  if (m.atoms > 0 && field.atoms > 0 && m.atoms != field.atoms)
+    fail_input(density + ": the density of " + grouped(field.atoms) + (field.atoms == 1 ? " atom" : " atoms") +
+               ", expected the mesh's " + grouped(m.atoms));
   const auto require = [&](const char* name, double here, double expected) {
     if (std::abs(expected - here) <= 1e-9 * std::abs(here))
       return;

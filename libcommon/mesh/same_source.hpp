@@ -9,8 +9,8 @@ namespace molmesh {
 bool other_structure(const std::string& source, const std::string& of_mesh);
 
 /// Throws Error(bad_input) where both name the sha256 of their structure, or a mesh with a source has its isovalue
-/// (has_isovalue) or decay rate, and the two differ. Meshes of other programs name none. `density`: the grid's
-/// file.
+/// (has_isovalue), decay rate or number of atoms, and the two differ. Meshes of other programs name none.
+/// `density`: the grid's file.
 void require_same_source(const TetMesh& m, bool has_isovalue, const FieldInfo& field, const std::string& density);
 
 } // namespace molmesh

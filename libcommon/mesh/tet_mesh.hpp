@@ -43,7 +43,8 @@ struct TetMesh {
   std::vector<CellArray> cell_array; ///< labels of tetlabel, or of a foreign mesh
   std::vector<NamedText> named_text;
   std::optional<Sphere>
-      sphere; ///< the outer boundary, with the label outer_sphere; none: a box, or no outer boundary
+      sphere;        ///< the outer boundary, with the label outer_sphere; none: a box, or no outer boundary
+  int64_t atoms = 0; ///< of the field that the surface is of; 0: not known
 };
 
 /// Centroid (Å) of a cell as cell arrays count them: tetrahedra first, then triangles.

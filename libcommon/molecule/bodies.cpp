@@ -8,6 +8,14 @@ bool all_have_bodies(const Hierarchy& h) {
   return std::all_of(h.atom.begin(), h.atom.end(), [](const Atom& a) { return a.radius > 0; });
 }
 
+int64_t atoms_with_body(const Hierarchy& h) {
+  return std::count_if(h.atom.begin(), h.atom.end(), [](const Atom& a) { return a.radius > 0; });
+}
+
+bool may_be_of(const Hierarchy& h, int64_t atoms) {
+  return atoms == 0 || atoms == atoms_with_body(h) || atoms == static_cast<int64_t>(h.atom.size());
+}
+
 Bodies bodies_of(const Hierarchy& h) {
   const size_t levels = h.level.size();
   Bodies b;

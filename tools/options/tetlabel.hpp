@@ -25,8 +25,8 @@ inline void describe(cli::Table& t, Options& o) {
         "given again adds to it")
       .unit("BOUNDARY");
   t.add("--other-structure", o.other_structure,
-        "take a structure whose checksum is not the one that the mesh was made from, as the PDB file of a PQR "
-        "file's mesh");
+        "take a structure whose checksum or number of atoms is not that of the one that the mesh was made from, "
+        "as the PDB file of a PQR file's mesh");
   describe_mesh_input(t, o.mesh);
   t.page.about =
       "Gives every triangle of the molecular surface and every tetrahedron of the molecule its domain, chain, "

@@ -76,6 +76,7 @@ void check_same(const TetMesh& a, const TetMesh& b) {
   CHECK(a.boundary == b.boundary);
   CHECK(a.isovalue == b.isovalue);
   CHECK(a.decay == b.decay);
+  CHECK(a.atoms == b.atoms);
   CHECK(a.source == b.source);
   CHECK(a.creator == b.creator);
   REQUIRE(a.sphere.has_value() == b.sphere.has_value());
@@ -100,6 +101,7 @@ TEST_CASE("what is written is read back exactly, and written again as the same b
   m.point[4] = {0x1.fffffffffffffp+3, -0.0, 1e-17};
   m.isovalue = 0.1;
   m.decay = GENERATE(0., 0.7);
+  m.atoms = GENERATE(int64_t{0}, int64_t{14'000'000'000'001});
   if (GENERATE(false, true))
     m.sphere = Sphere{{0.1, -2e-300, 3}, 0x1.fffffffffffffp+3};
   m.source = "caf\xc3\xa9 & <1tii>.pdb </AppendedData> _";

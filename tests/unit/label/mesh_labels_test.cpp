@@ -1,6 +1,7 @@
 // mesh_labels_test.cpp — labels in a mesh: which cells have them, named boundaries, and what tetsmooth carries on.
 #include "base/error.hpp"
 #include "label/mesh_labels.hpp"
+#include "label/other_selection.hpp"
 #include "label/unseen_residues.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/attribute_transfer.hpp"
@@ -200,4 +201,24 @@ TEST_CASE("Residues of a boundary without a triangle are named as selections") {
         std::vector<std::string>{"//A/1(GLY)"});
   h.level.pop_back();
   CHECK(label::unseen_residues(h, places, labels, {"x", {1, 1, 1, 1}}).residues == 0);
+}
+
+TEST_CASE("a hierarchy of as many atoms as the mesh knows is its own, charges without a body counted or not") {
+  TetMesh m;
+  m.source = "a.pqr sha256:1";
+  Hierarchy h = two_residues();
+  h.source = m.source;
+  h.atom.push_back({{1, 2, 2}, 0, 0.4});
+  for (const int64_t atoms : {0, 2, 3}) { // not known, of bodies, of all
+    m.atoms = atoms;
+    CHECK(label::other_number(h, m).empty());
+  }
+  m.atoms = 5469;
+  CHECK(label::other_number(h, m) == "2 atoms where the mesh has 5,469");
+  h.atom[1].radius = 0;
+  CHECK(label::other_number(h, m) == "1 atom where the mesh has 5,469");
+  h.source = "a.pqr sha256:2"; // another file's atoms say nothing
+  CHECK(label::other_number(h, m).empty());
+  m.source = h.source = "";
+  CHECK(label::other_number(h, m).empty());
 }

@@ -1,12 +1,13 @@
-// same_source_test.cpp — a density of another structure, isovalue or decay rate is refused, one that says nothing
-// is not.
+// same_source_test.cpp — a density of another structure, isovalue, decay rate or number of atoms is refused, one
+// that says nothing is not.
 #include "mesh/same_source.hpp"
 #include "unit/refusal.hpp"
 #include <catch2/catch.hpp>
 
 using namespace molmesh;
 
-TEST_CASE("a density belongs to a mesh where sums, isovalues and decay rates that both name are the same") {
+TEST_CASE("a density belongs to a mesh where sums, isovalues, decay rates and numbers of atoms that both name are "
+          "the same") {
   TetMesh m;
   m.source = "1crn.pdb sha256:69ed";
   m.isovalue = 1;
@@ -27,10 +28,22 @@ TEST_CASE("a density belongs to a mesh where sums, isovalues and decay rates tha
   passes(true); // the mesh names none
   m.decay = 1;
   CHECK(refused(true) == "c.vdb: the decay rate 2, expected the mesh's 1");
+  field.decay = 1;
+  m.atoms = 2;
+  passes(true); // the field knows no number
+  field.atoms = 1;
+  CHECK(refused(true) == "c.vdb: the density of 1 atom, expected the mesh's 2");
+  field.atoms = 5469;
+  CHECK(refused(false) == "c.vdb: the density of 5,469 atoms, expected the mesh's 2");
+  m.atoms = 0;
+  passes(true); // of a former version, or of a map
+  m.atoms = 5469;
+  passes(true);
+  field.atoms = 1;
   m.source = ""; // of another program
   passes(true);
   m.source = "by hand";
-  field.decay = 1;
+  m.atoms = 0;
   passes(true);
 }
 
