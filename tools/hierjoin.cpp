@@ -91,9 +91,9 @@ void report(cli::Run& r, const formats::JoinPlan& plan, const Hierarchy& h, cons
       r.note(plan.piece[p].where + ": carved " + counted(static_cast<size_t>(all), "residue") + ": " + names);
   }
   const size_t bodies = h.body.size(), atoms = h.atom.size() - bodies;
-  r.note("joined " + counted(joined.size(), "piece") + " in " + std::to_string(copies) +
-         (copies == 1 ? " copy: " : " copies: ") + counted(atoms, "atom") +
-         (bodies > 0 ? ", " + counted(bodies, "body without atoms", "bodies without atoms") : "") + charge_of(h));
+  r.made = "joined " + counted(joined.size(), "piece") + " in " + std::to_string(copies) +
+           (copies == 1 ? " copy: " : " copies: ") + counted(atoms, "atom") +
+           (bodies > 0 ? ", " + counted(bodies, "body without atoms", "bodies without atoms") : "") + charge_of(h);
   r.counts = {{"pieces", joined.size()},
               {"copies", copies},
               {"atoms", atoms},

@@ -78,11 +78,12 @@ Status run(Options& o, cli::Run& run) {
   cli::OutputFile out(o.output);
   const formats::PdbHierarchy hierarchy(in.stream(), in.name(), o.pdb);
   const formats::PdbReport& r = hierarchy.report();
-  run.notes(r.notes);
+  run.notes({r.notes.begin() + 1, r.notes.end()});
 
   run.phase("write");
   hierarchy.write(out.stream());
   run.complete(out);
+  run.made = r.notes.front(); // what is kept
 
   run.counts = {{"atoms_read", r.read},   {"models_read", r.models_read}, {"atoms", r.atoms},
                 {"residues", r.residues}, {"chains", r.chains},           {"domains", r.domains},
