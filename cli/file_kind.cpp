@@ -1,5 +1,6 @@
 // file_kind.cpp — signatures of the files that people give to programs, and ways from one kind to another.
 #include "cli/file_kind.hpp"
+#include "base/small_letters.hpp"
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -116,9 +117,7 @@ FileKind surface(const std::string& format) {
 
 /// XML and HTML.
 FileKind markup_kind(std::string_view head, std::string_view text) {
-  std::string lower(text.substr(0, 1000));
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+  const std::string lower = small_letters(std::string(text.substr(0, 1000)));
   if (has(head, "<VTKFile"))
     return has(head, "\"PolyData\"") ? surface("VTK PolyData") : FileKind{Kind::mesh, "a mesh of VTK", ""};
   if (has(lower, "<html") || starts(lower, "<!doctype html"))

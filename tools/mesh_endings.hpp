@@ -1,6 +1,7 @@
 // mesh_endings.hpp — formats of meshes by the endings of files' names.
 #pragma once
 #include "base/error.hpp"
+#include "base/small_letters.hpp"
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,10 +23,7 @@ inline bool is_surface(const std::string& format) {
 /// In small letters, with its dot; empty: none.
 inline std::string ending(const std::string& path) {
   const size_t name = path.rfind('/') + 1, dot = path.rfind('.');
-  std::string end = dot == std::string::npos || dot <= name ? "" : path.substr(dot);
-  for (char& c : end)
-    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return end;
+  return dot == std::string::npos || dot <= name ? "" : small_letters(path.substr(dot));
 }
 
 /// Throws Error(usage) that lists what there is.

@@ -1,6 +1,7 @@
 // foreign.cpp — regions out of other arrays, merged points, rebuilt triangles and those of the file among them.
 #include "formats/vtu/foreign.hpp"
 #include "base/error.hpp"
+#include "base/small_letters.hpp"
 #include "formats/vtu/names.hpp"
 #include "geom/tet_measures.hpp"
 #include "mesh/adjacency.hpp"
@@ -26,11 +27,7 @@ constexpr const char* usual_names[] = {
     "ElementBlockIds", "ObjectId",      "labels",       "marker",          "cell_scalars", "gmsh:geometrical"};
 
 bool same_letters(const std::string& a, const char* b) {
-  size_t i = 0;
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-  while (i < a.size() && b[i] != '\0' && lower(a[i]) == lower(b[i]))
-    ++i;
-  return i == a.size() && b[i] == '\0';
+  return small_letters(a) == small_letters(b);
 }
 
 bool whole(double v) {
