@@ -87,6 +87,8 @@ Status run_tool(const Options& o, cli::Run& run) {
     fail(Status::usage, "--png: found " + std::to_string(paths.size()) + " meshes, expected one");
   if (std::count(paths.begin(), paths.end(), "-") > 1)
     fail(Status::usage, "standard input is given twice, expected at most once");
+  if (const std::string note = unimproved_note(paths); !note.empty())
+    run.note(note);
   const bool page = !o.output.empty() || o.png.empty();
   std::optional<cli::OutputFile> html, png;
   if (page)

@@ -20,6 +20,8 @@ std::string amount(double v) {
     return "-";
   if (!(std::fabs(v) < 1e15))
     return print("%.6g", v);
+  if (v != 0 && std::fabs(v) < 0.1)
+    return print("%.2g", v);
   const int64_t hundredths = std::llround(std::fabs(v) * 100);
   std::string s = v < 0 && hundredths > 0 ? "-" : "";
   s += grouped(hundredths / 100);

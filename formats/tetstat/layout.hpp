@@ -6,7 +6,7 @@
 namespace molmesh::formats {
 
 [[gnu::format(printf, 1, 2)]] std::string print(const char* format, ...);
-/// Å² or Å³ with two decimals, grouped; NaN is a dash.
+/// Å² or Å³ with two decimals, grouped; below 0.1 with two digits that count; NaN is a dash.
 std::string amount(double v);
 /// Text of a file on one line: control characters become question marks.
 std::string plain(std::string s);

@@ -1,5 +1,6 @@
 // tetstat_test.cpp — the report's keys and figures, in JSON and in text.
 #include "formats/tetstat/bodies.hpp"
+#include "formats/tetstat/layout.hpp"
 #include "formats/tetstat/tetstat.hpp"
 #include "unit/mesh/meshes.hpp"
 #include <algorithm>
@@ -234,4 +235,15 @@ TEST_CASE("bodies and boundaries are listed, the largest first, and sum to the m
   const auto j = nlohmann::ordered_json::parse(formats::bodies_json(list));
   CHECK(j["bodies"].size() == 4);
   CHECK(j["boundaries"][7]["label"] == 8);
+}
+
+TEST_CASE("amounts have two decimals, and small ones two digits that count") {
+  using formats::amount;
+  CHECK(amount(1234567.891) == "1,234,567.89");
+  CHECK(amount(0.1) == "0.10");
+  CHECK(amount(0.0994) == "0.099");
+  CHECK(amount(-0.0432) == "-0.043");
+  CHECK(amount(0.00123) == "0.0012");
+  CHECK(amount(0) == "0.00");
+  CHECK(amount(NAN) == "-");
 }
