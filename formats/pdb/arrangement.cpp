@@ -130,8 +130,8 @@ std::vector<Selected> ArrangementSelections::select(const std::string& selection
 
 std::string ArrangementSelections::address(int64_t residue, int64_t atom) const {
   const gemmi::Residue& r = *a_.residue(residue).source;
-  return a_.grouping.chain[a_.grouping.residue[residue].chain] + "/" + r.name + ":" + r.seqid.str() + "/" +
-         a_.flat.names[a_.flat.atom[atom].name];
+  return residue_in_selection(a_.grouping.chain[a_.grouping.residue[residue].chain], r.name + ':' + r.seqid.str()) +
+         '/' + in_selection(a_.flat.names[a_.flat.atom[atom].name]);
 }
 
 std::string ArrangementSelections::first_atom(int64_t residue) const {

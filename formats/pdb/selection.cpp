@@ -4,6 +4,9 @@
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/selection_advice.hpp"
 #include "molecule/words.hpp"
+#include <cctype>
+#include <charconv>
+#include <limits>
 
 namespace molmesh::formats {
 namespace {
@@ -107,6 +110,34 @@ std::string without_quoted(std::string_view cid) {
   return text;
 }
 
+/// "-5", "63A", "63.A" at the beginning of `text`, which loses it.
+bool read_signed(std::string_view& text, gemmi::Selection::SequenceId& id) {
+  const size_t digits = text.substr(0, 1) == "-" ? 1 : 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id.seqnum);
+  if (error != std::errc() || text.size() == digits)
+    return false;
+  text.remove_prefix(static_cast<size_t>(end - text.data()));
+  id.icode = ' ';
+  if (text.substr(0, 1) == ".")
+    text.remove_prefix(1);
+  if (!text.empty() && std::isalpha(static_cast<unsigned char>(text[0]))) {
+    id.icode = text[0];
+    text.remove_prefix(1);
+  }
+  return true;
+}
+
+/// "-5--3", "-5-3", "-5-", which are no syntax to gemmi: its numbers have no sign, and "-5" is all up to 5.
+bool read_negative_range(std::string_view text, gemmi::Selection::SequenceId& first,
+                         gemmi::Selection::SequenceId& last) {
+  if (text.substr(0, 1) != "-" || text.find('-', 1) == npos || !read_signed(text, first) ||
+      text.substr(0, 1) != "-")
+    return false;
+  text.remove_prefix(1);
+  last = {std::numeric_limits<int>::max(), '*'};
+  return text.empty() || (read_signed(text, last) && text.empty());
+}
+
 } // namespace
 
 Selection::Selection(const std::string& text, const std::string& where, bool around_allowed, Status status) {
@@ -158,6 +189,11 @@ Selection::Selection(const std::string& text, const std::string& where, bool aro
         const std::string_view part = trimmed(item);
         if (part.empty() && parts.size() > 1)
           wrong("a list of residues with nothing between two commas");
+        Range negative{{}, {}, std::string(part)};
+        if (read_negative_range(part, negative.first, negative.last)) {
+          ranges_.push_back(negative);
+          continue;
+        }
         const gemmi::Selection one("//*/" + std::string(part));
         Range range{one.from_seqid, one.to_seqid, std::string(part)};
         // gemmi 0.5.7 takes "45" for "45-"; in MMDB syntax, and in later gemmi, it is that residue alone.

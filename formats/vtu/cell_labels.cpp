@@ -1,6 +1,7 @@
 // cell_labels.cpp — numbers labels by rank and gives them the names that the mesh has for them.
 #include "formats/vtu/cell_labels.hpp"
 #include "formats/vtu/names.hpp"
+#include "molecule/grouping.hpp"
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -56,20 +57,23 @@ CellLabel boundary_label(const TetMesh& m) {
   return l;
 }
 
-/// "D GLY:1": names of residues are told apart by their chains only.
-void add_chains(std::vector<CellLabel>& labels) {
+/// "//D/1(GLY)", as selections have it: names of residues are told apart by their chains only. Numbers in place of
+/// names, of another program, stay.
+void add_chains(const TetMesh& m, std::vector<CellLabel>& labels) {
   const CellLabel* const chain = find_label(labels, "chain");
+  if (lines_of(m, "residue_names").empty() || (chain && lines_of(m, "chain_names").empty()))
+    return;
   for (CellLabel& l : labels) {
-    if (l.name != "residue" || !chain)
+    if (l.name != "residue")
       continue;
     std::vector<int32_t> chain_of(l.names.size(), -1);
-    for (const auto& [in, out] : {std::pair{&l.tet, &chain->tet}, std::pair{&l.tri, &chain->tri}})
-      for (size_t i = 0; i < std::min(in->size(), out->size()); ++i)
-        if ((*in)[i] >= 0 && (*out)[i] >= 0)
-          chain_of[(*in)[i]] = (*out)[i];
+    if (chain)
+      for (const auto& [in, out] : {std::pair{&l.tet, &chain->tet}, std::pair{&l.tri, &chain->tri}})
+        for (size_t i = 0; i < std::min(in->size(), out->size()); ++i)
+          if ((*in)[i] >= 0 && (*out)[i] >= 0)
+            chain_of[(*in)[i]] = (*out)[i];
     for (size_t r = 0; r < chain_of.size(); ++r)
-      if (chain_of[r] >= 0)
-        l.names[r] = chain->names[chain_of[r]] + ' ' + l.names[r];
+      l.names[r] = residue_in_selection(chain_of[r] >= 0 ? chain->names[chain_of[r]] : "", l.names[r]);
   }
 }
 
@@ -100,7 +104,7 @@ std::vector<CellLabel> cell_labels(const TetMesh& m) {
     } else if (rank(l))
       labels.push_back(std::move(l));
   }
-  add_chains(labels);
+  add_chains(m, labels);
   return labels;
 }
 

@@ -16,7 +16,7 @@ struct CellLabel {
 
 /// Boundary (as tetconvert names it), part, and the integer arrays of the mesh but for `atom` and `patch`, in this
 /// order. Values are numbered by rank; those of a level that has names are those of the names;
-/// residues are called by their chains, too.
+/// residues are called by their chains, too: "//D/1(GLY)".
 std::vector<CellLabel> cell_labels(const TetMesh& m);
 /// The one of that name, or null.
 const CellLabel* find_label(const std::vector<CellLabel>& labels, const std::string& name);
@@ -40,7 +40,7 @@ private:
 /// labels.
 std::vector<std::vector<std::string>> names_round_bodies(const TetMesh& m, const TriangleSides& sides,
                                                          const MeshBodies& bodies, const PlaceNames& places);
-/// So many of them are shown to people: "A TYR:45, A GLY:46"; and these.
+/// So many of them are shown to people: "//A/45(TYR), //A/46(GLY)"; and these.
 constexpr size_t shown_names = 8;
 std::string first_of(const std::vector<std::string>& names);
 

@@ -20,14 +20,6 @@ std::vector<int64_t> first_atoms(const Hierarchy& h, size_t level) {
   return first;
 }
 
-/// "ASP:102" of chain A as "//A/102(ASP)".
-std::string as_selection(const std::string& chain, const std::string& residue) {
-  const size_t colon = residue.rfind(':');
-  const std::string name = in_selection(residue.substr(0, colon));
-  return "//" + (chain.empty() ? "*" : in_selection(chain)) + "/" +
-         (colon == std::string::npos ? "" : residue.substr(colon + 1)) + "(" + name + ")";
-}
-
 } // namespace
 
 UnseenResidues unseen_residues(const Hierarchy& h, const Places& places, const Labels& labels,
@@ -58,7 +50,7 @@ UnseenResidues unseen_residues(const Hierarchy& h, const Places& places, const L
                   .group[std::upper_bound(first_of_chain.begin(), first_of_chain.end(), first[r]) -
                          first_of_chain.begin() - 1]
                   .name;
-    result.unseen.push_back(as_selection(chain, h.level[level].group[r].name));
+    result.unseen.push_back(residue_in_selection(chain, h.level[level].group[r].name));
   }
   return result;
 }

@@ -2,6 +2,7 @@
 #include "molecule/grouping.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <numeric>
 #include <set>
@@ -150,6 +151,19 @@ std::string in_selection(const std::string& name) {
   for (const char c : name)
     quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + '"';
+}
+
+std::string residue_in_selection(const std::string& chain, const std::string& residue) {
+  const size_t colon = residue.rfind(':');
+  std::string number = colon == std::string::npos ? "" : residue.substr(colon + 1);
+  const size_t sign = number[0] == '-' ? 1 : 0, end = number.find_first_not_of("0123456789", sign);
+  const bool code = end + 1 == number.size() && std::isalpha(static_cast<unsigned char>(number[end]));
+  if (number.size() == sign || end == sign || (end != std::string::npos && !code))
+    number = "";     // no number of a residue
+  else if (sign > 0) // alone it is all up to that number
+    number += '-' + number;
+  return "//" + (chain.empty() ? "*" : in_selection(chain)) + '/' + number + '(' +
+         in_selection(residue.substr(0, colon)) + ')';
 }
 
 std::string chains_there(const std::vector<std::string>& names) {

@@ -35,7 +35,7 @@ public:
   /// Error(status) "WHERE: …" if the syntax is wrong.
   virtual std::vector<Selected> select(const std::string& selection, const std::string& where, bool may_be_around,
                                        Status status) const = 0;
-  /// The first atom of a residue, "A/GLY:12/CA".
+  /// The first atom of a residue, "//A/12(GLY)/CA".
   virtual std::string first_atom(int64_t residue) const = 0;
   /// The first atom of a residue outside the selection, which selects some of the residue's atoms.
   virtual std::string first_atom_outside(int64_t residue, const std::string& selection,
@@ -72,6 +72,9 @@ std::vector<int32_t> hierarchy_order(const Grouping& g, const Levels& levels);
 
 /// A name as a selection wants it: in double quotes if it has a character that means something there.
 std::string in_selection(const std::string& name);
+
+/// "ASP:102" of chain A as "//A/102(ASP)"; chain may be empty: any.
+std::string residue_in_selection(const std::string& chain, const std::string& residue);
 
 /// For a message about a selection that finds nothing: "; chains here: A, B, C (for example '//A', '//A/45-60')".
 /// Distinct names, at most twenty; empty where there are none.

@@ -1,6 +1,7 @@
 // hierarchy.cpp — checks a hierarchy and finds the atom nearest to a place.
 #include "molecule/hierarchy.hpp"
 #include "base/error.hpp"
+#include "molecule/grouping.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -105,22 +106,28 @@ int64_t nearest_atom(const Hierarchy& h, Vec3d p) {
   return nearest;
 }
 
-std::string groups_of(const Hierarchy& h, int64_t atom) {
-  std::string text;
+std::string place_of(const Hierarchy& h, int64_t atom) {
+  std::string others, chain, residue;
   int64_t index = atom;
   for (size_t l = h.level.size(); l-- > 0;) {
     const std::vector<Group>& group = h.level[l].group;
     const auto g =
         std::upper_bound(group.begin(), group.end(), index, [](int64_t i, const Group& x) { return i < x.end; });
-    text = h.level[l].name + ' ' + g->name + (text.empty() ? "" : " ") + text;
+    const std::string& level = h.level[l].name;
+    if (level == "chain" || level == "residue")
+      (level == "chain" ? chain : residue) = g->name;
+    else
+      others = level + ' ' + g->name + ' ' + others;
     index = g - group.begin();
   }
-  return text;
+  const std::string name = in_selection(h.names[h.atom[atom].name]);
+  if (!residue.empty())
+    return others + residue_in_selection(chain, residue) + '/' + name;
+  return others + (chain.empty() ? "" : "//" + in_selection(chain) + "//") + name;
 }
 
 std::string nearest_name(const Hierarchy& h, Vec3d p) {
-  const int64_t atom = nearest_atom(h, p);
-  return groups_of(h, atom) + ' ' + h.names[h.atom[atom].name];
+  return place_of(h, nearest_atom(h, p));
 }
 
 } // namespace molmesh

@@ -65,10 +65,10 @@ void check(const Hierarchy& h, const std::string& file);
 /// Index of the atom whose sphere is nearest to p (inside: negative distance), the first of equals; looks at all
 /// that have one.
 int64_t nearest_atom(const Hierarchy& h, Vec3d p);
-/// "chain A residue GLY.12": its groups, outermost first; empty without levels.
-std::string groups_of(const Hierarchy& h, int64_t atom);
+/// "//A/12(GLY)/CA" as a selection; behind the groups of other levels: "domain one //A/12(GLY)/CA".
+std::string place_of(const Hierarchy& h, int64_t atom);
 
-/// "chain A residue GLY.12 CA": the atom nearest to p.
+/// The same of the atom nearest to p.
 std::string nearest_name(const Hierarchy& h, Vec3d p);
 
 } // namespace molmesh

@@ -172,6 +172,27 @@ TEST_CASE("Residues may be a list of numbers and ranges, their and atoms' names 
   }
 }
 
+TEST_CASE("a residue as it is printed selects that residue, and so does an atom") {
+  const Hierarchy h = hierarchy(
+      "hier 1\nlevels chain residue\nchain A_1 1\nresidue GLY:-3 1\natom N N 0 0 0 1\natom CA C 1 0 0 1\n"
+      "residue GLY:3 1\natom CA C 5 0 0 1\nresidue GLY:-4B 1\natom CA C 6 0 0 1\nresidue GLY:-3A 1\natom O5' O 7 0 "
+      "0 1\nresidue a,b:-2 1\natom CA C 8 0 0 1\nchain B%20* 1\nresidue GLY:3 1\natom CA C 9 0 0 1\nresidue "
+      "GLY:3A 1\natom H*/1 H 20 0 0 1\nresidue odd 1\natom CA C 30 0 0 1\nresidue a:b:c 1\natom CA C 40 0 0 1\n"
+      "residue :7 1\natom CA C 50 0 0 1\n");
+  for (size_t a = 0; a < h.atom.size(); ++a) {
+    const std::string atom = place_of(h, static_cast<int64_t>(a)), residue = atom.substr(0, atom.rfind(')') + 1);
+    INFO(atom);
+    CHECK(selected(atom, h) == std::to_string(a));
+    CHECK(selected(residue, h) == (a < 2 ? "0 1" : std::to_string(a)));
+  }
+  CHECK(selected("//A_1/-4.B--3", h) == "0 1 3");
+  CHECK(selected("//A_1/-3-3", h) == "0 1 2 4 5");
+  CHECK(selected("//A_1/-2-", h) == "2 5");
+  CHECK(selected("//A_1/-3--3,3", h) == "0 1 2");
+  for (const char* wrong : {"//*/--3", "//*/-3--", "//*/-3--2-1", "//*/-3.-4x5", "//*/-x-2"})
+    CHECK(refusal(wrong, h, Status::usage).find("gemmi's syntax") != std::string::npos);
+}
+
 TEST_CASE("a selection of residues that is no syntax is refused with the one that is meant") {
   const auto expected = [](const std::string& selection) {
     const std::string line = refusal(selection, hierarchy(), Status::usage);

@@ -185,16 +185,16 @@ TEST_CASE("domains by entity: chains of the same SEQRES") {
 TEST_CASE("gaps, overlaps and torn residues or chains name an atom") {
   const std::vector<std::string> levels = {"domain", "chain", "residue"};
   CHECK(refusal(structure(), with_domains("one //A\n", levels)) ==
-        "D: found atom B/GLY:1/N in no domain, expected each in exactly one");
+        "D: found atom //B/1(GLY)/N in no domain, expected each in exactly one");
   CHECK(refusal(structure(), with_domains("one //A,B\ntwo //B\n", levels)) ==
-        "D:2: found atom B/GLY:1/N in domains 'one' (D:1) and 'two', expected exactly one");
+        "D:2: found atom //B/1(GLY)/N in domains 'one' (D:1) and 'two', expected exactly one");
   CHECK(refusal(structure(), with_domains("one //A,B\none //B\n", levels))
             .empty()); // parts of one domain may overlap
   CHECK(refusal(structure(), with_domains("one //A\ntwo //B//CA\n", levels)) ==
-        "D:2: found atom B/GLY:1/N outside domain 'two' that holds other atoms of its residue, expected whole "
+        "D:2: found atom //B/1(GLY)/N outside domain 'two' that holds other atoms of its residue, expected whole "
         "residues");
   CHECK(refusal(structure(), with_domains("one //A\ntwo //B/1\none //B/2\n", levels))
-            .find("found chain B in domains 'two' (B/GLY:1/N) and 'one' (B/GLY:2/N)") != std::string::npos);
+            .find("found chain B in domains 'two' (//B/1(GLY)/N) and 'one' (//B/2(GLY)/N)") != std::string::npos);
   CHECK(refusal(structure(), with_domains("one *\ntwo //C\n", levels)) ==
         "D:2: found no atom in '//C', expected some in domain 'two'; chains here: A, B (for example '//A', "
         "'//A/45-60', '//A/(HEM)')");

@@ -29,10 +29,10 @@ TEST_CASE("the worst tetrahedra come first, and only those beyond the limits") {
   CHECK(worst_tets(m, {30, 180}, 5, 1).back().tet == worst.back().tet);
 }
 
-TEST_CASE("the nearest atom is that whose sphere is nearest, called by its groups") {
+TEST_CASE("the nearest atom is that whose sphere is nearest, called by a selection that is it") {
   Hierarchy h;
   h.level = {{"chain", {{"A", 1, 0, 2}, {"B", 1, 2, 3}}},
-             {"residue", {{"GLY.1", 1, 0, 2}, {"ALA.2", 1, 2, 3}, {"SER.1", 1, 3, 4}}}};
+             {"residue", {{"GLY:1", 1, 0, 2}, {"ALA:2", 1, 2, 3}, {"SER:-1", 1, 3, 4}}}};
   h.atom.resize(4);
   for (size_t i = 0; i < 4; ++i) {
     h.atom[i].center = {double(i), 0, 0};
@@ -41,8 +41,16 @@ TEST_CASE("the nearest atom is that whose sphere is nearest, called by its group
   CHECK(nearest_atom(h, {0.2, 0, 0}) == 0);
   CHECK(nearest_atom(h, {1.9, 0, 0}) == 2);
   CHECK(nearest_atom(h, {2.2, 0, 0}) == 3);
-  CHECK(groups_of(h, 1) == "chain A residue GLY.1");
-  CHECK(groups_of(h, 2) == "chain A residue ALA.2");
-  CHECK(groups_of(h, 3) == "chain B residue SER.1");
-  CHECK(groups_of(Hierarchy{}, 0).empty());
+  CHECK(place_of(h, 1) == "//A/1(GLY)/X");
+  CHECK(place_of(h, 2) == "//A/2(ALA)/X");
+  CHECK(place_of(h, 3) == "//B/-1--1(SER)/X");
+  CHECK(nearest_name(h, {2.2, 0, 0}) == place_of(h, 3));
+  h.level.insert(h.level.begin(), {"domain", {{"one", 1, 0, 2}}});
+  CHECK(place_of(h, 1) == "domain one //A/1(GLY)/X");
+  h.level = {h.level[2]};
+  CHECK(place_of(h, 2) == "//*/2(ALA)/X");
+  h.level = {{"chain", {{"B 1", 1, 0, 4}}}};
+  CHECK(place_of(h, 2) == "//\"B 1\"//X");
+  h.level.clear();
+  CHECK(place_of(h, 2) == "X");
 }
