@@ -128,9 +128,9 @@ TEST_CASE("the worst elements are those of the optimizer's quality, with the res
     CHECK(j["worst"][i]["tet"] == worst[i]);
     const std::string residue = j["worst"][i]["residue"];
     if (const int64_t t = worst[i]; m.region[t] == 1)
-      CHECK(residue == (t % 2 ? "B r" : "A r") + std::to_string(t % 2 + 2 * (t % 3)));
+      CHECK(residue == (t % 2 ? "//B/(r" : "//A/(r") + std::to_string(t % 2 + 2 * (t % 3)) + ')');
     else
-      CHECK(residue.size() == 4); // that of a triangle nearby
+      CHECK(residue.size() == 8); // that of a triangle nearby
   }
 }
 
