@@ -1,5 +1,6 @@
 // tetsmooth.cpp — tetrahedral mesh (.vtu) to a better one: every element good enough to solve on.
 #include "tools/options/tetsmooth.hpp"
+#include "base/give_back_memory.hpp"
 #include "cuda/optimize/optimize.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/vdb/vdb.hpp"
@@ -81,6 +82,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   } catch (const Error& e) {
     fail(e.status, input.name() + ": " + e.what(), e.quantities);
   }
+  give_back_memory(); // of the mesh that operations changed, twice the result's
   run.phase("partition");
   mesh.part = partition(mesh, o.parts, threads, std::move(result.across));
   const optimize::Counts& c = result.counts;

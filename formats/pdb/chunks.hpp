@@ -1,22 +1,13 @@
 // chunks.hpp — a sequence that grows without being copied, so that its memory never is twice what it holds.
 #pragma once
+#include "base/give_back_memory.hpp"
 #include <cstddef>
 #include <iterator>
 #include <memory>
 #include <utility>
 #include <vector>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 namespace molmesh::formats {
-
-/// keep_freed_pages() keeps freed memory for arrays that come again; those of a structure do not.
-inline void give_back_memory() {
-#ifdef __GLIBC__
-  malloc_trim(0);
-#endif
-}
 
 template <class T>
 class Chunks {

@@ -1,6 +1,7 @@
 // optimize.cpp — the tables of rounds and searches, and the loops over them.
 #include "optimize/optimize.hpp"
 #include "base/error.hpp"
+#include "base/give_back_memory.hpp"
 #include "isosurface/reference_surface.hpp"
 #include "optimize/acceptance/faults.hpp"
 #include "optimize/mesh/target_size.hpp"
@@ -476,11 +477,12 @@ Result improve(TetMesh& mesh, const BlockGrid* density, const Options& options,
     }
     return result;
   }
+  give_back_memory(); // of parts and their tables
   begin("result");
   result.after = measure_angles(m, options.threads);
   if (isosurface)
     result.fidelity = measure_fidelity(m, *isosurface, options.threads);
-  mesh = extract(m, options.threads, &result.across, std::move(mesh));
+  mesh = extract(std::move(m), options.threads, result.across, std::move(mesh));
   return result;
 }
 

@@ -1,5 +1,6 @@
 // mesh_input.hpp — options of every program that reads a mesh, and the reading.
 #pragma once
+#include "base/give_back_memory.hpp"
 #include "cli/run.hpp"
 #include "formats/mesh/read_mesh.hpp"
 
@@ -30,6 +31,7 @@ inline TetMesh read_mesh(cli::Run& run, cli::InputFile& input, const MeshInput& 
   as.merge_points = o.merge_points;
   as.scale = o.scale;
   TetMesh mesh = formats::read_mesh(input.stream(), input.name(), as, notes);
+  give_back_memory(); // of the file's bytes, which are more than the mesh
   run.notes(described(notes));
   return mesh;
 }

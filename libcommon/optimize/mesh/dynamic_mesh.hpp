@@ -157,9 +157,10 @@ void require_slots(int64_t elements, int64_t vertices); ///< of one that grows: 
 DynamicMesh build(const TetMesh& mesh, double sharp, int threads);
 
 /// Elements, vertices and triangles in slot order, unused slots squeezed out; triangles point as they did.
+TetMesh extract(const DynamicMesh& mesh, int threads = 1);
 /// across [4 tets]: the tetrahedron beyond each face, -1: none. `out` lends its memory; isovalue, source and
-/// creator stay as they are there.
-TetMesh extract(const DynamicMesh& mesh, int threads = 1, LargeArray<int32_t>* across = nullptr, TetMesh out = {});
+/// creator stay as they are there. The mesh's elements are gone then.
+TetMesh extract(DynamicMesh&& mesh, int threads, LargeArray<int32_t>& across, TetMesh out);
 
 /// The vertex where faces of these labels meet in a line: it follows the two first of them by name.
 Vertex line_vertex(const DynamicMesh& m, std::vector<uint8_t> labels);

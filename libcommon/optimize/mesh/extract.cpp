@@ -1,24 +1,41 @@
 // extract.cpp — back to a plain mesh: what is alive, in slot order.
+#include "base/give_back_memory.hpp"
 #include "optimize/mesh/dynamic_mesh.hpp"
 #include "par/pages.hpp"
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <utility>
 
 namespace molmesh::optimize {
 namespace {
 
-void number_neighbors(const DynamicMesh& m, const LargeArray<int32_t>& alive, int threads,
-                      LargeArray<int32_t>& across) {
+/// The mesh's elements are gone then: what they knew of their neighbors takes the place of the first of them while
+/// room is made for it, since both and the result at once are the most that a program holds.
+void number_neighbors(DynamicMesh& m, const LargeArray<int32_t>& alive, int threads, LargeArray<int32_t>& across) {
   const auto tets = static_cast<int64_t>(alive.size());
-  LargeArray<int32_t> id;
-  par::resize_pages(id, m.element.size(), threads);
-  par::for_n(tets, threads, [&](int64_t t) { id[alive[t]] = static_cast<int32_t>(t); });
+  {
+    LargeArray<int32_t> id;
+    par::resize_pages(id, m.element.size(), threads);
+    par::for_n(tets, threads, [&](int64_t t) { id[alive[t]] = static_cast<int32_t>(t); });
+    par::for_n(tets, threads, [&](int64_t t) {
+      for (int32_t& n : m.element[alive[t]].n)
+        n = n < 0 ? -1 : id[n];
+    });
+  }
+  using Four = std::array<int32_t, 4>;
+  auto* const packed = reinterpret_cast<std::byte*>(m.element.data());
+  for (int64_t t = 0; t < tets; ++t) { // never beyond the element that is read
+    const Four n = m.element[alive[t]].n;
+    std::memcpy(packed + static_cast<size_t>(t) * sizeof n, &n, sizeof n);
+  }
+  const size_t bytes = alive.size() * sizeof(Four);
+  give_back_pages(packed + bytes, m.element.size() * sizeof(Element) - bytes);
   par::resize_pages(across, 4 * alive.size(), threads);
-  par::for_n(tets, threads, [&](int64_t t) {
-    for (size_t f = 0; f < 4; ++f) {
-      const int32_t n = m.element[alive[t]].n[f];
-      across[4 * size_t(t) + f] = n < 0 ? -1 : id[n];
-    }
-  });
+  if (bytes > 0)
+    std::memcpy(across.data(), packed, bytes);
+  m.element = {};
 }
 
 // 4 element + face, ascending: what has a triangle.
@@ -41,7 +58,10 @@ std::vector<int64_t> labelled_faces(const DynamicMesh& m, int threads) {
 
 } // namespace
 
-TetMesh extract(const DynamicMesh& m, int threads, LargeArray<int32_t>* across, TetMesh out) {
+namespace {
+
+/// alive: is set to the elements that are.
+TetMesh extract(const DynamicMesh& m, int threads, TetMesh out, LargeArray<int32_t>& alive) {
   out.part.clear();
   out.cell_array.clear();
   out.named_text.clear();
@@ -56,7 +76,7 @@ TetMesh extract(const DynamicMesh& m, int threads, LargeArray<int32_t>* across, 
     id[v] = static_cast<int32_t>(k);
     out.point[k] = m.point[v];
   });
-  const auto alive = par::select(slots, threads, [&](int64_t e) { return m.element[e].alive(); });
+  alive = par::select(slots, threads, [&](int64_t e) { return m.element[e].alive(); });
   par::resize_pages(out.tet, alive.size(), threads);
   par::resize_pages(out.region, alive.size(), threads);
   par::for_n(static_cast<int64_t>(alive.size()), threads, [&](int64_t t) {
@@ -65,8 +85,6 @@ TetMesh extract(const DynamicMesh& m, int threads, LargeArray<int32_t>* across, 
       out.tet[t][i] = id[e.v[i]];
     out.region[t] = e.region;
   });
-  if (across)
-    number_neighbors(m, alive, threads, *across);
   const auto faces = labelled_faces(m, threads);
   par::resize_pages(out.tri, faces.size(), threads);
   par::resize_pages(out.boundary, faces.size(), threads);
@@ -81,6 +99,20 @@ TetMesh extract(const DynamicMesh& m, int threads, LargeArray<int32_t>* across, 
       out.tri[t][i] = id[v[i]];
     out.boundary[t] = label.name;
   });
+  return out;
+}
+
+} // namespace
+
+TetMesh extract(const DynamicMesh& mesh, int threads) {
+  LargeArray<int32_t> alive;
+  return extract(mesh, threads, {}, alive);
+}
+
+TetMesh extract(DynamicMesh&& mesh, int threads, LargeArray<int32_t>& across, TetMesh out) {
+  LargeArray<int32_t> alive;
+  out = extract(mesh, threads, std::move(out), alive);
+  number_neighbors(mesh, alive, threads, across);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include "recovery_pass.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <map>
 #include <numeric>
 
 using namespace molmesh;
@@ -53,6 +54,21 @@ TetMesh labelled_last(const TetMesh& mesh) {
   return out;
 }
 
+/// By a map of all faces.
+LargeArray<int32_t> neighbors(const TetMesh& m) {
+  std::map<std::array<int32_t, 3>, std::vector<size_t>> at;
+  LargeArray<int32_t> across(4 * m.tet.size());
+  for (size_t f = 0; f < across.size(); ++f) {
+    std::array<int32_t, 3> face = optimize::outward_triangle(m.tet[f / 4], f % 4);
+    std::sort(face.begin(), face.end());
+    at[face].push_back(f);
+  }
+  for (const auto& [face, sides] : at)
+    for (size_t i = 0; i < sides.size(); ++i)
+      across[sides[i]] = sides.size() == 2 ? static_cast<int32_t>(sides[1 - i] / 4) : -1;
+  return across;
+}
+
 } // namespace
 
 TEST_CASE("chunks of elements know of their labels and their worst", "[slow]") {
@@ -79,12 +95,20 @@ TEST_CASE("chunks of elements know of their labels and their worst", "[slow]") {
   const Seen seen = check(m);
   CHECK(seen.labelled > 0);
   CHECK(seen.bare < bare); // some have come to hold labels
+  const bool any_free =
+      std::any_of(m.element.begin(), m.element.end(), [](const optimize::Element& e) { return !e.alive(); });
+  CHECK(any_free);
+  const TetMesh plain = optimize::extract(m);
+  LargeArray<int32_t> across;
+  const TetMesh out = optimize::extract(std::move(m), 2, across, {});
+  CHECK((out.tet == plain.tet));
+  CHECK((across == neighbors(out)));
 }
 
 TEST_CASE("extraction takes memory that is lent, and nothing of what was in it") {
   constexpr double h = 0.5;
   const TetMesh mesh = lattice_mesh(three_atoms, {0, 0, 0}, h, 12);
-  const optimize::DynamicMesh m = optimize::build(mesh, 180, 1);
+  optimize::DynamicMesh m = optimize::build(mesh, 180, 1);
   const TetMesh fresh = optimize::extract(m);
   TetMesh lent = mesh;
   const bool large = GENERATE(false, true);
@@ -96,7 +120,9 @@ TEST_CASE("extraction takes memory that is lent, and nothing of what was in it")
   lent.cell_array.push_back({"chain", {1}, {}});
   lent.source = "source";
   const Tet* const memory = lent.tet.data();
-  const TetMesh out = optimize::extract(m, 2, nullptr, std::move(lent));
+  LargeArray<int32_t> across;
+  const TetMesh out = optimize::extract(std::move(m), 2, across, std::move(lent));
+  CHECK((across == neighbors(out)));
   CHECK((out.tet.data() == memory) == large);
   CHECK((out.tet == fresh.tet));
   CHECK((out.region == fresh.region));
