@@ -30,7 +30,7 @@ LargeArray<uint32_t> along_curve(const TetMesh& m, int threads) {
       low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
   const double scale = ((1 << bits) - 1e-3) / std::max({high.x - low.x, high.y - low.y, high.z - low.z, 1e-300});
   const auto n = static_cast<int64_t>(m.tet.size());
-  LargeArray<uint32_t> key(m.tet.size()), order(m.tet.size());
+  LargeArray<uint32_t> key(m.tet.size()), by_lower(m.tet.size()), order(m.tet.size());
   par::for_n(n, threads, [&](int64_t t) {
     Vec3d c;
     for (const int32_t v : m.tet[t])
@@ -38,9 +38,15 @@ LargeArray<uint32_t> along_curve(const TetMesh& m, int threads) {
     const auto at = [](double x) { return static_cast<int32_t>(x); };
     key[t] = static_cast<uint32_t>(hilbert({at(c.x), at(c.y), at(c.z)}, bits));
   });
+  // By either half of the key: to count all keys takes longer than a small mesh.
+  constexpr int half = 3 * bits / 2;
+  constexpr int64_t halves = int64_t{1} << half;
   par::place_by(
-      n, int64_t{1} << 3 * bits, threads, [&](int64_t t) { return int64_t{key[t]}; }, [](int64_t) {},
-      [&](int64_t k, int64_t t) { order[k] = static_cast<uint32_t>(t); });
+      n, halves, threads, [&](int64_t t) { return key[t] % halves; }, [](int64_t) {},
+      [&](int64_t k, int64_t t) { by_lower[k] = static_cast<uint32_t>(t); });
+  par::place_by(
+      n, halves, threads, [&](int64_t k) { return key[by_lower[k]] / halves; }, [](int64_t) {},
+      [&](int64_t k, int64_t j) { order[k] = by_lower[j]; });
   return order;
 }
 
