@@ -1,6 +1,7 @@
 // measures.cpp — extremes among elements of low quality; sums over surface triangles and points.
 #include "optimize/mesh/measures.hpp"
 #include "geom/tet_measures.hpp"
+#include "isosurface/near_isosurface.hpp"
 #include "mesh/worst_elements.hpp"
 #include "par/par.hpp"
 #include <algorithm>
@@ -53,11 +54,13 @@ void add_triangle(const DynamicMesh& m, const Isosurface& surface, const Element
   const double area = norm(n) / 2;
   ++sum.triangles;
   sum.area += area;
+  const IsosurfaceView view = surface.view();
+  const NearIsosurface near(view); // all in a cell or two
   double distance;
   Vec3d normal;
   // Exterior meshes alone see the molecule from outside.
   const double side = m.labels[e.label[face]].reversed ? -1 : 1;
-  if (!surface.probe(centre, distance, normal)) {
+  if (!near.probe(centre, distance, normal)) {
     ++sum.centroids_off;
     ++sum.turned;
   } else {
@@ -65,7 +68,7 @@ void add_triangle(const DynamicMesh& m, const Isosurface& surface, const Element
     sum.turned += side * dot(n, normal) < std::sqrt(0.5) * norm(n);
   }
   for (const Vec3d& p : {a, b, c}) // the three-point rule, exact where the distance is quadratic
-    if (surface.probe(0.5 * centre + 0.5 * p, distance, normal))
+    if (near.probe(0.5 * centre + 0.5 * p, distance, normal))
       sum.missing -= (distance + surface.offset()) * area / 3;
 }
 

@@ -92,9 +92,14 @@ float Schedule::worst() {
 
 int64_t Schedule::below(float goal) const {
   return par::reduce(
-      static_cast<int64_t>(m_.element.size()), threads_, int64_t{0},
-      [&](int64_t e) { return int64_t{m_.element[e].alive() && m_.element[e].q < goal}; },
-      [](int64_t a, int64_t b) { return a + b; });
+      static_cast<int64_t>(m_.dirty.size()), threads_, int64_t{0},
+      [&](int64_t s) {
+        int64_t n = 0;
+        if (m_.dirty[s] || m_.worst[s] < goal)
+          m_.for_chunk(s, [&](int64_t e) { n += m_.element[e].alive() && m_.element[e].q < goal; });
+        return n;
+      },
+      [](int64_t a, int64_t b) { return a + b; }, 16);
 }
 
 PointBox Schedule::bounds() const {
