@@ -16,13 +16,12 @@ namespace {
 // Whether they share an edge and nearly lie on each other. No element is so thin, so it is not the mesh that is
 // between them: nothing is, or the mesh overlaps itself. A vertex with three triangles can be turned over by way of
 // this, where all share edges and none crosses another.
-bool fold_up(const DynamicMesh& m, const std::array<int32_t, 3>& a, const std::array<int32_t, 3>& b,
-             const Apart& apart) {
+bool fold_up(const DynamicMesh& m, const FreeTriangle& a, const FreeTriangle& b, const Apart& apart) {
   constexpr double most_cosine = -0.9945; // of their normals: 6 degrees between them
-  if (!apart.share_edge())
+  if (!apart.share_edge() || dot(a.normal, b.normal) > -0.9f)
     return false;
-  const auto normal = [&](const std::array<int32_t, 3>& t) {
-    return tri_normal(m.point[t[0]], m.point[t[1]], m.point[t[2]]);
+  const auto normal = [&](const FreeTriangle& t) {
+    return tri_normal(m.point[t.v[0]], m.point[t.v[1]], m.point[t.v[2]]);
   };
   const Vec3d of_a = normal(a), of_b = normal(b);
   return dot(of_a, of_b) < most_cosine * std::sqrt(norm2(of_a) * norm2(of_b));
@@ -176,7 +175,7 @@ bool CrossingGuard::crosses(const FreeTriangle& now, Near& near, uint32_t leavin
   if ((beside && !apart.share_edge()) || !stays_near(near, leaving))
     return false;
   note_edge(apart, other.v);
-  return fold_up(m_, now.v, other.v, apart) || (!beside && triangles_cross(m_.point, now.v, other.v));
+  return fold_up(m_, now, other, apart) || (!beside && triangles_cross(m_.point, now.v, other.v));
 }
 
 bool CrossingGuard::leave_part() const {
@@ -206,7 +205,7 @@ bool CrossingGuard::cross(uint32_t leaving) {
       note_edge(Apart(now.v, o), o);
     for (size_t j = 0; j < i; ++j)
       if (const Apart apart(now.v, now_[j]);
-          fold_up(m_, now.v, now_[j], apart) ||
+          fold_up(m_, now, boxed_[j], apart) ||
           (!lie_beside(now, boxed_[j], apart) && triangles_cross(m_.point, now.v, now_[j])))
         return true;
     for (const EightBoxes& eight : near_box_)

@@ -1,5 +1,6 @@
 // change_log.hpp — records which elements of a part were written, so that only these are looked at again.
 #pragma once
+#include "base/open_table.hpp"
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -27,9 +28,11 @@ public:
   bool since(Moment then, std::vector<int32_t>& out) const {
     if (!kept_ || then.era != era_)
       return false;
-    out.assign(written_.begin() + static_cast<std::ptrdiff_t>(then.at), written_.end());
+    met_.clear(); // most are written many times
+    for (size_t i = then.at; i < written_.size(); ++i)
+      met_(written_[i]);
+    out = met_.met();
     std::sort(out.begin(), out.end());
-    out.erase(std::unique(out.begin(), out.end()), out.end());
     return true;
   }
   /// Any element may have been written.
@@ -43,6 +46,7 @@ private:
   bool kept_ = false;
   uint64_t era_ = 1;
   std::vector<int32_t> written_;
+  mutable SmallNumbers met_; ///< of since()
 };
 
 } // namespace molmesh::optimize

@@ -35,7 +35,7 @@ Region::Face& Region::face_entry(const std::array<int32_t, 3>& v) {
 // on the surface may leave faces without a partner, in place of others that go. False otherwise, which happens in
 // meshes that overlap themselves.
 bool Region::match(const std::vector<int32_t>& old, const std::vector<Candidate>& now, bool surface) {
-  while (table_.size() < 16 * (old.size() + now.size()))
+  while (table_.size() < 8 * (old.size() + now.size()))
     table_.resize(2 * table_.size());
   ++table_clock_;
   used_.clear();

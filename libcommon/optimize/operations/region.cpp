@@ -21,7 +21,7 @@ Counts& Counts::operator+=(const Counts& o) {
 Region::Region(DynamicMesh& m, const Target* t, const FreeTriangles* free, const Parts& parts,
                std::vector<uint32_t>& stamp, PartRoom& r, uint32_t clock)
     : mesh(m), target(t), room(r), crossings(m, free, parts, r.part, stamp), parts_(parts), stamp_(stamp),
-      clock_(clock), table_(512) {}
+      clock_(clock), table_(64) {}
 
 void Region::note_side(int32_t e, size_t face) {
   if (const int32_t v = mesh.element[e].v[face]; parts_.owner[v] == room.part)
@@ -53,6 +53,8 @@ bool Region::has_failed(const Acceptance& accept, FailedAttempts::Attempt& attem
 
 // At a point with more elements none is worth its time: meshes of molecules have 120 at most.
 constexpr size_t most_in_star = 256;
+// Of an element: the faces at each corner.
+constexpr uint8_t at_corner[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
 
 // Only our elements are stamped, so no other region sees the stamps.
 // Nearly without branches: which faces lead on is not to be guessed.
@@ -77,8 +79,8 @@ bool Region::star(int32_t v, std::vector<int32_t>& out) {
     }
     const int32_t t = out[i];
     const Element& e = element[t];
-    for (size_t f = 0; f < 4; ++f) {
-      const int32_t next = e.v[f] != v && e.n[f] >= 0 ? e.n[f] : t;
+    for (const size_t f : at_corner[e.find(v)]) {
+      const int32_t next = e.n[f] >= 0 ? e.n[f] : t;
       const Element& beyond = element[next];
       const bool fresh = stamp[next] != clock;
       // It shares three vertices with one of ours.
@@ -192,7 +194,7 @@ Snapshot Region::record(std::vector<int32_t> elements) {
     std::sort(elements.begin(), elements.end());
   s.element.reserve(elements.size());
   s.corner_of.reserve(elements.size());
-  SmallNumbers vertices;
+  corners_.clear();
   for (const int32_t t : elements) {
     const Element& e = mesh.element[t];
     s.element.emplace_back(t, e);
@@ -200,7 +202,7 @@ Snapshot Region::record(std::vector<int32_t> elements) {
     if (!e.alive())
       continue;
     for (size_t i = 0; i < 4; ++i)
-      corner[i] = static_cast<uint32_t>(vertices(e.v[i]));
+      corner[i] = static_cast<uint32_t>(corners_(e.v[i]));
     for (const int32_t n : e.n) {
       if (n < 0)
         continue;
@@ -210,8 +212,8 @@ Snapshot Region::record(std::vector<int32_t> elements) {
         s.side.push_back({n, t, static_cast<uint8_t>(g), beyond.label[g]});
     }
   }
-  s.corner.reserve(vertices.met().size());
-  for (const int32_t v : vertices.met())
+  s.corner.reserve(corners_.met().size());
+  for (const int32_t v : corners_.met())
     s.corner.push_back({v, mesh.point[v], mesh.vertex[v], mesh.incident[v], mesh.touched[v], mesh.state[v]});
   return s;
 }

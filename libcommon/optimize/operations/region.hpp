@@ -210,6 +210,7 @@ private:
   std::vector<int32_t> used_; ///< entries of table_
   uint32_t table_clock_ = 0;
   std::vector<int32_t> made_, written_;
+  SmallNumbers corners_;              ///< of record()
   uint64_t saved_ = 0, restored_ = 0; ///< numbers of snapshots: of the last one, and of what was last brought back
   ChangeLog::Moment restored_then_;   ///< when it was
   FailedAttempts failed_;
