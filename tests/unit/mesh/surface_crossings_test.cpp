@@ -44,6 +44,24 @@ TEST_CASE("triangles apart, touching, through one another") {
   CHECK_FALSE(cross({5, 5, -1}, {5, 5, 1}, {6, 5, 0}));
 }
 
+TEST_CASE("triangles meet where an edge of one meets the other") {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> at(0, 3); // many lie in one plane, on one line or in one place
+  for (int n = 0; n < 20000; ++n) {
+    std::vector<Vec3d> point(6);
+    for (Vec3d& p : point)
+      p = {double(at(random)), double(at(random)), double(at(random))};
+    const auto meets = [&](int32_t a, int32_t b, std::array<int32_t, 3> t) {
+      return segment_meets_triangle(point[size_t(a)], point[size_t(b)], point[size_t(t[0])], point[size_t(t[1])],
+                                    point[size_t(t[2])]);
+    };
+    const std::array<int32_t, 3> s{0, 1, 2}, apart{3, 4, 5}, at_corner{0, 3, 4};
+    CHECK(triangles_cross(point, s, apart) == (meets(0, 1, apart) || meets(1, 2, apart) || meets(2, 0, apart) ||
+                                               meets(3, 4, s) || meets(4, 5, s) || meets(5, 3, s)));
+    CHECK(triangles_cross(point, s, at_corner) == (meets(1, 2, at_corner) || meets(3, 4, s)));
+  }
+}
+
 TEST_CASE("triangles in one plane") {
   CHECK(cross({1, 1, 0}, {2, 1, 0}, {1, 2, 0}));       // inside
   CHECK(cross({-9, -9, 0}, {20, -9, 0}, {-9, 20, 0})); // around
