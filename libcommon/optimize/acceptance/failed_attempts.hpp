@@ -11,7 +11,7 @@ namespace molmesh::optimize {
 /// Forgets: a new one takes the place of an old one here and there.
 class FailedAttempts {
 public:
-  enum class Operation : uint8_t { smooth, contract, merge, split };
+  enum class Operation : uint8_t { smooth, merge, split };
   struct Attempt {
     Operation operation = Operation::smooth;
     uint8_t aims = 0;            ///< of the acceptance, a bit each
