@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <string_view>
 
 namespace molmesh {
 namespace {
@@ -153,14 +154,25 @@ std::string in_selection(const std::string& name) {
   return quoted + '"';
 }
 
+namespace {
+
+/// "12", "-3", "45A".
+bool is_number_of_residue(std::string_view text) {
+  if (text.substr(0, 1) == "-")
+    text.remove_prefix(1);
+  const size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+  return digits > 0 && (digits == text.size() ||
+                        (digits + 1 == text.size() && std::isalpha(static_cast<unsigned char>(text[digits]))));
+}
+
+} // namespace
+
 std::string residue_in_selection(const std::string& chain, const std::string& residue) {
   const size_t colon = residue.rfind(':');
   std::string number = colon == std::string::npos ? "" : residue.substr(colon + 1);
-  const size_t sign = number[0] == '-' ? 1 : 0, end = number.find_first_not_of("0123456789", sign);
-  const bool code = end + 1 == number.size() && std::isalpha(static_cast<unsigned char>(number[end]));
-  if (number.size() == sign || end == sign || (end != std::string::npos && !code))
-    number = "";     // no number of a residue
-  else if (sign > 0) // alone it is all up to that number
+  if (!is_number_of_residue(number))
+    number = "";
+  else if (number[0] == '-') // alone it is all up to that number
     number += '-' + number;
   return "//" + (chain.empty() ? "*" : in_selection(chain)) + '/' + number + '(' +
          in_selection(residue.substr(0, colon)) + ')';
