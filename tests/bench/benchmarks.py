@@ -630,6 +630,7 @@ class Page:
                    + "; ratios of times say more than times. Any number of threads gives the same bytes.",
                    "## Targets and results", table(("", "target", "result", "met"), self.promises))
         self.text += body
+        self.include("other_surfaces.md")
         if self.quick:
             self.include("set_figures.md")
         self.include("peer_figures.md")
