@@ -21,6 +21,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import traceback
 
 from chain import Chain, ToolError
 
@@ -318,8 +319,9 @@ class Page:
                 continue
             text = subprocess.run([program, structure, spacing], check=True, stdout=subprocess.PIPE, text=True).stdout
             for line in text.splitlines()[2:]:
-                word = line[34:].split()
-                rows.append((f"{structure.name.split('.')[0].upper()}, {spacing} Å", line[:34].strip(), count(int(word[0])),
+                by, numbers = re.match(r"(.*?)\s{2,}(\d.*)", line).groups()
+                word = numbers.split()
+                rows.append((f"{structure.name.split('.')[0].upper()}, {spacing} Å", by, count(int(word[0])),
                              word[1], count(float(word[2])), f"{word[3]}° to {word[4]}°", word[5], " ".join(word[8:])))
         self.write("### Beside CGAL and TetGen", "The same density, interior, one thread, processor time.",
                    table(("", "by", "tetrahedra", "seconds", "elements/s", "angles", "Q ≥", ""), rows))
@@ -617,7 +619,13 @@ class Page:
                               ("surface", self.surface)):
             if not wanted or name in wanted:
                 self.say(name)
-                section()
+                before = len(self.text)
+                try:
+                    section()
+                except Exception as problem:  # an hour's other sections are kept
+                    traceback.print_exc()
+                    del self.text[before:]
+                    self.skipped.append(f"the section of {name}: {problem}")
         body, self.text = self.text, []
         if self.arguments.update:
             return self.updated(body)
