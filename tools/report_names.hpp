@@ -43,11 +43,11 @@ inline std::string unimproved_note(const std::vector<std::string>& paths) {
     if (count++ == 0)
       first = path, after = path.substr(0, stem) + ".vtu";
   }
-  return count == 0 ? ""
-                    : std::to_string(count) + (count == 1 ? " mesh" : " meshes") +
-                          " before improvement beside those "
-                          "after it, as " +
-                          first + " and " + after + ": leave them out where the latter are enough";
+  if (count == 0)
+    return "";
+  return std::to_string(count) + (count == 1 ? " mesh" : " meshes") +
+         " before improvement beside those after it, as " + first + " and " + after +
+         ": leave them out where the latter are enough";
 }
 
 } // namespace molmesh

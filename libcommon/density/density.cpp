@@ -78,18 +78,23 @@ void check(const Options& o, double h) {
   check_spacing(o, h);
 }
 
-Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const BandFinder& find) {
-  if (!all_have_bodies(hierarchy))
-    return compute(bodies_of(hierarchy).hierarchy, o, counts, find);
-  check_band(o);
+SearchOptions band_of(const Options& o) {
   SearchOptions s;
   s.isovalue = o.isovalue;
   s.band_lower = o.band_lower;
   s.band_upper = o.band_upper;
   s.tolerance = o.tolerance;
+  s.threads = o.threads;
+  return s;
+}
+
+Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const BandFinder& find) {
+  if (!all_have_bodies(hierarchy))
+    return compute(bodies_of(hierarchy).hierarchy, o, counts, find);
+  check_band(o);
+  SearchOptions s = band_of(o);
   s.full = o.full_search;
   s.atoms = o.atoms;
-  s.threads = o.threads;
   s.tile = o.tile;
   s.progress = o.progress;
   Field f = make_field(hierarchy, o.decay, budget_for(s).far, o.threads);

@@ -25,6 +25,9 @@ struct Options {
 /// What compute() refuses of the options, at a grid's spacing of h Å. Throws Error(usage).
 void check(const Options& options, double h);
 
+/// Which band to search for; how, on which part and with what progress, is as by default.
+SearchOptions band_of(const Options& options);
+
 struct Counts {
   SearchCounts search;
   double margin = 0; ///< Å, as used

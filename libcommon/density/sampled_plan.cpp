@@ -200,12 +200,7 @@ int64_t active_in(const BandBlock& b) {
 std::optional<Plan> sampled_plan(const Hierarchy& h, const Options& o, int64_t atoms) {
   if (!h.body.empty() || of_great_balls(h) || o.margin >= 0 || !o.tile.whole())
     return {};
-  SearchOptions s;
-  s.isovalue = o.isovalue;
-  s.band_lower = o.band_lower;
-  s.band_upper = o.band_upper;
-  s.tolerance = o.tolerance;
-  s.threads = o.threads;
+  const SearchOptions s = band_of(o);
   const double far = budget_for(s).far;
   Cubes cubes;
   cubes.reach = reach_of(h, o, far);
