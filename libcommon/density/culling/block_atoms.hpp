@@ -5,6 +5,7 @@
 #include "density/field/field.hpp"
 #include "density/values/block_sums_simd.hpp"
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -91,7 +92,9 @@ private:
   void find_effects_of_levels();
   void bound_octants_of_part(int alone);
   void take_octant(int octant, bool classify);
-  double upper_bound();
+  int32_t run_end(int32_t begin) const;
+  /// Of G over the box that the effects are for.
+  double upper_bound() const { return f_.plain_above ? double{total_effect_} : std::exp(ln_upper_); }
   double blur(double h) const;
   bool surely_outside() { return (1 + slack()) * blurred_ * upper_bound() + 2 * budget_.total() < lower_; }
   double drop(double budget);
@@ -131,6 +134,7 @@ private:
   AlignedFloats octant_upper_; ///< of near_, per octant: bound on log2 S over it
   int32_t stride_ = 0;         ///< from octant to octant
   float total_effect_ = 0;
+  double ln_upper_ = 0;               ///< of G, where powers lie above the innermost groups
   const float* log2_upper_ = nullptr; ///< of near_ over the box at work
   AlignedFloats upper_of_part_;       ///< of near_: the same over the part
   AlignedFloats effect_;              ///< of near_: on G, of dropping it

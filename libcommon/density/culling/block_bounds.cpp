@@ -26,6 +26,15 @@ struct Fold {
 
 } // namespace
 
+/// Where the units of near_ end that are in the same group of the level around the innermost as unit `begin`.
+int32_t BlockAtoms::run_end(int32_t begin) const {
+  const std::vector<int64_t>& parent = f_.level[0].parent;
+  int32_t end = begin + 1;
+  while (end < near_.n && parent[near_.group[end]] == parent[near_.group[begin]])
+    ++end;
+  return end;
+}
+
 void BlockAtoms::find_effects_of_levels() {
   const auto n = static_cast<size_t>(near_.n);
   for (size_t i = 0; i < n; ++i)
@@ -34,19 +43,20 @@ void BlockAtoms::find_effects_of_levels() {
   sum_.resize(f_.level.size());
   for (std::vector<double>& s : sum_)
     s.clear();
-  std::vector<double> open(f_.level.size(), -infinity);
+  std::vector<double> open(f_.level.size() + 1, -infinity); // last: G's
   OpenGroups up(f_);
   const auto close_sum = [&](size_t l, int64_t g) {
     sum_[l].push_back(open[l]);
-    if (l + 1 < open.size())
-      open[l + 1] = log_add(open[l + 1], f_.level[l].exponent[g] * open[l]);
+    open[l + 1] = log_add(open[l + 1], f_.level[l].exponent[g] * open[l]);
     open[l] = -infinity;
   };
-  for (size_t i = 0; i < n; ++i) {
+  for (int32_t i = 0, end; i < near_.n; i = end) {
+    end = run_end(i);
     up.enter(near_.group[i], close_sum);
-    open[1] = log_add(open[1], ln2 * effect_[i]);
+    open[1] = ln2 * log2_of_sum(effect_.data() + i, end - i);
   }
   up.finish(close_sum);
+  ln_upper_ = open.back();
   std::vector<size_t> run(f_.level.size(), 0);
   OpenGroups again(f_);
   const auto count = [&](size_t l, int64_t) { ++run[l]; };
@@ -63,26 +73,6 @@ void BlockAtoms::find_effects_of_levels() {
   }
   ones_.assign(n + 16, 1.0f);
   power_terms(effect_.data(), ones_.data(), near_.n, effect_.data());
-}
-
-/// Of G over the box that the effects are for.
-double BlockAtoms::upper_bound() {
-  if (f_.plain_above)
-    return total_effect_;
-  double root = -infinity;
-  std::vector<double> open(f_.level.size(), -infinity);
-  OpenGroups up(f_);
-  const auto close = [&](size_t l, int64_t g) {
-    double& to = l + 1 < open.size() ? open[l + 1] : root;
-    to = log_add(to, f_.level[l].exponent[g] * open[l]);
-    open[l] = -infinity;
-  };
-  for (size_t i = 0; i < static_cast<size_t>(near_.n); ++i) {
-    up.enter(near_.group[i], close);
-    open[1] = log_add(open[1], ln2 * near_.exponent[i] * log2_upper_[i]);
-  }
-  up.finish(close);
-  return std::exp(root);
 }
 
 /// ln G + κQ|δ|² is convex, so it lies above its tangent at the middle.

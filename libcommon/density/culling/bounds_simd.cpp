@@ -2,6 +2,7 @@
 #include "density/culling/bounds_simd.hpp"
 #include "base/dispatch.hpp"
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #undef HWY_TARGET_INCLUDE
@@ -176,6 +177,21 @@ float power_terms_simd(const float* log2_sum, const float* exponent, int32_t n, 
   return hn::GetLane(hn::SumOfLanes(f, sum));
 }
 
+double log2_of_sum_simd(const float* v, int32_t n) {
+  const V none = hn::Set(f, -2e38f);
+  const auto at = [&](int32_t i) {
+    const auto used = hn::Lt(hn::Iota(f, static_cast<float>(i)), hn::Set(f, static_cast<float>(n)));
+    return hn::IfThenElse(used, hn::LoadU(f, v + i), none);
+  };
+  V largest = none, sum = hn::Zero(f);
+  for (int32_t i = 0; i < n; i += lanes)
+    largest = hn::Max(largest, at(i));
+  const V scale = hn::MaxOfLanes(f, largest);
+  for (int32_t i = 0; i < n; i += lanes)
+    sum = hn::Add(sum, exp2(hn::Sub(at(i), scale)));
+  return double{hn::GetLane(scale)} + std::log2(double{hn::GetLane(hn::SumOfLanes(f, sum))});
+}
+
 /// Sum of those of v[n] that are at most `limit`; v holds n + 16.
 HWY_INLINE float sum_up_to(const float* v, int32_t n, float limit) {
   V sum = hn::Zero(f);
@@ -221,6 +237,7 @@ HWY_EXPORT(near_clusters_simd);
 HWY_EXPORT(bound_units_simd);
 HWY_EXPORT(bound_octants_simd);
 HWY_EXPORT(power_terms_simd);
+HWY_EXPORT(log2_of_sum_simd);
 HWY_EXPORT(keep_large_simd);
 
 void place_atoms(const ClusteredAtoms& from, const int32_t* list, size_t n, const double* middle,
@@ -240,6 +257,9 @@ void bound_octants(const LocalClusters& brick, const NearUnits& units, const Loc
 }
 float power_terms(const float* log2_sum, const float* exponent, int32_t n, float* term) {
   return MOLMESH_DISPATCH(power_terms_simd)(log2_sum, exponent, n, term);
+}
+double log2_of_sum(const float* v, int32_t n) {
+  return MOLMESH_DISPATCH(log2_of_sum_simd)(v, n);
 }
 int32_t keep_large(const float* effect, int32_t n, float budget, int32_t* out, float* left) {
   return MOLMESH_DISPATCH(keep_large_simd)(effect, n, budget, out, left);

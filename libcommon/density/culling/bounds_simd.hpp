@@ -61,6 +61,9 @@ void bound_octants(const LocalClusters& brick, const NearUnits& units, const Loc
 /// term = 2^(exponent·log2_sum), from 2^-126 to 2^127; returns the sum of n of them. Writes a multiple of 16.
 float power_terms(const float* log2_sum, const float* exponent, int32_t n, float* term);
 
+/// log2 of the sum of 2^v over n of v, which holds n + 16.
+double log2_of_sum(const float* v, int32_t n);
+
 /// Where effect[n] is above a threshold, ascending; those up to it add up to at most `budget`, and *left of it is
 /// not used. effect and out hold n + 16. Returns how many.
 int32_t keep_large(const float* effect, int32_t n, float budget, int32_t* out, float* left);

@@ -119,6 +119,7 @@ void Evaluator::add_log_body(const Field& f, const BlockAtoms& s, const BlockAto
 }
 
 void Evaluator::by_logarithms(const Field& f, const BlockAtoms& s, double h, float* out) {
+  [[maybe_unused]] const FlushSubnormals flush;
   const double step = 2 * f.decay * h * std::numbers::log2e;
   const BlockShape<double> shape{{}, step, -0.5 * step * h};
   OpenGroups groups(f);

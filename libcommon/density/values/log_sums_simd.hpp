@@ -23,8 +23,9 @@ struct LogSums {
 };
 
 struct LogScratch {
-  LogSums t; ///< of the unit at work
-  AlignedVector<double> change, spread, middle;
+  LogSums t;                        ///< of the unit at work
+  alignas(64) double sum[512] = {}; ///< of units whose parts doubles hold, by cubes
+  AlignedVector<double> change, spread, middle, most;
   std::vector<int32_t> shown;
 };
 

@@ -206,7 +206,7 @@ TEST_CASE("every instruction set of this machine keeps the bound, in single, dou
         check_equal(compute(h, o), g);
       }
     // Far coarser than the atoms: sums are carried as logarithms.
-    for (const std::vector<double>& exponents : {std::vector<double>{0.1, 0.5}, {0.05}, {0.1, 2, 0.3}})
+    for (const std::vector<double>& exponents : {std::vector<double>{0.1, 0.5}, {0.05}, {0.1, 2, 0.3}, {1, 0.4}})
       for (const double spacing : {4.0, 7.0}) {
         INFO(names.back() << ", innermost exponent " << exponents[0] << ", spacing " << spacing);
         Hierarchy h = test::random_chains(4, 40, 9, exponents, 12);
