@@ -92,9 +92,9 @@ TEST_CASE("time is bounded by a multiple of the elements, those of fans too") {
     }
     INFO(n << " elements, " << result.looks << " looks, " << least << " s");
     if (optimized)
-      CHECK(least <= 50e-6 * n + 0.03); // the largest part of which is that of any small mesh
-    CHECK(result.looks > 100 * n);      // tried they were
-    CHECK(result.looks < 15'000'000 + 25'000 * n);
+      CHECK(least <= 50e-6 * n + 0.002); // that of any small mesh
+    CHECK(result.looks > 100 * n);       // tried they were
+    CHECK(result.looks < 300'000 + 25'000 * n);
     CHECK(result.after.min >= result.before.min);
     CHECK(result.after.max <= std::max(result.before.max, 140.));
     TetMesh again = before;
@@ -112,6 +112,6 @@ TEST_CASE("what always finds one more operation to do is given up, too") {
   const optimize::Result result = optimize::improve(mesh, nullptr, {});
   INFO(elements << " elements, " << result.looks << " looks");
   CHECK(result.counts.total() > 4 * elements + 2000); // more than earn looks
-  CHECK(result.looks < 1.2 * (5e6 + 40e6 + 90e3 * double(elements)));
+  CHECK(result.looks < 1.2 * (40e6 + 90e3 * double(elements)));
   CHECK(result.after.min >= result.before.min);
 }
