@@ -94,6 +94,8 @@ InputFile::InputFile(const std::string& path) : name_(path) {
     struct stat file {};
     if (fstat(STDIN_FILENO, &file) == 0 && S_ISDIR(file.st_mode))
       fail_input(name_ + ": is a directory, expected a file");
+    if (isatty(STDIN_FILENO))
+      std::cerr << terminal_note << std::flush;
     return;
   }
   std::error_code ignored;

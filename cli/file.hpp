@@ -41,6 +41,9 @@ const std::string& head_of_standard_input();
 /// It was read, and held nothing: the program before in a pipe has stopped.
 bool standard_input_was_empty();
 
+/// What standard error gets before a terminal is read, where people may wait for an answer; empty: nothing.
+inline std::string terminal_note;
+
 /// "-" is standard input. Throws Error(bad_input) when the file cannot be opened or is a directory.
 class InputFile {
 public:

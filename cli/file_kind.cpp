@@ -111,6 +111,19 @@ constexpr std::array<Signature, 25> signatures = {{
     {0, "ply\r"sv, "a surface (PLY)", fill},
 }};
 
+constexpr std::array<std::pair<Kind, std::string_view>, 8> endings = {{
+    {Kind::structure, " .pdb .ent .cif .mmcif .bcif .mmtf .pqr .pdbqt .gro .xyzr .xyz .mol2 .sdf "},
+    {Kind::hierarchy, " .hier "},
+    {Kind::density, " .vdb "},
+    {Kind::mesh,
+     " .vtu .pvtu .vtp .vtk .msh .msh2 .mesh .meshb .node .ele .face .xdmf .h5 .m .stl .ply .off .obj .inp "
+     ".bdf .nas "},
+    {Kind::map, " .dx .map .ccp4 .mrc "},
+    {Kind::plan, " .join "},
+    {Kind::report, " .json "},
+    {Kind::other, " .html .htm .png .jpg .jpeg .gif .svg .tif .tiff .bmp .webp .pdf .eps .ps "},
+}};
+
 FileKind surface(const std::string& format) {
   return {Kind::other, "a surface (" + format + ")", fill};
 }
@@ -216,6 +229,19 @@ OpenedFile look_at_file(const std::string& path) {
   return file;
 }
 
+Kind kind_by_name(const std::string& path) {
+  std::filesystem::path name(small_letters(path));
+  if (name.extension() == ".gz")
+    name = name.stem();
+  if (name.extension().empty())
+    return Kind::unknown;
+  const std::string ending = ' ' + name.extension().string() + ' ';
+  for (const auto& [kind, known] : endings)
+    if (has(known, ending))
+      return kind;
+  return Kind::unknown;
+}
+
 std::string name_of(Kind kind) {
   switch (kind) {
   case Kind::structure:
@@ -227,7 +253,7 @@ std::string name_of(Kind kind) {
   case Kind::mesh:
     return "a mesh of tetrahedra (.vtu, .vtk, .msh, .mesh)";
   case Kind::map:
-    return "a map (CCP4/MRC, OpenDX)";
+    return "a map (CCP4/MRC, OpenDX, OpenVDB)";
   case Kind::plan:
     return "a plan (.join)";
   case Kind::report:

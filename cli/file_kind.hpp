@@ -29,6 +29,10 @@ struct OpenedFile {
 /// kind.what is empty for a file that cannot be read.
 OpenedFile look_at_file(const std::string& path);
 
+/// By the ending of its name, in letters of any case, .gz left out; `other`: pages and pictures, `unknown`: an
+/// ending that is none of a known kind, or none.
+Kind kind_by_name(const std::string& path);
+
 /// "a hierarchy of atoms (.hier)"
 std::string name_of(Kind kind);
 

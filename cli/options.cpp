@@ -6,10 +6,12 @@
 #include "cli/text.hpp"
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <iostream>
 #include <sstream>
+#include <string_view>
 #include <type_traits>
 
 namespace molmesh::cli {
@@ -94,6 +96,16 @@ std::string wrong_value(const Table& table) {
   return {};
 }
 
+/// Of an option that says nothing without another one: "--json: found without --plan, expected both"; empty: there
+/// is none.
+std::string alone(const Table& table) {
+  const auto given = [&](const std::string& name) { return table.is_given(name); };
+  for (const Option& o : table.options)
+    if (!o.given.empty() && !o.needed.empty() && std::none_of(o.needed.begin(), o.needed.end(), given))
+      return "--" + o.name + ": found without --" + o.needed[0] + ", expected both";
+  return {};
+}
+
 /// Insertions, deletions, replacements and swaps of neighbours that make b of a.
 size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<size_t>> d(a.size() + 1, std::vector<size_t>(b.size() + 1));
@@ -109,6 +121,14 @@ size_t edit_distance(const std::string& a, const std::string& b) {
     }
   return d[a.size()][b.size()];
 }
+
+/// Of the four programs of the chain, options that a user may give to a wrong one.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> others = {{
+    {"pdb2hier", " model assembly levels domains rule resolution select hydrogens waters hetatm altloc radii "},
+    {"hier2density", " spacing grid margin probe decay isovalue band tolerance search atoms tile "},
+    {"density2tet", " region box adapt elements size regions cavities drop-below "},
+    {"tetsmooth", " density effort coarsen iterations parts min-dihedral max-dihedral "},
+}};
 
 /// Of the first argument that looks like an option and is none: "--spacin: no such option, did you mean
 /// --spacing?"; empty: there is none.
@@ -133,9 +153,15 @@ std::string unknown_option(const Table& table, int argc, char** argv) {
         least = d;
         near = &o;
       }
+    if (name == "--chain" || name == "--chains")
+      for (const Option& o : table.options)
+        near = o.name == "select" ? &o : near;
     for (const Option& o : table.options) // a beginning of one
       if (!near && !o.argument && name.size() > 3 && ("--" + o.name).rfind(name, 0) == 0)
         near = &o;
+    for (const auto& [program, options] : others)
+      if (name.rfind("--", 0) == 0 && options.find(' ' + name.substr(2) + ' ') != options.npos)
+        return name + ": no such option, it is " + std::string(program) + "'s";
     return name + ": no such option" + (near ? ", did you mean --" + near->name + "?" : "");
   }
   return {};
@@ -234,6 +260,11 @@ Option& Table::add_row(const std::string& names, Option::Target target, const st
   return o;
 }
 
+bool Table::is_given(const std::string& name) const {
+  return std::any_of(options.begin(), options.end(),
+                     [&](const Option& o) { return o.name == name && !o.given.empty(); });
+}
+
 std::string Table::flag_of(const std::string& quantity) const {
   for (const auto& [name, flag] : flags_)
     if (name == quantity)
@@ -271,7 +302,9 @@ int parse(Table& table, int argc, char** argv) {
         throw CLI::ArgumentMismatch(arg.substr(0, arg.size() - 1) + ": found '', expected a value");
     app.parse(argc, argv);
     note_given();
-    const std::string wrong = wrong_value(table);
+    std::string wrong = wrong_value(table);
+    if (wrong.empty())
+      wrong = alone(table);
     return wrong.empty() ? -1 : refuse(wrong);
   } catch (const CLI::CallForHelp&) {
     return print(help(table));
@@ -279,9 +312,12 @@ int parse(Table& table, int argc, char** argv) {
     return print(app.version() + '\n');
   } catch (const CLI::ParseError& e) {
     note_given();
-    if (!dynamic_cast<const CLI::ExtrasError*>(&e))
-      return refuse(plain_error(table, e));
-    const std::string unknown = unknown_option(table, argc, argv);
+    const bool extras = dynamic_cast<const CLI::ExtrasError*>(&e),
+               missing = dynamic_cast<const CLI::RequiredError*>(&e);
+    const std::string unknown = extras || missing ? unknown_option(table, argc, argv) : "";
+    if (!extras && unknown.empty())
+      return refuse(plain_error(table, e) +
+                    (missing && !table.page.several.empty() ? "; " + table.page.several : ""));
     return refuse(unknown.empty() ? too_many(table, app.remaining()) : unknown);
   }
 }

@@ -26,8 +26,9 @@ struct Option {
   std::vector<std::string> words; ///< what it may be; empty: anything
   std::string default_text;
   bool must_be_given = false, in_report = true;
-  bool at_once = false;           ///< several(): also several values after one name
-  std::vector<std::string> given; ///< on the command line, after parse()
+  std::vector<std::string> needed; ///< names of options; empty: none
+  bool at_once = false;            ///< several(): also several values after one name
+  std::vector<std::string> given;  ///< on the command line, after parse()
 
   /// Unit of a number (Å), or what stands for the value in the help (FILE: a file's name, which may not be empty).
   Option& unit(const std::string& text) { return value_name = text, *this; }
@@ -35,6 +36,8 @@ struct Option {
   Option& positive() { return above_zero = true, *this; }
   Option& one_of(std::vector<std::string> w) { return words = std::move(w), *this; }
   Option& required() { return must_be_given = true, *this; }
+  /// It says something only where one of these is given, too.
+  Option& needs(std::vector<std::string> names) { return needed = std::move(names), *this; }
   /// The default as the help shows it, where the target does not hold it.
   Option& shown_default(const std::string& text) { return default_text = text, *this; }
   Option& several_at_once() { return at_once = true, *this; }
@@ -85,6 +88,8 @@ public:
   void group(const std::string& heading) { heading_ = heading; }
   /// How the program names a quantity that an Error names, where no option of its own has that name.
   void quantity(const std::string& name, const std::string& flag) { flags_.push_back({name, flag}); }
+  /// After parse(); false where there is no such option.
+  bool is_given(const std::string& name) const;
   /// The flag of a quantity, empty: none.
   std::string flag_of(const std::string& quantity) const;
 

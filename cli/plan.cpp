@@ -124,8 +124,8 @@ int64_t PlanOptions::memory_limit() const {
 void add_plan_options(Table& table, PlanOptions& o) {
   table.group("plan");
   table.add("--plan", o.plan, "tell what the run will take, and do not run");
-  table.add("--json", o.json, "the plan as one JSON object (formats/report/REPORTv1.md)");
-  table.add("--speed", o.speed, "speed of a core, for seconds; docs/benchmarks.md: 1").positive();
+  table.add("--json", o.json, "the plan as one JSON object (formats/report/REPORTv1.md)").needs({"plan"});
+  table.add("--speed", o.speed, "speed of a core, for seconds; docs/benchmarks.md: 1").positive().needs({"plan"});
   table
       .add("--max-mem", o.max_mem,
            o.machine_limits ? "memory at most: 2G, none; auto: granted, or all"

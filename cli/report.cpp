@@ -1,6 +1,8 @@
 // report.cpp — options in force, phases, counts; and what a run may not write over.
 #include "cli/report.hpp"
 #include "base/error.hpp"
+#include "base/small_letters.hpp"
+#include "cli/file_kind.hpp"
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -87,10 +89,33 @@ void require_distinct_files(const Table& table, const Common& o) {
       fail(Status::usage, "--report: found " + o.report + ", expected another file than the output");
 }
 
+/// No output has the name of another kind of file than the program's page says it writes. Plans may have any.
+void require_own_ending(const Table& table, const Common& o) {
+  const Kind kind = kind_by_name(o.output);
+  if (kind == Kind::unknown || o.chooses_format || table.is_given("plan"))
+    return;
+  const std::string name = small_letters(o.output);
+  std::string own;
+  for (const Page::File& f : table.page.files) {
+    if (f.meaning.find("written") == std::string::npos)
+      continue;
+    if (name.ends_with(f.name))
+      return;
+    own += (own.empty() ? "" : " or ") + f.name;
+  }
+  const char* way = own == ".vtu" && kind == Kind::mesh    ? ": tetconvert makes other meshes of it"
+                    : own == ".vtu" && kind == Kind::other ? ": tetreport makes pages and pictures of it"
+                    : own == ".vdb" && kind == Kind::map   ? ": density2map makes maps of it"
+                                                           : "";
+  if (!own.empty())
+    fail(Status::usage, "-o: found " + o.output + ", expected a name that ends in " + own + way);
+}
+
 } // namespace
 
 std::unique_ptr<OutputFile> open_report(const Table& table, const Common& o) {
   require_distinct_files(table, o);
+  require_own_ending(table, o);
   return o.report.empty() ? nullptr : std::make_unique<OutputFile>(o.report);
 }
 

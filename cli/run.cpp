@@ -202,6 +202,8 @@ int failed(const Table& table, const Common& options, const std::exception& e) {
   }
   if (status == Status::bad_input)
     text = with_kind(table, text);
+  if (text == options.input + ": is a directory, expected a file" && !table.page.several.empty())
+    text += "; " + table.page.several;
   std::cerr << table.program << ": " << one_line(text) << '\n';
   return static_cast<int>(status);
 }
@@ -239,6 +241,9 @@ int run_program(Table& table, Common& options, int argc, char** argv, const std:
     if (threads > 1 && options.uses_threads)
       settle_threads(options, threads);
     const std::unique_ptr<OutputFile> report = open_report(table, options);
+    if (!options.quiet)
+      terminal_note =
+          table.program + ": reading from the terminal; " + table.program + " --help tells how it is used\n";
     Run run;
     run.tool = table.program;
     run.quiet = options.quiet;

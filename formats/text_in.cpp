@@ -97,7 +97,7 @@ double TextIn::coordinate(const char* rule) {
 void TextIn::require_room(const char* rule, const char* what, int64_t n, int64_t bytes) const {
   if (n < 0 || n > static_cast<int64_t>(text_.size() - at_) / bytes + 1)
     refuse(rule, std::to_string(n) + " " + what + ", but the file has " + std::to_string(text_.size() - at_) +
-                     " more bytes: truncated?");
+                     " more bytes, expected a whole file: make it again");
 }
 
 int64_t TextIn::count(const char* rule, const char* what, int64_t bytes) {
@@ -109,7 +109,7 @@ int64_t TextIn::count(const char* rule, const char* what, int64_t bytes) {
 const char* TextIn::bytes(const char* rule, uint64_t n) {
   if (n > text_.size() - at_) {
     word_ = at_;
-    refuse(rule, "the file ends within binary data: truncated?");
+    refuse(rule, "the file ends within binary data, expected a whole file: make it again");
   }
   const char* const b = text_.data() + at_;
   at_ += n;

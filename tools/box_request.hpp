@@ -76,6 +76,9 @@ inline contour::BoxRequest parse_box(const std::string& text) {
       refuse("+ and a distance above 0 Å");
     return box;
   }
+  if (text.empty() || text.find_first_not_of("0123456789.,+-eEx") != text.npos)
+    refuse("auto, tight, a factor such as 2x, a distance such as +30, x0,y0,z0,x1,y1,z1, sphere:2x, sphere:+30 or "
+           "sphere:X,Y,Z,RADIUS");
   if (std::count(text.begin(), text.end(), ',') == 0) {
     box.kind = contour::BoxRequest::factor;
     const bool times = !text.empty() && text.back() == 'x';

@@ -106,6 +106,8 @@ inline void check_regions(const std::string& regions, const std::string& hier, c
                           bool sized) {
   if (sized && hier.empty())
     fail(Status::usage, "--size: found no --hier, expected the hierarchy that the selection is of");
+  if (!sized && regions == "molecule" && !hier.empty())
+    fail(Status::usage, "--hier: found without --regions and --size, expected one of them");
   if (!sized && (regions != "molecule") != !hier.empty())
     fail(Status::usage, "--regions: found " + regions + (hier.empty() ? " without --hier" : " with --hier") +
                             ", expected a level and --hier, or neither");

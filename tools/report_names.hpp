@@ -12,6 +12,10 @@
 
 namespace molmesh {
 
+inline std::string base_name(const std::string& path) {
+  return path.substr(path.rfind('/') + 1);
+}
+
 /// Empty: not given. Any other name is taken, one without an ending, too. Throws Error(usage).
 inline void check_report_names(const std::string& page, const std::string& picture) {
   const auto is_picture = [](const std::string& end) {

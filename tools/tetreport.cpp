@@ -15,10 +15,6 @@ using namespace molmesh;
 
 namespace {
 
-std::string base_name(const std::string& path) {
-  return path.substr(path.rfind('/') + 1);
-}
-
 std::vector<int32_t> shown_regions(const Options& o, const TetMesh& m) {
   const std::set<int32_t> all(m.region.begin(), m.region.end());
   std::vector<int32_t> shown;
@@ -70,7 +66,7 @@ std::string draw(const Loaded& l, const std::string& name, const Options& o, int
                               o.clip == "corner" ? "xy"
                               : o.clip == "none" ? ""
                                                  : o.clip,
-                              o.clip_at, low, high);
+                              o.clip_at.value_or(0.5), low, high);
   p.edges = !o.no_edges;
   p.caption = caption;
   p.title = name;
@@ -81,6 +77,8 @@ std::string draw(const Loaded& l, const std::string& name, const Options& o, int
 
 Status run_tool(const Options& o, cli::Run& run) {
   check_report_names(o.output, o.png);
+  if (o.clip == "none" && o.clip_at)
+    fail(Status::usage, "--clip-at: found with --clip none, expected --clip x, y, z or corner");
   std::vector<std::string> paths{o.input};
   paths.insert(paths.end(), o.meshes.begin(), o.meshes.end());
   if (!o.png.empty() && paths.size() > 1)

@@ -21,17 +21,24 @@ formats::MeshReport report(const std::string& path, const Options& o, cli::Run& 
       read_mesh(run, input, o.mesh, bodies ? formats::CellArrays::keep : formats::CellArrays::drop, notes);
   run.phase("validity");
   Validity validity = check_validity(mesh, threads);
+  bool uncrossed = false;
   if (o.crossings) {
     run.phase("crossings");
+    const size_t faults = validity.faults.size();
     add_crossings(validity, mesh, threads);
+    uncrossed = !validity.region.empty() && validity.faults.size() == faults;
   }
   run.phase("quality");
   if (bodies && validity.valid() && !o.hierarchy.empty())
     label_surface(mesh, o.hierarchy, threads, run);
-  if (bodies && validity.valid())
+  if (bodies && validity.valid()) {
     *bodies = formats::list_bodies(mesh, input.name(), threads);
-  return formats::report_mesh(mesh, input.name(), notes, std::move(validity), {o.min_dihedral, o.max_dihedral},
-                              threads);
+    (*bodies)->uncrossed = uncrossed;
+  }
+  formats::MeshReport r = formats::report_mesh(mesh, input.name(), notes, std::move(validity),
+                                               {o.min_dihedral, o.max_dihedral}, threads);
+  r.uncrossed = uncrossed;
+  return r;
 }
 
 Status run_tool(const Options& o, cli::Run& run) {

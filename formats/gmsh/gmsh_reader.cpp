@@ -107,7 +107,7 @@ private:
     const std::string end = "$End" + std::string(name.substr(1));
     const size_t at = in_.rest().find(end);
     if (at == std::string_view::npos)
-      in_.refuse("R2", "the file ends within " + std::string(name) + ": truncated?");
+      in_.refuse("R2", "the file ends within " + std::string(name) + ", expected a whole file: make it again");
     in_.skip(at);
     if (skipped_.insert(std::string(name)).second && name != "$Comments")
       cells_.pass_over("section " + std::string(name));

@@ -89,8 +89,8 @@ ForeignGrid load_openvdb(std::string_view bytes, const std::string& name, const 
     View view(bytes);
     std::istream in(&view);
     grids = openvdb::io::Stream(in, false).getGrids();
-  } catch (const std::exception& e) {
-    fail_input(file + ": V1: " + e.what());
+  } catch (const std::exception&) {
+    fail_input(file + ": V1: truncated or damaged, expected a whole OpenVDB file");
   }
   std::string names;
   openvdb::GridBase::Ptr found;

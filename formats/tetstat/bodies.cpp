@@ -26,7 +26,7 @@ std::string counted(int64_t n, const char* one, const char* more) {
 BodyList list_bodies(const TetMesh& m, const std::string& file, int threads) {
   const TriangleSides sides = triangle_sides(m, threads);
   const MeshBodies bodies = find_bodies(m, sides.across);
-  BodyList list{file, bodies.body, {}, names_of(m, "region_names"), {}};
+  BodyList list{file, false, bodies.body, {}, names_of(m, "region_names"), {}};
   const std::vector<CellLabel> labels = cell_labels(m);
   if (const PlaceNames places(labels); places.known())
     list.residues = names_round_bodies(m, sides, bodies, places);
@@ -53,6 +53,8 @@ std::string bodies_text(const BodyList& list) {
     s += "; cavities are holes in this mesh of the inside alone: density2tet --region both has them listed";
   else
     s += ", " + counted(cavities, "cavity", "cavities");
+  if (list.uncrossed)
+    s += "; no surface triangles cross";
   const bool round = !list.residues.empty();
   s += "\n\n" + print("%-16s %16s %14s %12s   centre/Å%s\n", "", "volume/Å³", "area/Å²", "tetrahedra",
                       round ? "                residues round it" : "");
@@ -86,6 +88,8 @@ std::string bodies_json(const BodyList& list) {
             {"units", {{"volume", "Å³"}, {"area", "Å²"}, {"centre", "Å"}}},
             {"bodies", json::array()},
             {"boundaries", json::array()}};
+  if (list.uncrossed)
+    j["crossing_triangles"] = 0;
   for (size_t i = 0; i < list.body.size(); ++i) {
     const MeshBody& b = list.body[i];
     j["bodies"].push_back({{"region", b.region},

@@ -16,6 +16,7 @@ struct BoundarySummary {
 
 struct BodyList {
   std::string file;
+  bool uncrossed = false;                     ///< triangles that cross were looked for, and there are none
   std::vector<MeshBody> body;                 ///< by region, then largest volume first
   std::vector<BoundarySummary> boundary;      ///< by label, ascending
   std::map<int32_t, std::string> region_name; ///< of the regions that the mesh itself names

@@ -16,6 +16,7 @@ struct MeshReport {
   int64_t parts = 0;                          ///< distinct METIS parts, 0: none
   MeshNotes notes;
   Validity validity;
+  bool uncrossed = false;                     ///< triangles that cross were looked for, and there are none
   std::map<int32_t, std::string> region_name; ///< of domains
   std::map<int32_t, std::string> label_name;  ///< above 7, where there are domains
   std::optional<MeshQuality> quality;         ///< none where an index is out of range

@@ -95,6 +95,8 @@ std::string tetstat_text(const MeshReport& r) {
   s += v.valid() ? "\nvalid\n" : "\nINVALID\n";
   for (const Fault& f : v.faults)
     s += print("  %-20s %12s   ", f.rule.c_str(), grouped(f.count).c_str()) + f.example + '\n';
+  if (r.uncrossed)
+    s += "  no surface triangles cross\n";
   s += grouped(r.points) + " points, " + grouped(r.tets) + " tetrahedra, " + grouped(r.triangles) + " triangles";
   if (r.parts > 0)
     s += ", " + grouped(r.parts) + " parts";

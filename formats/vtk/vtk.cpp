@@ -264,8 +264,8 @@ private:
     }
     const Type& t = type(type_name);
     if (components > 0 && tuples > (int64_t{1} << 40) / components)
-      in_.refuse("R4",
-                 std::to_string(tuples) + " values of " + std::to_string(components) + " components: truncated?");
+      in_.refuse("R4", std::to_string(tuples) + " values of " + std::to_string(components) +
+                           " components, expected a whole file: make it again");
     const bool wanted = in_data_ && of_cells_;
     if (!wanted || components != 1 || t.kind == 'b' || !names_.insert(name).second) {
       if (wanted)

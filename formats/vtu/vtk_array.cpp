@@ -51,7 +51,7 @@ public:
     }
   }
   [[noreturn]] void truncated() const {
-    d_.refuse(a_.line, "R4", "array '" + a_.name + "' ends early: truncated?");
+    d_.refuse(a_.line, "R4", "array '" + a_.name + "' ends early, expected a whole file: make it again");
   }
 
 private:

@@ -40,7 +40,8 @@ public:
     bool appended = false;
     for (Tag tag; !open.empty();) {
       if (!next(tag))
-        d_.refuse(line_, "R1", "the file ends inside " + std::string(open.back()) + ": truncated?");
+        d_.refuse(line_, "R1",
+                  "the file ends inside " + std::string(open.back()) + ", expected a whole file: make it again");
       if (tag.closing) {
         if (tag.name != open.back())
           d_.refuse(tag.line, "R1",
@@ -101,7 +102,7 @@ private:
     for (;;) {
       p = std::min(text_.find_first_not_of(blanks, p), text_.size());
       if (p == text_.size())
-        d_.refuse(line_, "R1", "the file ends inside a tag: truncated?");
+        d_.refuse(line_, "R1", "the file ends inside a tag, expected a whole file: make it again");
       if (text_[p] == '>')
         break;
       if (text_[p] == '/' && text_.substr(p, 2) == "/>") {
@@ -260,7 +261,7 @@ private:
     if (!has_end)
       end = text_.rfind("</VTKFile"); // CGAL 5 writes no other
     if (end == text_.npos || end <= mark)
-      d_.refuse(tag.line, "R4", "AppendedData does not end: truncated?");
+      d_.refuse(tag.line, "R4", "AppendedData does not end, expected a whole file: make it again");
     appended_ = text_.substr(mark + 1, end - mark - 1);
     at_ = end; // lines are not counted across binary data
     return has_end;
@@ -276,7 +277,8 @@ private:
         if (static_cast<size_t>(a.offset) >= appended_.size())
           d_.refuse(a.line, "R4",
                     "array '" + a.name + "' starts at byte " + std::to_string(a.offset) +
-                        ", but AppendedData has " + std::to_string(appended_.size()) + ": truncated?");
+                        ", but AppendedData has " + std::to_string(appended_.size()) +
+                        ", expected a whole file: make it again");
         a.data = appended_.substr(static_cast<size_t>(a.offset));
       }
     };

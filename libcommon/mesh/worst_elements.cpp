@@ -4,6 +4,7 @@
 #include "mesh/tet_mesh.hpp"
 #include "par/par.hpp"
 #include <algorithm>
+#include <iomanip>
 #include <sstream>
 
 namespace molmesh {
@@ -52,15 +53,16 @@ std::vector<WorstTet> worst_tets(const TetMesh& m, AngleLimits limits, size_t mo
 
 std::string range_text(double min, double max) {
   std::ostringstream s;
-  s.precision(4);
+  s << std::fixed << std::setprecision(2);
   s << min << "° to " << max << "°";
   return s.str();
 }
 
 std::string described(const WorstTet& t) {
   std::ostringstream s;
+  s << std::fixed << std::setprecision(3);
   s << "element " << t.tet << " has " << range_text(t.min, t.max) << ", at " << t.centre.x << ' ' << t.centre.y
-    << ' ' << t.centre.z;
+    << ' ' << t.centre.z << " Å";
   return s.str();
 }
 

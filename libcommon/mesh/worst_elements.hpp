@@ -18,9 +18,9 @@ std::vector<WorstTet> worst_tets(const TetMesh& m, AngleLimits limits, size_t mo
 /// How many are beyond them.
 int64_t count_beyond(const TetMesh& m, AngleLimits limits, int threads);
 
-/// "24.1° to 142.3°"
+/// "24.10° to 142.32°"
 std::string range_text(double min, double max);
-/// "element 7 has 24.1° to 142.3°, at 1 2 3"
+/// "element 7 has 24.10° to 142.32°, at 1.000 2.000 3.000 Å"
 std::string described(const WorstTet& t);
 
 } // namespace molmesh

@@ -26,7 +26,7 @@ Rule parse_rule(const std::string& text, const std::string& where, Status status
                                                       : nullptr;
     const std::string found = where + ": found '" + std::string(last) + "', expected ";
     if (exponent == nullptr)
-      fail(status, found + "P_R=…, P_C=… or P_D=…");
+      fail(status, found + "P_R=…, W_R=…, P_C=… or P_D=…");
     if (*exponent)
       fail(status, found + "each exponent once");
     *exponent = decimal(last.substr(4));
@@ -41,9 +41,10 @@ Rule parse_rule(const std::string& text, const std::string& where, Status status
     rest = blank == std::string_view::npos ? std::string_view{} : trimmed(rest.substr(0, blank));
   }
   if (!rule.residue && !rule.chain && !rule.domain && !rule.weight)
-    fail(status, where + ": found '" + text + "', expected SELECTION P_R=… P_C=… P_D=…, at least one exponent");
+    fail(status,
+         where + ": found '" + text + "', expected SELECTION P_R=… W_R=… P_C=… P_D=…, at least one of them");
   if (rest.empty())
-    fail(status, where + ": found no selection, expected SELECTION P_R=… P_C=… P_D=… ('*' is everything)");
+    fail(status, where + ": found no selection, expected SELECTION P_R=… W_R=… P_C=… P_D=… ('*' is everything)");
   for (const char* exponent : {"P_R=", "P_C=", "P_D=", "W_R="})
     if (rest.find(exponent) != std::string_view::npos)
       fail(status, where + ": found '" + text + "', expected exponents at the end alone");

@@ -5,6 +5,7 @@
 namespace molmesh {
 
 struct Options : cli::Common {
+  Options() { chooses_format = true; }
   std::string format = "auto";
 };
 

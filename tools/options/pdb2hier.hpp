@@ -69,6 +69,7 @@ inline void describe(cli::Table& t, Options& o) {
   t.page.files = {
       {".pdb, .cif, .bcif, .json, .pqr, .gro, .xyzr", "atomic structure, also as .gz, read: formats/pdb/PDB.md"},
       {".hier", "molecular hierarchy, written: formats/hier/HIERv1.md, formats/hier/HIERv2.md"}};
+  t.page.several = "many structures at once: make -f Makefile.pipeline IN=FOLDER OUT=MESHES all";
   t.page.see_also = {"hier2density", "hierjoin", "tetlabel"};
 }
 

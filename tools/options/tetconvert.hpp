@@ -5,7 +5,10 @@
 namespace molmesh {
 
 struct Options : cli::Common {
-  Options() { uses_threads = false; }
+  Options() {
+    uses_threads = false;
+    chooses_format = true;
+  }
   std::string format = "auto", charges;
   MeshInput mesh;
   std::vector<std::string> outputs() const override;

@@ -43,6 +43,7 @@ inline void describe(cli::Table& t, Options& o) {
   t.page.files = {{".vtu", "mesh (VTK), read and written: formats/vtu/VTUv1.md"},
                   {".msh, .mesh, .vtk", "meshes of other programs, read: formats/mesh/MESH.md"},
                   {".hier", "molecular hierarchy, read: formats/hier/HIERv1.md"}};
+  t.page.several = "the mesh comes first, then the .hier";
   t.page.see_also = {"tetsmooth", "tetconvert", "pdb2hier"};
 }
 

@@ -1,15 +1,20 @@
 // tetreport.hpp — options and page of tetreport.
 #pragma once
 #include "tools/options/mesh_input.hpp"
+#include <optional>
 
 namespace molmesh {
 
 struct Options : cli::Common {
-  Options() { output.clear(); }
+  Options() {
+    output.clear();
+    chooses_format = true;
+  }
   MeshInput mesh;
   std::vector<std::string> meshes, runs; ///< meshes: after the first
   std::string png, colour = "auto", clip = "corner", region = "auto", title;
-  double clip_at = 0.5, azimuth = -60, elevation = 25;
+  std::optional<double> clip_at;
+  double azimuth = -60, elevation = 25;
   int width = 1200, height = 900;
   double most_megabytes = 30;
   bool check = false, no_edges = false;
@@ -34,6 +39,7 @@ inline void describe(cli::Table& t, Options& o) {
       .unit("MB")
       .within(2, 2000);
   t.group("picture");
+  const std::vector<std::string> picture = {"png", "meshes"}; // a gallery has one of each mesh
   t.add("--png", o.png, "write a picture of one mesh to this file").unit("PICTURE");
   t.add("--colour", o.colour,
         "of the surface, in the page at first, too: plain, region, body, boundary, part, chain, residue or another "
@@ -43,17 +49,24 @@ inline void describe(cli::Table& t, Options& o) {
   t.add("--clip", o.clip,
         "what the picture takes away: the side of x, y or z that faces the viewer, of both x and y (a corner), or "
         "nothing; tetrahedra at the cut stay whole")
-      .one_of({"x", "y", "z", "corner", "none"});
-  t.add("--clip-at", o.clip_at, "where, as a share of the mesh's extent").within(0, 1);
+      .one_of({"x", "y", "z", "corner", "none"})
+      .needs(picture);
+  t.add("--clip-at", o.clip_at, "where, as a share of the mesh's extent")
+      .within(0, 1)
+      .shown_default("0.5")
+      .needs(picture);
   t.add("--region", o.region,
         "what is shown: the molecule with its cavities, what is around it, or both; auto: the "
         "molecule, where there is one")
       .one_of({"auto", "interior", "exterior", "both"});
-  t.add("--azimuth", o.azimuth, "where the viewer stands, from +x to +y").unit("°").within(-360, 360);
-  t.add("--elevation", o.elevation, "and how high").unit("°").within(-90, 90);
-  t.add("--width", o.width, "pixels").within(64, 8192);
-  t.add("--height", o.height, "pixels").within(64, 8192);
-  t.add("--no-edges", o.no_edges, "draw no edges of triangles");
+  t.add("--azimuth", o.azimuth, "where the viewer stands, from +x to +y")
+      .unit("°")
+      .within(-360, 360)
+      .needs(picture);
+  t.add("--elevation", o.elevation, "and how high").unit("°").within(-90, 90).needs(picture);
+  t.add("--width", o.width, "pixels").within(64, 8192).needs({"png"});
+  t.add("--height", o.height, "pixels").within(64, 8192).needs({"png"});
+  t.add("--no-edges", o.no_edges, "draw no edges of triangles").needs(picture);
   describe_mesh_input(t, o.mesh);
   t.page.about = "Makes one HTML file that any browser opens without a network: the mesh in 3D, coloured by its "
                  "labels, cut open "
@@ -70,6 +83,7 @@ inline void describe(cli::Table& t, Options& o) {
                   {".html", "the report, written: formats/html/HTML.md"},
                   {".png", "picture, written: formats/png/PNG.md"},
                   {".json", "run reports, read: formats/report/REPORTv1.md"}};
+  t.page.several = "several meshes as FOLDER/*.vtu";
   t.page.see_also = {"tetstat", "tetlabel", "tetconvert"};
 }
 

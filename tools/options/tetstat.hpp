@@ -42,6 +42,7 @@ inline void describe(cli::Table& t, Options& o) {
                      {"tetstat --compare 1tii.tet.vtu 1tii.vtu", "two meshes side by side"}};
   t.page.files = {{".vtu, .msh, .mesh, .vtk", "mesh, read: formats/mesh/MESH.md"},
                   {".hier", "molecular hierarchy, read: formats/hier/HIERv1.md"},
+                  {".txt", "the report, written"},
                   {".json", "the report for programs, written: formats/tetstat/TETSTATv1.md"}};
   t.page.see_also = {"tetsmooth", "density2tet"};
 }

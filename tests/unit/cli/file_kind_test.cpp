@@ -1,5 +1,6 @@
 // file_kind_test.cpp — a file given to the wrong program is named, with what to do with it.
 #include "cli/file_kind.hpp"
+#include "tools/mesh_endings.hpp"
 #include <catch2/catch.hpp>
 
 using namespace molmesh::cli;
@@ -62,4 +63,22 @@ TEST_CASE("the advice leads from what was found to what is wanted") {
   CHECK(from(Kind::hierarchy, Kind::mesh, "tetlabel") == "the mesh comes first, then the .hier");
   CHECK(from(Kind::density, Kind::plan, "densityjoin") == "name it with --piece");
   CHECK(advice(file_kind("OFF\n3 1 0\n"), Kind::hierarchy, "", true).find("no atoms") != std::string::npos);
+}
+
+TEST_CASE("the ending of a name tells a kind, in letters of any case and packed") {
+  CHECK(kind_by_name("a/1tii.pdb") == Kind::structure);
+  CHECK(kind_by_name("1TII.CIF.gz") == Kind::structure);
+  CHECK(kind_by_name("x.tet.vtu") == Kind::mesh);
+  CHECK(kind_by_name("x.hier") == Kind::hierarchy);
+  CHECK(kind_by_name("x.vdb") == Kind::density);
+  CHECK(kind_by_name("x.mrc") == Kind::map);
+  CHECK(kind_by_name("x.html") == Kind::other);
+  for (const char* none : {"-", "", "x", ".vtu", "a.vtu/x", "x.", "x.out", "/dev/null", "x.1-of-2.tile", "x.gz"}) {
+    INFO(none);
+    CHECK(kind_by_name(none) == Kind::unknown);
+  }
+  for (const auto& [ending, format] : molmesh::mesh_endings) {
+    INFO(ending);
+    CHECK(kind_by_name(std::string("x") + ending) == Kind::mesh);
+  }
 }
