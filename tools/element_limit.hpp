@@ -20,35 +20,35 @@ inline contour::Options::Meshed meshed_of(const std::string& region) {
                                 : contour::Options::both;
 }
 
-/// The finest spacing, from `least` on in steps of 3 %, of whose mesh with the default tolerance nine tenths of
-/// `most` elements are planned; 0: none up to 20 Å. Above 2.5 Å a mesh is larger than its plan, by up to a quarter
-/// at 3 Å, so there it is a smaller part.
-inline double spacing_for(const BlockGrid& grid, contour::Options options, int64_t most, double least) {
-  options.adapt = {};
-  options.layers = 1;
-  const double h = grid.frame.spacing;
-  const contour::Leaves leaves = contour::count_leaves(grid, options);
-  for (double s = least; s < 20; s *= 1.03) {
-    const double share = std::clamp(0.9 - 0.3 * (s - 2.5), 0.7, 0.9);
-    const contour::Plan plan =
-        contour::plan(contour::at_spacing(leaves, h, s), std::ssize(grid.corner), options.meshed);
-    if (double(plan.elements) <= share * double(most))
+/// The share of a limit that a mesh may be planned to have. Above 2.5 Å a mesh is larger than its plan, by up to a
+/// third, and of the interior alone by up to three quarters, unless its cells are halved.
+inline double planned_share(double spacing, const contour::Leaves& leaves, contour::Options::Meshed meshed) {
+  const double least = meshed == contour::Options::interior ? 0.6 : 0.7;
+  return leaves.halvings > 0 ? 0.9 : std::clamp(0.9 - 0.3 * (spacing - 2.5), least, 0.9);
+}
+
+/// The finest spacing, in steps of 3 %, at which that share of `most` elements is planned with the default
+/// tolerance, from those at a spacing of h; 0: none up to 20 Å.
+inline double spacing_for(const contour::Leaves& leaves, double h, contour::Options::Meshed meshed, int64_t most) {
+  for (double s = 0.02; s < 20; s *= 1.03)
+    if (double(contour::plan(contour::at_spacing(leaves, h, s), 0, meshed).elements) <=
+        planned_share(s, leaves, meshed) * double(most))
       return s;
-  }
   return 0;
 }
 
-/// "hier2density --elements 100000 --region both makes a grid that fits, of about 1.3 Å".
-inline std::string fitting_grid(const BlockGrid& grid, const contour::Options& options, int64_t most,
-                                double least) {
-  const double s = spacing_for(grid, options, most, least);
-  if (!(s > 0))
+/// "hier2density --elements 100000 --region both makes a grid that fits". Its spacing is told there: this grid does
+/// not show from which one on cells are halved, which are more.
+inline std::string fitting_grid(const BlockGrid& grid, contour::Options options, int64_t most) {
+  options.adapt = {};
+  options.layers = 1;
+  if (!(spacing_for(contour::count_leaves(grid, options), grid.frame.spacing, options.meshed, most) > 0))
     return "no spacing fits";
   return "hier2density --elements " + std::to_string(most) +
          (options.meshed == contour::Options::both       ? " --region both"
           : options.meshed == contour::Options::exterior ? " --region exterior"
                                                          : "") +
-         " makes a grid that fits, of about " + cli::length_text(s);
+         " makes a grid that fits";
 }
 
 [[noreturn]] inline void refuse_elements(const BlockGrid& grid, const contour::Options& options, int64_t most,
@@ -56,7 +56,8 @@ inline std::string fitting_grid(const BlockGrid& grid, const contour::Options& o
   fail(Status::usage,
        "elements: found " + std::to_string(most) + ", expected at least about " +
            std::to_string(std::llround(least.elements)) + " for this surface at a spacing of " +
-           cli::length_text(grid.frame.spacing) + ": " + fitting_grid(grid, options, most, grid.frame.spacing),
+           cli::length_text(grid.frame.spacing) + ": " + fitting_grid(grid, options, most) +
+           "; tetsmooth --coarsen leaves about half of a default mesh",
        {"elements"});
 }
 
@@ -83,7 +84,7 @@ inline TetMesh limited_mesh(const contour::LeafCounter& counter, const BlockGrid
   run.counts["surface_error"] = cli::Value{{"worst", error.worst}, {"rms", error.rms}};
   if (fit.finest && 10 * std::ssize(mesh.tet) < 7 * most)
     run.note("this grid has " + grouped(std::ssize(mesh.tet)) +
-             " elements at the most: " + fitting_grid(grid, options, most, grid.frame.spacing / 16));
+             " elements at the most: " + fitting_grid(grid, options, most));
   char text[96];
   std::snprintf(text, sizeof text, "surface off by %.2g Å at the most, %.2g Å rms, ", error.worst, error.rms);
   cost = text;

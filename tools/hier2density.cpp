@@ -12,6 +12,7 @@
 #include "tools/density_line.hpp"
 #include "tools/density_report.hpp"
 #include "tools/device_report.hpp"
+#include "tools/elements_spacing.hpp"
 #include "tools/plan.hpp"
 #include "tools/tile.hpp"
 #include <optional>
@@ -95,7 +96,7 @@ Status run(const Options& o, cli::Run& r) {
   if (body && !h.body.empty())
     fail_input(in.name() + ": found bodies without atoms, expected --surface gaussian for them");
   if (o.elements > 0)
-    d.spacing = plans::spacing_of_elements(h, d, o.elements, o.region);
+    d.spacing = spacing_of_elements(h, d, o.elements, o.region, r);
   if (!body && plans::density_is_planned(o, o, d, h, r))
     return Status::good;
   formats::Leaves leaves(o.resolved_threads());

@@ -140,27 +140,6 @@ inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, 
   return true;
 }
 
-/// hier2density --elements: the finest spacing, in steps of 0.005 Å, of whose default mesh nine tenths of so many
-/// elements are planned. Throws Error(usage) where none up to 20 Å has so few, and as density::plan().
-inline double spacing_of_elements(const Hierarchy& h, density::Options d, int64_t elements,
-                                  const std::string& region) {
-  contour::Options options;
-  options.meshed = meshed_of(region);
-  options.threads = d.threads;
-  d.spacing = 1;
-  for (int counted = 0; counted < 3; ++counted) { // plans are exact near the spacing that is counted
-    const BlockGrid grid = to_block_grid(density::plan(h, d).band, d.threads);
-    const double s = spacing_for(grid, options, elements, 0.02);
-    if (!(s > 0))
-      fail(Status::usage, "--elements: found " + std::to_string(elements) + ", expected more: no spacing fits");
-    const double before = d.spacing;
-    d.spacing = std::ceil(200 * s) / 200;
-    if (std::fabs(std::log(d.spacing / before)) < 0.1)
-      break;
-  }
-  return d.spacing;
-}
-
 /// density2tet: as above. grid: unpacks the values; a mesh that is far too large is refused without them.
 /// most_elements: --elements, 0 without.
 template <class Unpack>

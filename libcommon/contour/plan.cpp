@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
 
 namespace molmesh::contour {
 namespace {
@@ -72,6 +73,37 @@ LeafCounter::LeafCounter(const BlockGrid& grid, const Options& options) : option
   surface_ = find_surface(*lattice_, options.threads);
   split_ = count_split(surface_, lattice_->isovalue, options.threads);
   refine_ = refine_options(*lattice_, options_, grid.frame.spacing, finer_.halvings);
+}
+
+double LeafCounter::volume() const {
+  constexpr int across = 4; // samples of a cell
+  const float isovalue = lattice_->isovalue;
+  const int64_t samples = par::reduce( // beyond an eighth of the cell for each corner inside
+      std::ssize(surface_.cells), options_.threads, int64_t{0},
+      [&](int64_t i) {
+        double log_g[8];
+        int64_t n = 0;
+        for (int c = 0; c < 8; ++c) {
+          const float v = surface_.cells[i].value[c];
+          log_g[c] = std::log(std::max(v, std::numeric_limits<float>::min()) / isovalue);
+          n -= v > isovalue ? across * across * across / 8 : 0;
+        }
+        for (int s = 0; s < across * across * across; ++s) {
+          const Vec3d t =
+              (Vec3d(s % across, s / across % across, s / (across * across)) + Vec3d(0.5, 0.5, 0.5)) / across;
+          double sum = 0;
+          for (int c = 0; c < 8; ++c)
+            sum += log_g[c] * ((c & 1) != 0 ? t.x : 1 - t.x) * ((c & 2) != 0 ? t.y : 1 - t.y) *
+                   ((c & 4) != 0 ? t.z : 1 - t.z);
+          n += sum > 0;
+        }
+        return n;
+      },
+      std::plus<int64_t>());
+  const BlockGrid& grid = lattice_->grid();
+  const int64_t points = 512 * std::ssize(grid.inside) +
+                         std::count_if(grid.value.begin(), grid.value.end(), [&](float v) { return v > isovalue; });
+  return std::pow(grid.frame.spacing, 3) * (double(points) + double(samples) / (across * across * across));
 }
 
 Leaves LeafCounter::count() const {

@@ -2,6 +2,7 @@
 #include "contour/contour.hpp"
 #include "contour/plan.hpp"
 #include "density/density.hpp"
+#include "unit/contour/sample_grid.hpp"
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <random>
@@ -48,6 +49,20 @@ TEST_CASE("the octree tells the elements of a mesh within 15 %, and its triangle
       CHECK(std::abs(double(plan.triangles) - true_triangles) <= 0.25 * true_triangles);
       CHECK(plan.split == summary.split_cells);
     }
+  }
+}
+
+TEST_CASE("the volume that a grid shows of a ball is that of a ball smaller by h²/4r, halved or not") {
+  constexpr double r = 3.3;
+  for (const double h : {0.1, 0.25, 0.5, 1.0, 1.5}) {
+    const BlockGrid grid = test::cube_grid(6, h, [](Vec3d x) { return std::exp(r * r - norm2(x)); });
+    contour::Options options;
+    const double volume = contour::LeafCounter(grid, options).volume();
+    const double shown = r - h * h / (4 * r);
+    CAPTURE(h, volume);
+    CHECK(volume == Approx(4. / 3 * 3.14159265 * shown * shown * shown).epsilon(0.02));
+    options.threads = 3;
+    CHECK(contour::LeafCounter(grid, options).volume() == volume);
   }
 }
 
