@@ -25,7 +25,7 @@ inline double spacing_of_elements(const Hierarchy& h, density::Options d, int64_
   // to 13,000.
   constexpr double least_shown = 0.85, well_shown = 0.91;
   const double coarsened =
-      region == "interior" ? 0.8 : 0.65; // tetsmooth --coarsen leaves, of planned elements, at most
+      region == "interior" ? 0.9 : 0.65; // tetsmooth --coarsen leaves, of planned elements, at most
   contour::Options options;
   options.meshed = meshed_of(region);
   options.threads = d.threads;

@@ -89,8 +89,8 @@ double LeafCounter::volume() const {
           n -= v > isovalue ? across * across * across / 8 : 0;
         }
         for (int s = 0; s < across * across * across; ++s) {
-          const Vec3d t =
-              (Vec3d(s % across, s / across % across, s / (across * across)) + Vec3d(0.5, 0.5, 0.5)) / across;
+          const Vec3d place{s % across + 0.5, s / across % across + 0.5, s / (across * across) + 0.5};
+          const Vec3d t = place / across;
           double sum = 0;
           for (int c = 0; c < 8; ++c)
             sum += log_g[c] * ((c & 1) != 0 ? t.x : 1 - t.x) * ((c & 2) != 0 ? t.y : 1 - t.y) *
