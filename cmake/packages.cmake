@@ -18,7 +18,7 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME molmesh)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON) # libraries of the distribution that builds
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "make, python3")
-set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "bash-completion, man-db, paraview, slurm-client")
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "bash-completion, freefem++, libfreefem++, man-db, paraview, slurm-client")
 set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION "tetrahedral meshes of molecules for finite-element solvers
 The programs turn the atoms of a molecule into a valid tetrahedral mesh of its
 inside, its surroundings or both. The resolution of every residue, chain and

@@ -43,7 +43,7 @@ if [ "$kind" = packages ]; then
     ! readelf -S "bin/$name" | grep -E '\.debug_|\.symtab' || fail "$name: has symbols for debuggers"
     ! readelf -d "bin/$name" | grep -E 'R(UN)?PATH' || fail "$name: looks for libraries in a folder of its own"
   done
-  for file in bin/molmesh-array share/man/man1/molmesh-array.1.gz share/molmesh/Makefile.pipeline share/doc/molmesh/{README.md,copyright,changelog.gz,docs/guide.md,examples/1tii.pdb,examples/4cup.pdb}; do
+  for file in bin/molmesh-array share/man/man1/molmesh-array.1.gz share/molmesh/{Makefile.pipeline,complexes/membrane.sh,tests/solve/freefem.sh,tests/solve/poisson_boltzmann.edp,tests/data/4cup.pdb} share/doc/molmesh/{README.md,copyright,changelog.gz,docs/guide.md,examples/1tii.pdb,examples/4cup.pdb}; do
     [ -s "$file" ] || fail "$file is not in the package"
   done
   # Links between the documents hold as in the sources.
