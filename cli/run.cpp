@@ -113,7 +113,11 @@ int finish(const Table& table, const Common& o, Run& run, OutputFile* report, St
   if (!run.made.empty()) {
     char seconds[32];
     std::snprintf(seconds, sizeof seconds, "%.2f s", run.seconds());
-    run.note(run.made + "; " + seconds + "; " + (o.output == "-" ? "<stdout>" : o.outputs().front()));
+    std::string files;
+    for (const std::string& file : o.outputs())
+      if (files.empty() || o.shows_every_output)
+        files += (files.empty() ? "" : ", ") + (file == "-" ? "<stdout>" : file);
+    run.note(run.made + "; " + seconds + "; " + files);
   }
   return static_cast<int>(status);
 }

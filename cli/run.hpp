@@ -26,8 +26,9 @@ struct Common {
   /// report, nor, where the output is not what the input is, the input.
   virtual std::vector<std::string> outputs() const { return {output}; }
   bool keep_input = true;
-  bool chooses_format = false; ///< the program itself says which endings its output may have
-  bool uses_threads = true;    ///< false: -t is taken, and all is done by one
+  bool chooses_format = false;     ///< the program itself says which endings its output may have
+  bool shows_every_output = false; ///< in the last line; else the first alone
+  bool uses_threads = true;        ///< false: -t is taken, and all is done by one
 
   /// Set by programs that have a cuda mode: throws Error(mode_unavailable) where there is no device for it.
   void (*require_device)() = nullptr;

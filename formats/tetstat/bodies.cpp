@@ -56,15 +56,23 @@ std::string bodies_text(const BodyList& list) {
   if (list.uncrossed)
     s += "; no surface triangles cross";
   const bool round = !list.residues.empty();
-  s += "\n\n" + print("%-16s %16s %14s %12s   centre/Å%s\n", "", "volume/Å³", "area/Å²", "tetrahedra",
-                      round ? "                residues round it" : "");
   std::map<int32_t, int> number;
+  std::vector<std::string> name;
+  size_t width = 14;
+  for (const MeshBody& b : list.body) {
+    name.push_back(kind(list, b.region) + ' ' + std::to_string(++number[b.region]));
+    width = std::max(width, columns(name.back()));
+  }
+  for (const BoundarySummary& b : list.boundary)
+    width = std::max(width, columns(plain(b.name)));
+  s += "\n\n" + padded("", width) +
+       print(" %18s %15s %12s   centre/Å%s\n", "volume/Å³", "area/Å²", "tetrahedra",
+             round ? "                residues round it" : "");
   for (size_t i = 0; i < list.body.size(); ++i) {
     const MeshBody& b = list.body[i];
     const std::string centre = print("%.2f %.2f %.2f", b.centre.x, b.centre.y, b.centre.z);
-    s += print("%-14s %16s %13s %12s   %s",
-               (kind(list, b.region) + ' ' + std::to_string(++number[b.region])).c_str(), amount(b.volume).c_str(),
-               amount(b.area).c_str(), grouped(b.tets).c_str(), centre.c_str());
+    s += padded(name[i], width) + print(" %16s %13s %12s   %s", amount(b.volume).c_str(), amount(b.area).c_str(),
+                                        grouped(b.tets).c_str(), centre.c_str());
     if (round && !list.residues[i].empty()) {
       const std::vector<std::string>& names = list.residues[i];
       s += print("%*s%s", static_cast<int>(24 - std::min<size_t>(centre.size(), 23)), "",
@@ -74,10 +82,10 @@ std::string bodies_text(const BodyList& list) {
     }
     s += '\n';
   }
-  s += print("\n%-14s %16s %13s %12s\n", "boundary", "label", "area/Å²", "triangles");
+  s += '\n' + padded("boundary", width) + print(" %16s %15s %12s\n", "label", "area/Å²", "triangles");
   for (const BoundarySummary& b : list.boundary)
-    s += print("%-14s %16d %12s %12s\n", plain(b.name).c_str(), b.label, amount(b.area).c_str(),
-               grouped(b.triangles).c_str());
+    s += padded(plain(b.name), width) +
+         print(" %16d %13s %12s\n", b.label, amount(b.area).c_str(), grouped(b.triangles).c_str());
   return s;
 }
 

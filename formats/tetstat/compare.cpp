@@ -21,7 +21,7 @@ double growth(double a, double b) {
 }
 
 std::string row(const char* name, const std::string& a, const std::string& b, const std::string& change = "") {
-  std::string s = print("  %-24s %16s %16s %14s", name, a.c_str(), b.c_str(), change.c_str());
+  std::string s = "  " + padded(name, 24) + print(" %16s %16s %14s", a.c_str(), b.c_str(), change.c_str());
   s.resize(s.find_last_not_of(' ') + 1);
   return s += '\n';
 }
@@ -36,7 +36,7 @@ std::string value_row(const char* name, double a, double b, int digits) {
   return row(name, print("%.*f", digits, a), print("%.*f", digits, b), a == b ? "" : print("%+.*f", digits, b - a));
 }
 std::string surface_rows(const SurfaceSummary& a, const SurfaceSummary& b) {
-  return count_row("  triangles", a.triangles, b.triangles) + amount_row("  area/A^2", a.area, b.area) +
+  return count_row("  triangles", a.triangles, b.triangles) + amount_row("  area/Å²", a.area, b.area) +
          count_row("  pieces", a.components, b.components) + count_row("  Euler number", a.euler, b.euler);
 }
 std::string measure_rows(const char* name, const Distribution& a, const Distribution& b, int digits) {
@@ -68,7 +68,7 @@ std::string compare_text(const MeshReport& a, const MeshReport& b) {
        count_row("triangles", a.triangles, b.triangles);
   if (!a.quality || !b.quality)
     return s;
-  s += amount_row("volume/A^3", a.validity.volume, b.validity.volume);
+  s += amount_row("volume/Å³", a.validity.volume, b.validity.volume);
   std::set<int32_t> regions;
   for (const MeshReport* r : {&a, &b})
     for (const RegionSummary& region : r->validity.region)
@@ -77,9 +77,9 @@ std::string compare_text(const MeshReport& a, const MeshReport& b) {
     const RegionSummary none, *before = find(a, region), *after = find(b, region);
     const RegionSummary &x = before ? *before : none, &y = after ? *after : none;
     s += print("  region %d\n", region) + count_row("  tetrahedra", x.tets, y.tets) +
-         amount_row("  volume/A^3", x.volume, y.volume) + surface_rows(x.boundary, y.boundary);
+         amount_row("  volume/Å³", x.volume, y.volume) + surface_rows(x.boundary, y.boundary);
   }
-  s += "  surface\n" + amount_row("  volume/A^3", a.validity.surface.volume, b.validity.surface.volume) +
+  s += "  surface\n" + amount_row("  volume/Å³", a.validity.surface.volume, b.validity.surface.volume) +
        surface_rows(a.validity.surface, b.validity.surface);
   const Quality &p = a.quality->all, &q = b.quality->all;
   s += '\n' + measure_rows("dihedral (degrees)", p.dihedral, q.dihedral, 2) +

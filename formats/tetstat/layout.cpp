@@ -1,5 +1,6 @@
 // layout.cpp — numbers and words for reports on a terminal.
 #include "formats/tetstat/layout.hpp"
+#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -33,6 +34,14 @@ std::string plain(std::string s) {
     if (static_cast<unsigned char>(c) < 32 || c == 127)
       c = '?';
   return s;
+}
+
+size_t columns(const std::string& s) {
+  return static_cast<size_t>(std::count_if(s.begin(), s.end(), [](unsigned char c) { return (c & 0xC0) != 0x80; }));
+}
+
+std::string padded(const std::string& s, size_t width) {
+  return s + std::string(width - std::min(width, columns(s)), ' ');
 }
 
 } // namespace molmesh::formats

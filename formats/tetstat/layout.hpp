@@ -10,5 +10,9 @@ namespace molmesh::formats {
 std::string amount(double v);
 /// Text of a file on one line: control characters become question marks.
 std::string plain(std::string s);
+/// Characters of UTF-8, which a terminal shows in as many columns.
+size_t columns(const std::string& s);
+/// With blanks behind it, so many columns wide at the least.
+std::string padded(const std::string& s, size_t width);
 
 } // namespace molmesh::formats

@@ -60,22 +60,25 @@ std::string angle_histogram(const Distribution& d) {
 }
 
 std::string regions_table(const MeshReport& r) {
+  size_t width = 9; // of names
+  for (const RegionSummary& region : r.validity.region)
+    width = std::max(width, columns(region_name(r, region.region)));
   std::string s =
-      "region                 tets         volume/Å³        area/Å²  pieces   Euler   dihedral angles\n";
+      padded("region", width + 15) + "tets         volume/Å³        area/Å²  pieces   Euler   dihedral angles\n";
   for (size_t i = 0; i < r.validity.region.size(); ++i) {
     const RegionSummary& region = r.validity.region[i];
     const SurfaceSummary& b = region.boundary;
     const Distribution& angle = r.quality->of[i].dihedral;
-    s += print("  %-3d %-9s %12s %17s %14s %7lld %7lld   %6.2f° to %6.2f°\n", region.region,
-               region_name(r, region.region).c_str(), grouped(region.tets).c_str(), amount(region.volume).c_str(),
-               amount(b.area).c_str(), static_cast<long long>(b.components), static_cast<long long>(b.euler),
-               angle.min, angle.max);
+    s += print("  %-3d ", region.region) + padded(region_name(r, region.region), width) +
+         print(" %12s %17s %14s %7lld %7lld   %6.2f° to %6.2f°\n", grouped(region.tets).c_str(),
+               amount(region.volume).c_str(), amount(b.area).c_str(), static_cast<long long>(b.components),
+               static_cast<long long>(b.euler), angle.min, angle.max);
   }
   const auto add_boundary = [&](const char* name, const SurfaceSummary& b) {
     if (b.triangles > 0)
-      s += print("  %-7s %9s triangles %14s %14s %7lld %7lld\n", name, grouped(b.triangles).c_str(),
-                 amount(b.volume).c_str(), amount(b.area).c_str(), static_cast<long long>(b.components),
-                 static_cast<long long>(b.euler));
+      s += "  " + padded(name, width - 2) +
+           print(" %9s triangles %16s %14s %7lld %7lld\n", grouped(b.triangles).c_str(), amount(b.volume).c_str(),
+                 amount(b.area).c_str(), static_cast<long long>(b.components), static_cast<long long>(b.euler));
   };
   add_boundary("surface", r.validity.surface);
   if (r.validity.outer_sphere)

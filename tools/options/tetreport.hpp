@@ -8,7 +8,7 @@ namespace molmesh {
 struct Options : cli::Common {
   Options() {
     output.clear();
-    chooses_format = true;
+    chooses_format = shows_every_output = true;
   }
   MeshInput mesh;
   std::vector<std::string> meshes, runs; ///< meshes: after the first

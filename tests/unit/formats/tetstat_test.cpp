@@ -83,7 +83,7 @@ TEST_CASE("a surface that the box cuts encloses no volume") {
   CHECK(j["surface"]["area"] == Approx(6400));
   CHECK(j["surface"]["volume"].is_null());
   CHECK(j["regions"][0]["boundary"]["volume"] == Approx(256'000));
-  CHECK(has(formats::tetstat_text(r), "surface        32 triangles              -       6,400.00"));
+  CHECK(has(formats::tetstat_text(r), "surface        32 triangles                -       6,400.00"));
   const std::string both = formats::compare_text(r, r);
   CHECK(has(both, "-                -\n"));
   CHECK_FALSE(has(both, "nan"));
@@ -198,6 +198,24 @@ TEST_CASE("regions of other numbers are called by the names that the mesh has fo
   CHECK(has(bodies, "lipid head 1"));
   CHECK(has(bodies, "region_9 1"));
   CHECK(json_of(report(m))["regions"][0]["name"] == "lipid head");
+}
+
+TEST_CASE("figures end below their headings, however long the names are") {
+  const auto end_of = [](const std::string& text, const std::string& word) { // column
+    const size_t at = text.find(word), line = text.rfind('\n', at) + 1;
+    REQUIRE(at != text.npos);
+    return formats::columns(text.substr(line, at + word.size() - line));
+  };
+  for (const std::string name : {"A", "the%20lipids'%20heads%20α%20and%20β"}) {
+    TetMesh m = cubes(3, [](Vec3i c) -> int32_t { return c.x == 0 ? 7 : 9; });
+    m.named_text.push_back({"region_names", "7 " + name + "\n"});
+    const std::string text = formats::tetstat_text(report(m)),
+                      bodies = formats::bodies_text(formats::list_bodies(m, "x", 1));
+    for (const std::string& table : {text, bodies})
+      for (const char* volume : {" 9.00", " 18.00"})
+        CHECK(end_of(table, volume) == end_of(table, "volume/Å³"));
+    CHECK(end_of(bodies, " 30.00") == end_of(bodies, "area/Å²"));
+  }
 }
 
 TEST_CASE("bodies and boundaries are listed, the largest first, and sum to the mesh") {
