@@ -126,7 +126,8 @@ void check_domains(const Grouping& g, const Levels& levels, const std::string& f
           file + ": found chain " + g.chain[residue.chain] + " in domains '" + g.domain[g.residue[f].domain] +
           "' (" + structure.first_atom(f) + ") and '" + g.domain[residue.domain] + "' (" +
           structure.first_atom(static_cast<int64_t>(r)) +
-          "), expected each chain in one domain; the levels chain,domain,residue have domains within chains");
+          "), expected each chain in one domain; the levels domain,residue have domains that share chains, as a "
+          "ligand's in the protein's chain; chain,domain,residue domains within chains");
   }
 }
 

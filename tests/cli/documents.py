@@ -6,7 +6,9 @@ GROUP: guide (README.md, docs/guide.md), tutorial (docs/tutorial.md), pages (doc
 The blocks of a page that are commands (indented by four blanks, or fenced) run in the page's order in one empty folder, with
 BIN in PATH and MOLMESH set to SOURCE. Each has to end with status 0. Files of the reader's own, whose names begin with
 capitals (MAP.map.gz), are small stand-ins made here; 1tii.pdb is a part of 1TII. A block whose commands begin with `$ ` is a session: what
-follows a command is what it prints; … stands for any text, seconds for any seconds, and other numbers are right within 5 %. --record writes into the page what the programs print.
+follows a command is what it prints; … stands for any text, seconds for any seconds, and other numbers are right within 5 %, since processors differ. But where
+the programs print one number twice (of 1,000 and more), as elements of a mesh, the page has one number there too: it is of one run. --record writes into the
+page what the programs print, where more than seconds differs.
 Besides, every option that a page names belongs to the program it names, and every link leads somewhere.
 
 What is not on a machine (FreeFEM, meshio, OpenVDB) is skipped with a line. NOT_RUN lists the blocks that no test runs, and why.
@@ -202,7 +204,8 @@ SECONDS = re.compile(r"\d+(\.\d+)? s\b")
 NUMBER = re.compile(r"(?<![\w.])-?\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?", re.I)
 
 
-def same_line(found, expected):
+def same_line(found, expected, within=0.05, pairs=None):
+    """pairs: numbers found, and the page's in their places."""
     found, expected = SECONDS.sub("# s", found.rstrip()), SECONDS.sub("# s", expected.rstrip())
     numbers = NUMBER.findall(expected)
     pattern = "".join("(" + NUMBER.pattern + ")" if i % 2 else ".*".join(map(re.escape, part.split("…")))
@@ -213,12 +216,14 @@ def same_line(found, expected):
         return False
     for text, true in zip(match.groups(), numbers):
         a, b = float(text.replace(",", "")), float(true.replace(",", ""))
-        if text != true and (abs(b) < 10 and re.fullmatch(r"-?\d", true) or abs(a - b) > 0.05 * abs(b)):
+        if text != true and (abs(b) < 10 and re.fullmatch(r"-?\d", true) or abs(a - b) > within * abs(b)):
             return False
+    if pairs is not None:
+        pairs += zip(match.groups(), numbers)
     return True
 
 
-def differences(found, expected):
+def differences(found, expected, pairs):
     """None where the lines are the same; a line `…` stands for any number of lines."""
     found = [s for s in found if s.strip()]
     expected = [s for s in expected if s.strip()]
@@ -231,10 +236,13 @@ def differences(found, expected):
             while i < len(found) and not same_line(found[i], expected[0]):
                 i += 1
             continue
-        if i == len(found) or not same_line(found[i], want):
+        if i == len(found) or not same_line(found[i], want, pairs=pairs):
             return want, found[i] if i < len(found) else "no further line"
         i += 1
     return None if i == len(found) else ("no further line", found[i])
+
+
+page_numbers = {}  # (page, number that a program printed): the page's number there
 
 
 def run_session(where, lines, folder):
@@ -255,11 +263,18 @@ def run_session(where, lines, folder):
         if done.returncode != status:
             fail(where, f"status {done.returncode}, expected {status}: {command}\n{done.stdout}")
             continue
-        apart = differences(done.stdout.split("\n"), expected)
-        if apart and RECORD:
-            recorded[command] = done.stdout.rstrip().split("\n")
+        printed, pairs = done.stdout.rstrip().split("\n"), []
+        apart = differences(printed, expected, pairs)
+        if RECORD:
+            kept = [next((e for e in expected if same_line(s, e, within=0)), s) for s in printed]
+            if [s for s in kept if s.strip()] != [s for s in expected if s.strip()]:
+                recorded[command] = kept
         elif apart:
             fail(where, f"{command}\n    the page      {apart[0]}\n    the program   {apart[1]}")
+        for found, on_page in pairs if not RECORD else []:
+            before = page_numbers.setdefault((where.split(":")[0], found), on_page)
+            if before != on_page and float(found.replace(",", "")) >= 1000:
+                fail(where, f"{command}\n    the page      {on_page}, and before {before}\n    the program   {found} both times")
     if recorded:
         record(SOURCE / where.split(":")[0], recorded)
 
