@@ -23,6 +23,15 @@ inline void note_unseen(const cli::Run& run, const label::UnseenResidues& u, con
   run.note(line);
 }
 
+/// Where nothing from outside comes to a boundary at all.
+inline void note_buried(const cli::Run& run, const label::Patches& patches, size_t b, const std::string& name) {
+  if (patches.walls[b] == patches.count[b])
+    run.note("boundary " + name + ": no triangle of the outer surface belongs to it: all " +
+             grouped(patches.count[b]) +
+             " are on walls of closed cavities, which nothing outside reaches; residues "
+             "around it are selected by 'around SELECTION 4'");
+}
+
 [[noreturn]] inline void refuse_empty(const std::vector<label::NamedBoundary>& boundary, size_t b,
                                       const label::Patches& patches, const std::string& mesh) {
   const std::string which = "--boundary " + boundary[b].name + ": ";

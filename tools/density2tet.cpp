@@ -120,8 +120,10 @@ Status run_tool(Options& o, cli::Run& run) {
     run.note("dropped parts of the molecule: " + std::to_string(summary.dropped_parts) +
              " (--drop-below), kept: " + std::to_string(summary.molecule_volumes.size()));
   if (summary.halvings > 0)
-    run.note(std::string("bodies of few spacings: cells of ") + (summary.halvings > 1 ? "a quarter" : "half") +
-             " the grid's spacing keep the volume that the grid shows; a finer --spacing shows more of the atoms'");
+    run.note(std::string("bodies only a few grid spacings wide: cells of ") +
+             (summary.halvings > 1 ? "a quarter" : "half") +
+             " the spacing were used, so that they keep their volume; for more of their shape, give hier2density a "
+             "smaller --spacing");
 
   run.phase("write");
   mesh.creator = cli::creator("density2tet");

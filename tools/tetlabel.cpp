@@ -92,6 +92,7 @@ Status run_tool(const Options& o, cli::Run& run) {
     if (patches.count[b] == 0)
       refuse_empty(boundary, b, patches, input.name());
     run.counts["boundary " + boundary[b].name] = patches.count[b];
+    note_buried(run, patches, b, boundary[b].name);
     note_unseen(run, label::unseen_residues(h, places, labels, boundary[b]), boundary[b].name);
     names[patches.first + static_cast<int32_t>(b)] = boundary[b].name;
     run.made += ", boundary " + boundary[b].name + ": " + counted_triangles(patches, b);

@@ -1,5 +1,6 @@
 // arrangement.cpp — lists residues; asks selections by label once a residue, by distance once an atom.
 #include "formats/pdb/arrangement.hpp"
+#include "formats/pdb/keep.hpp"
 #include "formats/pdb/selection.hpp"
 #include "geom/near_points.hpp"
 #include <algorithm>
@@ -130,8 +131,8 @@ std::vector<Selected> ArrangementSelections::select(const std::string& selection
 
 std::string ArrangementSelections::address(int64_t residue, int64_t atom) const {
   const gemmi::Residue& r = *a_.residue(residue).source;
-  return residue_in_selection(a_.grouping.chain[a_.grouping.residue[residue].chain], r.name + ':' + r.seqid.str()) +
-         '/' + in_selection(a_.flat.names[a_.flat.atom[atom].name]);
+  return residue_in_selection(a_.grouping.chain[a_.grouping.residue[residue].chain], name_in_hierarchy(r)) + '/' +
+         in_selection(a_.flat.names[a_.flat.atom[atom].name]);
 }
 
 std::string ArrangementSelections::first_atom(int64_t residue) const {

@@ -2,6 +2,7 @@
 #include "formats/pdb/hier_selection.hpp"
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/selection.hpp"
+#include "formats/pdb/selection_advice.hpp"
 #include "geom/near_points.hpp"
 #include "molecule/find_level.hpp"
 #include "molecule/grouping.hpp"
@@ -39,19 +40,41 @@ std::string copied(const std::string& name, const std::set<std::string>& chains)
   return chains.count(base) == 0 && chains.count(base + "_1") && chains.count(base + "_2") ? base : name;
 }
 
+/// Of a group of level l: begin, end.
+std::pair<int64_t, int64_t> atoms_of(const Hierarchy& h, size_t l, const Group& g) {
+  int64_t begin = g.begin, end = g.end; // of the level below, down to the atoms
+  for (size_t below = l + 1; below < h.level.size(); ++below) {
+    end = h.level[below].group[end - 1].end;
+    begin = h.level[below].group[begin].begin;
+  }
+  return {begin, end};
+}
+
 /// Sets `chosen` of all atoms of the groups of level l that take(group) does not take to 0.
 template <class Take>
 void filter(const Hierarchy& h, size_t l, std::vector<uint8_t>& chosen, Take take) {
   for (const Group& g : h.level[l].group) {
     if (take(g))
       continue;
-    int64_t begin = g.begin, end = g.end; // of the level below, down to the atoms
-    for (size_t below = l + 1; below < h.level.size(); ++below) {
-      end = h.level[below].group[end - 1].end;
-      begin = h.level[below].group[begin].begin;
-    }
+    const auto [begin, end] = atoms_of(h, l, g);
     std::fill(chosen.begin() + begin, chosen.begin() + end, uint8_t{0});
   }
+}
+
+/// For a message: residues of the chains that a selection names, in whose atoms it finds nothing.
+std::string residues_there(const Hierarchy& h, const std::vector<uint8_t>& in_chains, std::optional<int> number) {
+  ResiduesThere there(number);
+  gemmi::Residue r;
+  const size_t chain = find_level(h, "chain"), residue = find_level(h, "residue");
+  size_t c = 0;
+  for (const Group& g : h.level[residue].group) {
+    const int64_t atom = atoms_of(h, residue, g).first;
+    while (chain < residue && atoms_of(h, chain, h.level[chain].group[c]).second <= atom)
+      ++c;
+    if (in_chains[atom] && read_residue(g.name, r))
+      there.add(chain < residue ? h.level[chain].group[c].name : "", g.name, *r.seqid.num);
+  }
+  return there.text();
 }
 
 } // namespace
@@ -74,9 +97,11 @@ std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& text, c
       chains.insert(g.name);
     filter(h, chain, chosen, [&](const Group& g) { return s.chain(copied(g.name, chains), g.name); });
   }
+  std::vector<uint8_t> in_chains;
   if (s.names_residues()) {
     if (residue == h.level.size())
       refuse("no residue: the .hier has no level 'residue'");
+    in_chains = chosen;
     gemmi::Residue r;
     constexpr size_t most = 100;
     if (const std::vector<std::string> numbers = s.numbers(); absent != nullptr && numbers.size() <= most)
@@ -99,6 +124,9 @@ std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& text, c
     chosen[a] = s.atom(atom);
   }
   if (std::find(chosen.begin(), chosen.end(), 1) == chosen.end()) {
+    if (std::find(in_chains.begin(), in_chains.end(), 1) != in_chains.end())
+      if (const std::string there = residues_there(h, in_chains, s.first_number()); !there.empty())
+        refuse("one that some atom fits" + there);
     std::vector<std::string> chains;
     if (chain < h.level.size())
       for (const Group& g : h.level[chain].group)

@@ -4,6 +4,7 @@
 #include "formats/pdb/model_names.hpp"
 #include "formats/pdb/polymer.hpp"
 #include "formats/pdb/selection.hpp"
+#include "formats/pdb/selection_advice.hpp"
 #include "molecule/grouping.hpp"
 #include <algorithm>
 #include <array>
@@ -184,7 +185,8 @@ int64_t keep_conformers(gemmi::Structure& st, const std::string& altloc) {
   return dropped;
 }
 
-/// Waters by their names in the PDB and in the files of molecular dynamics.
+} // namespace
+
 bool is_water(const gemmi::Residue& residue) {
   static constexpr std::array<const char*, 17> names = {"HOH", "DOD", "WAT",  "H2O",  "HOD", "OH2",
                                                         "TIP", "TP3", "TP4",  "TP5",  "T3P", "T4P",
@@ -195,8 +197,6 @@ bool is_water(const gemmi::Residue& residue) {
     return a.is_hydrogen() || a.element == gemmi::El::O || a.element == gemmi::El::X;
   });
 }
-
-} // namespace
 
 void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, PdbReport& report) {
   gemmi::Structure& st = parsed.structure;
@@ -222,23 +222,25 @@ void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, Pd
     report.hydrogens = drop_atoms(parsed, charge.hydrogens,
                                   [](Model, Chain, Residue) { return [](Atom a) { return a.is_hydrogen(); }; });
   if (!options.hetatm)
-    report.hetatms = drop_atoms(parsed, charge.hetatms, [&report](Model, Chain, Residue r) {
+    report.hetatms = drop_atoms(parsed, charge.hetatms, [&report](Model, Chain c, Residue r) {
       const bool ligand = r.het_flag == 'H' && r.flag != modified_residue;
-      if (ligand) {
-        PdbReport::Hetero& dropped = report.dropped_hetero[r.name];
-        dropped.atoms += static_cast<int64_t>(r.atoms.size());
-        ++dropped.residues;
-      }
+      if (ligand)
+        report.dropped_hetero[r.name].add(c.name, name_in_hierarchy(r), static_cast<int64_t>(r.atoms.size()));
       return [ligand](Atom) { return ligand; };
     });
   std::vector<std::string> chains;
+  std::optional<ResiduesThere> there; // in these chains
   if (options.select != "*") {
     for (const gemmi::Model& model : st.models)
       for (const gemmi::Chain& chain : model.chains)
         chains.push_back(chain.name);
     const Selection selection(options.select, "--select", false, Status::usage);
+    there.emplace(selection.first_number());
     report.unselected = drop_atoms(parsed, charge.unselected, [&](Model m, Chain c, Residue r) {
-      const bool inside = selection.model(m) && selection.chain(c.name, c.name) && selection.residue(r);
+      const bool chosen = selection.model(m) && selection.chain(c.name, c.name),
+                 inside = chosen && selection.residue(r);
+      if (chosen && !inside && r.seqid.num)
+        there->add(c.name, name_in_hierarchy(r), *r.seqid.num);
       return [&selection, inside](Atom a) { return !(inside && selection.atom(a)); };
     });
   }
@@ -264,7 +266,10 @@ void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, Pd
   add(report.unselected, "outside --select");
   add(report.no_radius, "of radius 0 without a charge");
   fail_input(file + ": found no atom that is kept" + dropped + (dropped.empty() ? "" : ")") +
-             ", expected at least one" + (report.unselected > 0 ? chains_there(chains) : ""));
+             ", expected at least one" +
+             (there && !there->text().empty() ? there->text()
+              : report.unselected > 0         ? chains_there(chains)
+                                              : ""));
 }
 
 } // namespace molmesh::formats

@@ -9,4 +9,11 @@ namespace molmesh::formats {
 /// Error(bad_input) when nothing remains or the model is not there.
 void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, PdbReport& report);
 
+/// By its name in the PDB or in the files of molecular dynamics.
+bool is_water(const gemmi::Residue& residue);
+/// "ANS:373", as in a .hier.
+inline std::string name_in_hierarchy(const gemmi::Residue& residue) {
+  return residue.name + ':' + residue.seqid.str();
+}
+
 } // namespace molmesh::formats

@@ -1,5 +1,6 @@
 // notes.cpp — one sentence on what is kept, one on what is dropped, then the rest.
 #include "formats/pdb/notes.hpp"
+#include "molecule/grouping.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -35,21 +36,33 @@ std::string charge_note(const PdbReport& report) {
   return note;
 }
 
-/// "NAG 3, CA 2": names and numbers of residues, those of the most atoms first; some, then "and 4 more".
-std::string listed(const PdbReport::Heteros& heteros) {
-  constexpr size_t most = 6;
+/// "//H/373(ANS), NA 2 (first //H/409(NA))": residues alone of their kind as selections, else the kind and how
+/// many, where asked for with the first of them. Those of the most atoms first; many, then "and 4 more kinds".
+std::string listed(const PdbReport::Heteros& heteros, bool firsts = false) {
+  constexpr size_t most = 20, most_firsts = 6;
   std::vector<std::pair<std::string, PdbReport::Hetero>> order(heteros.begin(), heteros.end());
   std::stable_sort(order.begin(), order.end(),
                    [](const auto& a, const auto& b) { return a.second.atoms > b.second.atoms; });
   std::string list;
-  for (size_t i = 0; i < std::min(order.size(), most); ++i)
-    list += (i > 0 ? ", " : "") + order[i].first + " " + std::to_string(order[i].second.residues);
+  for (size_t i = 0; i < std::min(order.size(), most); ++i) {
+    const auto& [name, kind] = order[i];
+    list += i > 0 ? ", " : "";
+    list += kind.residues == 1 ? kind.first : name + " " + std::to_string(kind.residues);
+    if (kind.residues > 1 && firsts && order.size() <= most_firsts)
+      list += " (first " + kind.first + ")";
+  }
   if (order.size() > most)
-    list += " and " + std::to_string(order.size() - most) + " more";
+    list += " and " + counted(static_cast<int64_t>(order.size() - most), "more kind");
   return list;
 }
 
 } // namespace
+
+void PdbReport::Hetero::add(const std::string& chain, const std::string& residue, int64_t its_atoms) {
+  if (residues++ == 0)
+    first = residue_in_selection(chain, residue);
+  atoms += its_atoms;
+}
 
 void add_notes(PdbReport& report, const Parsed& parsed, const PdbOptions& options) {
   std::vector<std::string> notes;
@@ -68,11 +81,12 @@ void add_notes(PdbReport& report, const Parsed& parsed, const PdbOptions& option
   if (charges)
     kept += charge_note(report);
   notes.push_back(kept);
-  const std::string ligands = listed(report.ligands), modified = listed(report.modified);
   if (!report.ligands.empty())
-    notes.push_back("kept ligands and ions (--hetatm): " + ligands);
+    notes.push_back("kept ligands and ions (--hetatm): " + listed(report.ligands, true));
+  if (!report.kept_waters.empty())
+    notes.push_back("kept waters (--waters): " + listed(report.kept_waters, true));
   if (!report.modified.empty())
-    notes.push_back("modified residues, links of the chains: " + modified);
+    notes.push_back("modified residues, links of the chains: " + listed(report.modified));
 
   std::string dropped;
   const auto add = [&](int64_t n, const std::string& what, double charge = 0) {

@@ -140,11 +140,14 @@ PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbO
   p.report.domains = static_cast<int64_t>(a.grouping.domain.size());
   for (int64_t r = 0; r < p.report.residues; ++r) {
     p.report.atoms += a.residue(r).end - a.residue(r).begin;
-    if (const gemmi::Residue& source = *a.residue(r).source; source.het_flag == 'H' && !source.is_water()) {
-      PdbReport::Heteros& kind = source.flag == modified_residue ? p.report.modified : p.report.ligands;
-      PdbReport::Hetero& hetero = kind[source.name];
-      hetero.atoms += a.residue(r).end - a.residue(r).begin;
-      ++hetero.residues;
+    const gemmi::Residue& source = *a.residue(r).source;
+    if (const bool water = options.waters && is_water(source);
+        water || (source.het_flag == 'H' && !source.is_water())) {
+      PdbReport::Heteros& kind = water                             ? p.report.kept_waters
+                                 : source.flag == modified_residue ? p.report.modified
+                                                                   : p.report.ligands;
+      kind[source.name].add(a.grouping.chain[a.grouping.residue[r].chain], name_in_hierarchy(source),
+                            a.residue(r).end - a.residue(r).begin);
     }
     for (int64_t n = a.residue(r).begin; n < a.residue(r).end; ++n) {
       p.report.charge += std::isnan(a.flat.atom[n].charge) ? 0 : a.flat.atom[n].charge;
@@ -185,7 +188,7 @@ void PdbHierarchy::write(std::ostream& out) const {
       opened = true;
       open[l] = id;
       if (is_residue) {
-        residue_name = residue.source->name + ":" + residue.source->seqid.str();
+        residue_name = name_in_hierarchy(*residue.source);
         writer.group(l, residue_name, g.residue_exponent[r], g.residue_weight[r]);
       } else if (is_chain) {
         writer.group(l, g.chain[chain], g.chain_exponent[chain]);

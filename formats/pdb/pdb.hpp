@@ -51,12 +51,15 @@ struct PdbReport {
     int64_t atoms = 0;
     std::string first; ///< "ATOM of RESIDUE CHAIN/NUMBER"
   };
-  /// Hetero residues (HETATM) other than waters, by name: what they are, and how many.
+  /// Hetero residues (HETATM) by name: what they are, and how many.
   struct Hetero {
     int64_t residues = 0, atoms = 0;
+    std::string first; ///< a selection of the first: "//H/373(ANS)"
+    void add(const std::string& chain, const std::string& residue, int64_t its_atoms);
   };
   using Heteros = std::map<std::string, Hetero>;
-  Heteros ligands, modified, dropped_hetero;       ///< written: outside and inside of polymers; dropped by `hetatm`
+  /// Written: outside and inside of polymers, and waters; dropped by `hetatm`.
+  Heteros ligands, modified, kept_waters, dropped_hetero;
   std::map<std::string, int64_t> passed_over;      ///< lines or categories that are no atoms, by record or name
   std::map<std::string, int64_t> guessed_elements; ///< that the file does not give, taken from the names
   std::map<std::string, Unknown> unknown_elements; ///< by element ("X": none known), given `unknown_radius`

@@ -246,6 +246,13 @@ bool Selection::residue(const gemmi::Residue& r) const {
   return ranges_.empty();
 }
 
+std::optional<int> Selection::first_number() const {
+  if (ranges_.empty())
+    return std::nullopt;
+  const auto& from = ranges_[0].first.empty() ? ranges_[0].last : ranges_[0].first;
+  return from.seqnum;
+}
+
 std::vector<std::string> Selection::numbers() const {
   std::vector<std::string> all;
   for (const Range& range : ranges_)

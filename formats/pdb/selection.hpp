@@ -6,6 +6,7 @@
                          // printed
 #include <algorithm>
 #include <gemmi/select.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,8 @@ public:
   bool numbers_residues() const { return !ranges_.empty(); }
   /// The numbers and ranges of residues, as written; empty: all.
   std::vector<std::string> numbers() const;
+  /// The first number asked for, if any.
+  std::optional<int> first_number() const;
   /// Fits the residue's number the i-th of them?
   bool number_fits(size_t i, const gemmi::Residue& r) const {
     return ranges_[i].first.compare(r.seqid) <= 0 && ranges_[i].last.compare(r.seqid) >= 0;

@@ -2,8 +2,10 @@
 #include "formats/pdb/selection_advice.hpp"
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/selection.hpp"
+#include "molecule/grouping.hpp"
 #include "molecule/words.hpp"
 #include <algorithm>
+#include <cstdlib>
 #include <vector>
 
 namespace molmesh::formats {
@@ -81,6 +83,34 @@ Meant meant(string_view field) {
 }
 
 } // namespace
+
+void ResiduesThere::add(const std::string& chain, const std::string& name, int number) {
+  constexpr size_t most = 4;
+  if (!number_) {
+    Kind& kind = kind_[name.substr(0, name.rfind(':'))];
+    if (kind.residues++ == 0)
+      kind.first = residue_in_selection(chain, name);
+    return;
+  }
+  const int64_t distance = std::abs(int64_t{number} - *number_);
+  if (nearest_.size() == most && nearest_.back().first <= distance)
+    return;
+  const auto at = std::find_if(nearest_.begin(), nearest_.end(), [&](const auto& n) { return n.first > distance; });
+  nearest_.insert(at, {distance, residue_in_selection(chain, name)});
+  nearest_.resize(std::min(nearest_.size(), most));
+}
+
+std::string ResiduesThere::text() const {
+  constexpr size_t most = 6;
+  std::vector<std::pair<int64_t, std::string>> some = nearest_;
+  for (const auto& [name, kind] : kind_)
+    some.push_back({kind.residues, kind.first});
+  std::stable_sort(some.begin(), some.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::string text;
+  for (size_t i = 0; i < std::min(some.size(), most); ++i)
+    text += (i == 0 ? "; residues there: " : ", ") + some[i].second;
+  return text + (some.size() > most ? ", …" : "");
+}
 
 std::string selection_advice(const std::string& selection) {
   if (selection.empty() || selection.find('"') != selection.npos)

@@ -3,6 +3,7 @@
 #include "formats/tetstat/layout.hpp"
 #include "formats/vtu/cell_labels.hpp"
 #include "formats/vtu/names.hpp"
+#include "mesh/surface.hpp"
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -41,6 +42,13 @@ BodyList list_bodies(const TetMesh& m, const std::string& file, int threads) {
   }
   for (const auto& [number, b] : boundary)
     list.boundary.push_back(b);
+  if (std::all_of(m.region.begin(), m.region.end(), [](int32_t r) { return r == Region::outside; })) {
+    std::vector<Tri> surface;
+    for (size_t i = 0; i < m.tri.size(); ++i)
+      if (m.boundary[i] == Boundary::surface)
+        surface.push_back(m.tri[i]);
+    list.holes = summarize_surface(m.point, surface, threads).components;
+  }
   return list;
 }
 
@@ -48,8 +56,11 @@ std::string bodies_text(const BodyList& list) {
   int64_t bodies = 0, cavities = 0;
   for (const MeshBody& b : list.body)
     bodies += b.region == Region::molecule || b.region > Region::cavity, cavities += b.region == Region::cavity;
-  std::string s = list.file + ": " + counted(bodies, "body", "bodies");
-  if (bodies == static_cast<int64_t>(list.body.size()))
+  std::string s = list.file + ": ";
+  if (list.holes > 0)
+    s += "the outside alone, with " + counted(list.holes, "hole", "holes") +
+         " for the molecule; closed cavities are not in it: density2tet --region both has them listed";
+  else if (s += counted(bodies, "body", "bodies"); bodies == static_cast<int64_t>(list.body.size()))
     s += "; cavities are holes in this mesh of the inside alone: density2tet --region both has them listed";
   else
     s += ", " + counted(cavities, "cavity", "cavities");

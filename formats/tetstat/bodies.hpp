@@ -22,6 +22,7 @@ struct BodyList {
   std::map<int32_t, std::string> region_name; ///< of the regions that the mesh itself names
   /// [body] the residues, or chains, of its triangles, most triangles first; empty: the mesh has no labels
   std::vector<std::vector<std::string>> residues;
+  int64_t holes = 0; ///< of a mesh of the outside alone: connected parts of the molecule's surface
 };
 
 /// m is valid (validity.hpp). Same result at any number of threads.

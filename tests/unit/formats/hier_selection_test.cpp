@@ -61,6 +61,15 @@ TEST_CASE("Selections on a .hier: chains and their copies, residues, insertion c
 TEST_CASE("Selections that a .hier cannot answer are refused with one line") {
   CHECK(refusal("//C").find("expected one that some atom fits") != std::string::npos);
   CHECK(refusal("//A/99").find("here: found selection") == 0);
+  const Hierarchy some = hierarchy("hier 1\nlevels chain residue\nchain A 1\nresidue GLY:1 1\natom CA C 0 0 0 1\n"
+                                   "residue GLY:2 1\natom CA C 4 0 0 1\nresidue GLY:9 1\natom CA C 8 0 0 1\n"
+                                   "residue ANS:20 1\natom C C 12 0 0 1\nresidue SER:21 1\natom C C 14 0 0 1\n"
+                                   "chain B 1\nresidue HEM:1 1\natom CA C 0 9 0 1\n");
+  CHECK(refusal("//A/(ANX)", some).find("fits; residues there: //A/20(ANS), //A/21(SER), //A/1(GLY)") !=
+        std::string::npos);
+  CHECK(refusal("//A/10-12", some).find("fits; residues there: //A/9(GLY), //A/2(GLY), //A/1(GLY), //A/20(ANS)") !=
+        std::string::npos);
+  CHECK(refusal("//C/10", some).find("fits; chains here: A, B (") != std::string::npos);
   CHECK(refusal("//A//CA:A").find("a .hier holds nothing else") != std::string::npos);
   CHECK(refusal("/2/A").find("a .hier holds nothing else") != std::string::npos);
   CHECK(refusal("//A;q>0.5").find("a .hier holds nothing else") != std::string::npos);

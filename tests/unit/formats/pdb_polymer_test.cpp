@@ -47,8 +47,8 @@ TEST_CASE("a modified residue that is bonded into a chain stays with it, a ligan
   const Dropped d = without_hetero(text);
   CHECK(d.residues == "ALA:1 MSE:2 SEP:3 GLY:4");
   CHECK(d.notes == "PDB: kept 12 atoms in 4 residues and 1 chain\n"
-                   "modified residues, links of the chains: MSE 1, SEP 1\n"
-                   "dropped atoms: 5 of hetero groups (--hetatm: GLY 1, CA 2)\n");
+                   "modified residues, links of the chains: //A/2(MSE), //A/3(SEP)\n"
+                   "dropped atoms: 5 of hetero groups (--hetatm: //A/5(GLY), CA 2)\n");
   const Converted all = convert(text);
   CHECK(all.report.ligands.at("CA").residues == 2);
   CHECK(all.report.ligands.at("GLY").atoms == 3);
@@ -103,11 +103,23 @@ TEST_CASE("the sequence of the file says what no bond tells") {
             .residues == "ALA:1 MSE:9");
 }
 
-TEST_CASE("the residues of the most atoms are named first, and few of many") {
-  std::string text = amino("ALA", 1, 0, false);
-  for (const char* ion : {"CA", "CD", "CL", "CO", "FE", "MG", "MN"})
-    text += hetero(ion, ion, 10 + ion[0] + ion[1], 50, ion);
-  text += hetero("C1", "LIG", 5, 80, "C") + hetero("C2", "LIG", 5, 81, "C");
-  CHECK(without_hetero(text).notes.find("(--hetatm: LIG 1, CA 1, CD 1, CL 1, CO 1, FE 1 and 2 more)") !=
-        std::string::npos);
+TEST_CASE("the residues of the most atoms are named first, twenty kinds of more, and a few kinds with selections") {
+  const std::string protein = amino("ALA", 1, 0, false),
+                    ligands = hetero("CA", "CA", 6, 50, "CA") + hetero("CA", "CA", 7, 60, "CA") +
+                              hetero("C1", "LIG", 5, 80, "C") + hetero("C2", "LIG", 5, 81, "C"),
+                    waters = hetero("O", "HOH", 8, 90, "O") + hetero("O", "HOH", 9, 95, "O");
+  formats::PdbOptions o;
+  o.waters = true;
+  const Converted few = convert(protein + ligands + waters, o);
+  REQUIRE(few.report.notes.size() == 3);
+  CHECK(few.report.notes[1] == "kept ligands and ions (--hetatm): CA 2 (first //A/6(CA)), //A/5(LIG)");
+  CHECK(few.report.notes[2] == "kept waters (--waters): HOH 2 (first //A/8(HOH))");
+  std::string text = protein + ligands, listed = "CA 2, //A/5(LIG)";
+  for (char c = 'A'; c < 'A' + 21; ++c) {
+    const std::string name = std::string("X") + c + "1";
+    text += hetero("C1", name, 10 + c, 100 + 5 * (c - 'A'), "C");
+    if (c < 'A' + 18)
+      listed += ", //A/" + std::to_string(10 + c) + "(" + name + ")";
+  }
+  CHECK(without_hetero(text).notes.find("(--hetatm: " + listed + " and 3 more kinds)") != std::string::npos);
 }

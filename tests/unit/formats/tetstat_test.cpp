@@ -250,6 +250,16 @@ TEST_CASE("bodies and boundaries are listed, the largest first, and sum to the m
   CHECK(has(
       formats::bodies_text(formats::list_bodies(inside, "x.vtu", 1)),
       "1 body; cavities are holes in this mesh of the inside alone: density2tet --region both has them listed\n"));
+  TetMesh around = cubes(7, [](Vec3i c) -> int32_t {
+    return c == Vec3i{2, 2, 2} || c == Vec3i{4, 4, 4} ? Region::molecule : Region::outside;
+  });
+  for (size_t t = around.tet.size(); t-- > 0;)
+    if (around.region[t] == Region::molecule) {
+      around.tet.erase(around.tet.begin() + static_cast<std::ptrdiff_t>(t));
+      around.region.erase(around.region.begin() + static_cast<std::ptrdiff_t>(t));
+    }
+  CHECK(has(formats::bodies_text(formats::list_bodies(around, "x.vtu", 1)),
+            "x.vtu: the outside alone, with 2 holes for the molecule; closed cavities are not in it: "));
   const auto j = nlohmann::ordered_json::parse(formats::bodies_json(list));
   CHECK(j["bodies"].size() == 4);
   CHECK(j["boundaries"][7]["label"] == 8);
