@@ -6,27 +6,14 @@
 #include "formats/png/png.hpp"
 #include "formats/read_all.hpp"
 #include "tools/report_names.hpp"
+#include "tools/report_view.hpp"
 #include <algorithm>
 #include <optional>
 #include <ostream>
-#include <set>
 
 using namespace molmesh;
 
 namespace {
-
-std::vector<int32_t> shown_regions(const Options& o, const TetMesh& m) {
-  const std::set<int32_t> all(m.region.begin(), m.region.end());
-  std::vector<int32_t> shown;
-  for (const int32_t r : all) {
-    const bool around = r == Region::outside;
-    if (o.region == "both" || (o.region == "exterior") == around)
-      shown.push_back(r);
-  }
-  if (shown.empty() && o.region != "auto")
-    fail(Status::usage, "--region: found " + o.region + ", of which the mesh has nothing");
-  return shown.empty() ? std::vector<int32_t>(all.begin(), all.end()) : shown;
-}
 
 struct Loaded {
   TetMesh mesh;
@@ -59,20 +46,20 @@ std::string draw(const Loaded& l, const std::string& name, const Options& o, int
   picture::PictureOptions p;
   p.raster.width = width;
   p.raster.height = height;
-  p.view = {o.azimuth, o.elevation};
   p.region = shown_regions(o, l.mesh);
+  const auto named = l.colour == "boundary" ? formats::user_boundaries(l.mesh) : std::map<int32_t, std::string>();
+  const int threads = o.resolved_threads();
+  p.view = view_of(o, l.mesh, named, p.region, threads);
+  const std::string axes = cut_axes(o, named, p.region);
   const auto [low, high] = box_of(l.bodies, p.region);
-  p.cut = picture::cut_facing(p.view,
-                              o.clip == "corner" ? "xy"
-                              : o.clip == "none" ? ""
-                                                 : o.clip,
-                              o.clip_at.value_or(0.5), low, high);
+  p.cut = picture::cut_facing(p.view, axes, o.clip_at.value_or(0.5), low, high);
   p.edges = !o.no_edges;
   p.caption = caption;
   p.title = name;
-  const int threads = o.resolved_threads();
-  return formats::png(
-      draw_mesh(l.mesh, formats::colouring_by(l.colour, l.mesh, l.sides, l.bodies, l.labels), p, threads));
+  const picture::Colouring c = formats::colouring_by(l.colour, l.mesh, l.sides, l.bodies, l.labels);
+  if (caption && !named.empty())
+    note_hidden(run, l.mesh, named, c, p, threads);
+  return formats::png(draw_mesh(l.mesh, c, p, threads));
 }
 
 Status run_tool(const Options& o, cli::Run& run) {

@@ -9,7 +9,18 @@
 
 namespace molmesh::formats {
 
+std::map<int32_t, std::string> user_boundaries(const TetMesh& m) {
+  const std::vector<int32_t> patch = patches(m);
+  std::map<int32_t, std::string> named = names_of(m, "patch_names");
+  std::erase_if(named, [&](const auto& n) {
+    return is_own_name(n.second) || std::find(patch.begin(), patch.end(), n.first) == patch.end();
+  });
+  return named;
+}
+
 std::string usual_colour(const TetMesh& m, const std::vector<CellLabel>& labels) {
+  if (!user_boundaries(m).empty())
+    return "boundary";
   const CellLabel* const chain = find_label(labels, "chain");
   if (chain && chain->names.size() > 1)
     return "chain";

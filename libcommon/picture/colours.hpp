@@ -9,12 +9,10 @@ struct RampStop {
   double at; ///< 0 to 1
   Rgb colour;
 };
-/// From bad (red) over pale yellow to good (blue): told apart by those who do not see red or green, too.
-inline constexpr std::array<RampStop, 5> quality_ramp{{{0, {178, 34, 34}},
-                                                       {0.25, {236, 131, 60}},
-                                                       {0.5, {247, 225, 150}},
-                                                       {0.75, {127, 178, 190}},
-                                                       {1, {38, 107, 150}}}};
+/// From bad (dark red) over grays to good (pale): colours that no label has, each lighter than the one before, so
+/// that they are told apart by those who do not see red, too.
+inline constexpr std::array<RampStop, 4> quality_ramp{
+    {{0, {110, 0, 40}}, {0.3, {118, 92, 98}}, {0.6, {158, 154, 154}}, {1, {204, 206, 202}}}};
 /// x from 0 to 1; beyond, the ends.
 inline Rgb ramp_colour(double x) {
   size_t i = 1;

@@ -155,7 +155,7 @@ public:
                  y = image_.height - gap_ - 1.6 * size_ - height;
     halo(gap_, y - 0.6 * size_, "smallest dihedral angle of a tetrahedron at the cut", 0.95 * size_);
     for (int i = 0; i < static_cast<int>(width); ++i)
-      fill_rectangle(image_, gap_ + i, y, std::min(1., width - i), height, ramp_colour((i + 0.5) / width));
+      fill_rectangle(image_, gap_ + i, y, std::min(2., width - i), height, ramp_colour((i + 0.5) / width));
     const double span = range[1] - range[0];
     const auto tick = [&](double v, double near) {
       const double x = gap_ + (span > 0 ? (v - range[0]) / span : 0) * width;
@@ -266,6 +266,51 @@ Cut cut_facing(const View& view, const std::string& axes, double share, Vec3d lo
     cut.plane.push_back({normal, side * (low[axis] + at * (high[axis] - low[axis]))});
   }
   return cut;
+}
+
+BestView best_view(const TetMesh& m, const std::vector<uint8_t>& marked, int threads) {
+  Scene scene;
+  scene.point.resize(m.point.size());
+  RasterOptions small;
+  small.width = small.height = 240;
+  small.samples = 1;
+  small.shade_hollows = false;
+  Vec3d sum, low{1e300, 1e300, 1e300}, high = -1. * low;
+  for (size_t i = 0; i < m.tri.size(); ++i) {
+    if (on_box(m.boundary[i]))
+      continue;
+    const Tri& t = m.tri[i];
+    scene.facet.push_back({t, marked[i] ? Rgb{0, 0, 0} : white, false});
+    if (marked[i])
+      sum += tri_normal(m.point[t[0]], m.point[t[1]], m.point[t[2]]);
+    for (const int32_t v : t)
+      for (int k = 0; k < 3; ++k)
+        low[k] = std::min(low[k], m.point[v][k]), high[k] = std::max(high[k], m.point[v][k]);
+  }
+  std::vector<View> views{{std::round(std::atan2(sum.y, sum.x) / degree),
+                           std::round(std::atan2(sum.z, std::hypot(sum.x, sum.y)) / degree)},
+                          {0, 90},
+                          {0, -90}};
+  for (const double elevation : {0., 45., -45.})
+    for (double azimuth = -180; azimuth < 180; azimuth += 45)
+      views.push_back({azimuth, elevation});
+  BestView best{views[0], 0};
+  for (const View& v : views) {
+    Camera camera(v);
+    const Vec3d middle = 0.5 * (low + high);
+    camera.scale = small.width / std::max(norm(high - low), 1e-9);
+    camera.x0 = small.width / 2. - camera.scale * dot(camera.right, middle);
+    camera.y0 = small.height / 2. + camera.scale * dot(camera.up, middle);
+    par::for_n(static_cast<int64_t>(m.point.size()), threads,
+               [&](int64_t i) { scene.point[i] = camera(m.point[i]); });
+    const Image image = draw_scene(scene, small, threads);
+    int64_t pixels = 0; // black ones: light leaves them so, and white ones far from it
+    for (size_t i = 0; i < image.rgb.size(); i += 3)
+      pixels += image.rgb[i] < 30;
+    if (pixels > best.pixels)
+      best = {v, pixels};
+  }
+  return best;
 }
 
 Image draw_mesh(const TetMesh& m, const Colouring& colouring, const PictureOptions& o, int threads) {

@@ -30,6 +30,14 @@ struct View {
   double azimuth = -60, elevation = 25; ///< degrees: where the viewer stands; azimuth from +x to +y, z is up
 };
 
+struct BestView {
+  View view;
+  int64_t pixels = 0; ///< of a small picture; 0: hidden from all sides
+};
+/// From where most of the marked triangles is seen, of the side that they face on the whole and 26 others; walls of
+/// the box hide nothing. marked: [triangles].
+BestView best_view(const TetMesh& m, const std::vector<uint8_t>& marked, int threads);
+
 /// Across each of these axes ("xy": a corner), takes away the share of [low, high] that faces the viewer.
 Cut cut_facing(const View& view, const std::string& axes, double share, Vec3d low, Vec3d high);
 

@@ -54,6 +54,14 @@ def red(r, g, b):
     return r > 1.5 * b and r > 1.5 * g and r > 60
 
 
+def bad(r, g, b):  # the dark end of the scale at the cut
+    return r > 1.3 * max(g, b) and 50 < r < 160
+
+
+def pale(r, g, b):  # the other end; the surface is yellower
+    return b > 0.96 * r and r > 120 and ink(r, g, b)
+
+
 def mark(r, g, b):  # around the element that was asked for
     return r > 180 and g < 60 and 70 < b < 140
 
@@ -122,7 +130,7 @@ def one(chromium):
     check("without labels the surface has one colour", plain.share(blue) < 0.005 and plain.share(red) < 0.005, (plain.share(blue), plain.share(red)))
     chromium.run("document.getElementById('cut-y').click()")
     cut = Picture(chromium)
-    check("the cut shows tetrahedra in the colours of their angles", cut.share(blue) > 0.005 and cut.share(red) > 0.01, (cut.share(blue), cut.share(red)))
+    check("the cut shows tetrahedra in the colours of their angles", cut.share(pale) > plain.share(pale) + 0.02 and cut.share(bad) > plain.share(bad) + 0.002, (cut.share(pale), cut.share(bad), plain.share(pale), plain.share(bad)))
     at_cut = chromium.run("""(() => { const v = molmesh.view, m = v.mesh, n = v.plane.normal, o = v.plane.offset, whole = new Set();
       for (let t = 0; t < m.tets; t++) { if (!v.shown[m.body[t]]) continue; let beyond = 0;
         for (let i = 0; i < 4; i++) { const p = 3 * m.corner[4 * t + i]; beyond += n[0] * m.position[p] + n[1] * m.position[p + 1] + n[2] * m.position[p + 2] > o; }

@@ -12,9 +12,8 @@ struct Options : cli::Common {
   }
   MeshInput mesh;
   std::vector<std::string> meshes, runs; ///< meshes: after the first
-  std::string png, colour = "auto", clip = "corner", region = "auto", title;
-  std::optional<double> clip_at;
-  double azimuth = -60, elevation = 25;
+  std::string png, colour = "auto", clip = "auto", region = "auto", title;
+  std::optional<double> clip_at, azimuth, elevation;
   int width = 1200, height = 900;
   double most_megabytes = 30;
   bool check = false, no_edges = false;
@@ -42,28 +41,33 @@ inline void describe(cli::Table& t, Options& o) {
   const std::vector<std::string> picture = {"png", "meshes"}; // a gallery has one of each mesh
   t.add("--png", o.png, "write a picture of one mesh to this file").unit("PICTURE");
   t.add("--colour", o.colour,
-        "of the surface, in the page at first, too: plain, region, body, boundary, part, chain, residue or another "
-        "integer array of the mesh; auto: the first of chain, named boundaries, regions that there is")
+        "of the surface, the page's at first, too: plain, region, body, boundary, part, chain, residue or another "
+        "integer array; auto: the first of named boundaries, chain, regions that there is")
       .unit("LABEL");
   t.quantity("colour", "--colour");
   t.add("--clip", o.clip,
-        "what the picture takes away: the side of x, y or z that faces the viewer, of both x and y (a corner), or "
-        "nothing; tetrahedra at the cut stay whole")
-      .one_of({"x", "y", "z", "corner", "none"})
+        "what is taken away: the side of x, y or z that faces the viewer, of both x and y (a corner), or "
+        "nothing; whole tetrahedra stay; auto: a corner, but of named boundaries nothing")
+      .one_of({"auto", "x", "y", "z", "corner", "none"})
       .needs(picture);
   t.add("--clip-at", o.clip_at, "where, as a share of the mesh's extent")
       .within(0, 1)
       .shown_default("0.5")
       .needs(picture);
   t.add("--region", o.region,
-        "what is shown: the molecule with its cavities, what is around it, or both; auto: the "
-        "molecule, where there is one")
+        "shown: the molecule and its cavities, what is around, or both; auto: the molecule if any")
       .one_of({"auto", "interior", "exterior", "both"});
-  t.add("--azimuth", o.azimuth, "where the viewer stands, from +x to +y")
+  t.add("--azimuth", o.azimuth,
+        "where the viewer stands, from +x to +y; auto: -60, or where one named boundary shows best")
       .unit("°")
       .within(-360, 360)
+      .shown_default("auto")
       .needs(picture);
-  t.add("--elevation", o.elevation, "and how high").unit("°").within(-90, 90).needs(picture);
+  t.add("--elevation", o.elevation, "and how high; auto: 25, or as that")
+      .unit("°")
+      .within(-90, 90)
+      .shown_default("auto")
+      .needs(picture);
   t.add("--width", o.width, "pixels").within(64, 8192).needs({"png"});
   t.add("--height", o.height, "pixels").within(64, 8192).needs({"png"});
   t.add("--no-edges", o.no_edges, "draw no edges of triangles").needs(picture);

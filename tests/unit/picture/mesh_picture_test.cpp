@@ -37,9 +37,10 @@ int64_t pixels(const Image& image, Rgb like) {
   for (size_t i = 0; i < image.rgb.size(); i += 3) {
     const double r = image.rgb[i], g = image.rgb[i + 1], b = image.rgb[i + 2], sum = r + g + b + 1e-9,
                  whole = like.r + like.g + like.b;
-    if (r + g + b < 740 && std::fabs(r / sum - like.r / whole) + std::fabs(g / sum - like.g / whole) +
-                                   std::fabs(b / sum - like.b / whole) <
-                               0.03)
+    if (r + g + b < 700 && // neither the background nor what is half of it
+        std::fabs(r / sum - like.r / whole) + std::fabs(g / sum - like.g / whole) +
+                std::fabs(b / sum - like.b / whole) <
+            0.03)
       ++n;
   }
   return n;
@@ -92,6 +93,31 @@ TEST_CASE("a wedge is taken away where both planes say so") {
   const int64_t wedge = pixels(draw_mesh(m, c, o, 1), {40, 40, 200});
   CHECK(wedge > half);
   CHECK(wedge < pixels(whole, {40, 40, 200}));
+}
+
+TEST_CASE("marked triangles are looked at from where they are seen, and those within from nowhere") {
+  const TetMesh ball = testing::cubes(9, [](Vec3i c) { // with a cavity
+    const double d2 = norm2(to_double(c) - Vec3d{4, 4, 4});
+    return d2 < 2 ? 3 : d2 < 11 ? 1 : 2;
+  });
+  const auto middle = [&](size_t i) {
+    const Tri& t = ball.tri[i];
+    return (1 / 3.) * (ball.point[t[0]] + ball.point[t[1]] + ball.point[t[2]]) - Vec3d{4.5, 4.5, 4.5};
+  };
+  for (const Vec3d side : {Vec3d{1, 0, 0}, Vec3d{0, -1, 0}, Vec3d{0, 0, 1}, Vec3d{0, 0, -1}}) {
+    std::vector<uint8_t> mark(ball.tri.size());
+    for (size_t i = 0; i < mark.size(); ++i)
+      mark[i] = ball.boundary[i] == Boundary::surface && dot(side, middle(i)) > 2.6;
+    const BestView best = best_view(ball, mark, 2);
+    CHECK(best.pixels > 500); // steps show more from aslant
+    const double a = best.view.azimuth * std::acos(-1.) / 180, e = best.view.elevation * std::acos(-1.) / 180;
+    CHECK(dot(side, Vec3d{std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)}) > 0.7);
+  }
+  std::vector<uint8_t> within(ball.tri.size());
+  for (size_t i = 0; i < within.size(); ++i)
+    within[i] = norm2(middle(i)) < 5;
+  REQUIRE(std::count(within.begin(), within.end(), 1) > 20);
+  CHECK(best_view(ball, within, 1).pixels == 0);
 }
 
 TEST_CASE("regions that are not asked for are not shown") {

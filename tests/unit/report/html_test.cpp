@@ -183,6 +183,12 @@ TEST_CASE("labels are numbered by their names, and others by rank") {
   CHECK(find_label(labels, "kind")->tet[4] == -1);
   CHECK(find_label(labels, "kind")->tri[0] == 1);
   CHECK(usual_colour(m, labels) == "chain");
+  TetMesh named = m; // by its user
+  named.cell_array.push_back({"patch", std::vector<int32_t>(m.tet.size() + m.tri.size(), 0), {}});
+  named.cell_array.back().integer[m.tet.size()] = 8;
+  named.named_text.push_back({"patch_names", "8 site\n9 none\n"});
+  CHECK(user_boundaries(named) == std::map<int32_t, std::string>{{8, "site"}});
+  CHECK(usual_colour(named, cell_labels(named)) == "boundary");
   const TriangleSides sides = triangle_sides(m, 1);
   const MeshBodies bodies = find_bodies(m, sides.across);
   CHECK(test::refusal(Status::usage, [&] { colouring_by("helix", m, sides, bodies, labels); }) ==
