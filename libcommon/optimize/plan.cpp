@@ -31,7 +31,7 @@ Plan plan(const Work& work) {
   const bool improves = work.iterations > 0;
   Plan p;
   p.elements = work.elements;
-  p.memory = std::llround(7e6 + 63 * n + 720 * surface + 2200 * static_cast<double>(work.blocks) +
+  p.memory = std::llround(8.5e6 + 63 * n + 720 * surface + 2200 * static_cast<double>(work.blocks) +
                           (improves ? std::min(e.search, 100 * n) * work.threads : 0));
   p.seconds = 0.02 + 3e-7 * n + (improves ? e.element * n + e.triangle * surface + e.split * split : 0);
   return p;
