@@ -102,10 +102,12 @@ std::string facts_json(const TetMesh& m, const TriangleSides& sides, const MeshB
       j["faults"].push_back({{"rule", f.rule}, {"count", f.count}, {"example", f.example}});
 
   const std::vector<std::vector<std::string>> residues = names_round_bodies(m, sides, bodies, places);
+  const RegionOrder order(m);
   j["bodies"] = json::array();
   for (size_t b = 0; b < bodies.body.size(); ++b) {
     const MeshBody& body = bodies.body[b];
     j["bodies"].push_back({{"region", body.region},
+                           {"molecular", order.is_inside(body.region)},
                            {"tets", body.tets},
                            {"volume", body.volume},
                            {"area", body.area},
@@ -120,7 +122,6 @@ std::string facts_json(const TetMesh& m, const TriangleSides& sides, const MeshB
   std::vector<std::pair<int32_t, std::string>> regions;
   for (const auto& r : region_names(m))
     regions.push_back(r);
-  const RegionOrder order(m);
   std::sort(regions.begin(), regions.end(),
             [&](const auto& a, const auto& b) { return order.is_first(a.first, b.first); });
   j["regions"] = json::array();
@@ -129,10 +130,18 @@ std::string facts_json(const TetMesh& m, const TriangleSides& sides, const MeshB
   const CellLabel& boundary = *find_label(labels, "boundary");
   std::vector<double> area(boundary.names.size());
   std::vector<int64_t> triangles(boundary.names.size());
+  double surface = 0; // of the molecule: neither walls nor interfaces between its domains
   for (size_t i = 0; i < m.tri.size(); ++i) {
-    area[boundary.tri[i]] += tri_area(m.point[m.tri[i][0]], m.point[m.tri[i][1]], m.point[m.tri[i][2]]);
+    const double a = tri_area(m.point[m.tri[i][0]], m.point[m.tri[i][1]], m.point[m.tri[i][2]]);
+    area[boundary.tri[i]] += a;
     ++triangles[boundary.tri[i]];
+    const std::string& name = boundary.names[boundary.tri[i]];
+    const bool wall = name.starts_with("box_") || name == "sphere";
+    const auto is_inside = [&](int32_t face) { return face >= 0 && order.is_inside(m.region[face / 4]); };
+    if (!wall && !(is_inside(sides.face[i][0]) && is_inside(sides.face[i][1])))
+      surface += a;
   }
+  j["surface"] = surface;
   j["boundaries"] = json::array();
   for (size_t b = 0; b < area.size(); ++b)
     j["boundaries"].push_back({{"name", boundary.names[b]}, {"triangles", triangles[b]}, {"area", area[b]}});

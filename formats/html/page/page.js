@@ -32,7 +32,8 @@ const plural = (n, one, many) => count(n) + ' ' + (n === 1 ? one : many);
 const css = c => `rgb(${c[0]},${c[1]},${c[2]})`;
 const regionName = (m, r) => m.regions.find(k => k.region === r).name;
 const bodiesOf = (m, r) => m.bodies.filter(b => b.region === r);
-const insideAlone = m => m.bodies.every(b => b.region === 1); // closed cavities are holes then, and not listed
+const molecular = m => m.bodies.filter(b => b.molecular); // domains of it, too
+const insideAlone = m => m.bodies.every(b => b.molecular); // closed cavities are holes then, and not listed
 const pictureOf = m => 'data:image/png;base64,' + document.getElementById('picture-' + m.index).textContent.trim();
 
 function table(columns, rows, onRow) { // columns: [title, class, text of row]
@@ -95,17 +96,14 @@ async function loadLibraries() {
   return true;
 }
 
-// Those of the molecule: not the walls of the box, nor the outer sphere.
-function molecularBoundaries(m) { return m.boundaries.filter(b => !/^(box_|sphere$)/.test(b.name)); }
-
 function figures(m) {
-  const bodies = bodiesOf(m, 1), cavities = bodiesOf(m, 3), sum = (list, key) => list.reduce((a, b) => a + b[key], 0);
+  const bodies = molecular(m), cavities = bodiesOf(m, 3), sum = (list, key) => list.reduce((a, b) => a + b[key], 0);
   const figure = (value, name, kind) => make('div', {class: 'card'}, make('b', {class: kind || ''}, value), make('span', {}, name));
   const q = m.quality, all = [
     figure(count(m.tets), 'tetrahedra'), figure(count(m.points), 'points'), figure(count(m.triangles), 'boundary triangles')];
   if (bodies.length) all.push(figure(size(sum(bodies, 'volume')) + ' Å³', 'molecule, ' + plural(bodies.length, 'body', 'bodies')));
   else all.push(figure(size(sum(m.bodies, 'volume')) + ' Å³', 'volume'));
-  all.push(figure(size(sum(molecularBoundaries(m), 'area')) + ' Å²', 'molecular surface'));
+  all.push(figure(size(m.surface) + ' Å²', 'molecular surface'));
   if (cavities.length) all.push(figure(size(sum(cavities, 'volume')) + ' Å³', plural(cavities.length, 'closed cavity', 'closed cavities')));
   all.push(figure(angle(q.dihedral.min) + ' – ' + angle(q.dihedral.max), 'dihedral angles'), figure(q.joe_liu_q.min.toFixed(3), 'smallest Joe–Liu Q'));
   if (m.valid !== null) all.push(figure(m.valid ? 'valid' : 'not valid', m.valid ? 'conforming, closed boundaries' : m.faults.map(f => f.rule).join(', '), m.valid ? 'good' : 'bad'));
@@ -416,8 +414,8 @@ function ramp(x) { return View.prototype.rampColour.call({palette: REPORT.palett
 
 class Gallery {
   constructor() {
-    this.rows = REPORT.meshes.map(m => ({m, bodies: bodiesOf(m, 1).length, cavities: insideAlone(m) ? null : bodiesOf(m, 3).length,
-      volume: (bodiesOf(m, 1).length ? bodiesOf(m, 1) : m.bodies).reduce((s, b) => s + b.volume, 0), area: molecularBoundaries(m).reduce((s, b) => s + b.area, 0)}));
+    this.rows = REPORT.meshes.map(m => ({m, bodies: molecular(m).length, cavities: insideAlone(m) ? null : bodiesOf(m, 3).length,
+      volume: (molecular(m).length ? molecular(m) : m.bodies).reduce((s, b) => s + b.volume, 0), area: m.surface}));
     this.kind = this.rows.length > 60 ? 'table' : 'pictures';
     this.key = null;
     this.body = make('div');

@@ -7,6 +7,7 @@
 #include "formats/html/run_reports.hpp"
 #include "formats/vtu/names.hpp"
 #include "geom/tet_quality.hpp"
+#include "mesh/adjacency.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -109,6 +110,35 @@ TEST_CASE("a page's figures are those of the mesh") {
   CHECK(dihedrals == int64_t(6 * m.tet.size()));
   CHECK(j["quality"]["smallest"][0].get<double>() == Approx(j["quality"]["dihedral"]["min"].get<double>()));
   CHECK(j["quality"]["largest"][1].get<double>() == Approx(j["quality"]["dihedral"]["max"].get<double>()));
+}
+
+TEST_CASE("domains are the molecule, and what lies between two of them is no part of its surface") {
+  TetMesh m = labelled(6);
+  m.cell_array = {};
+  m.named_text = {{"region_level", "domain"}, {"region_names", "4 one\n5 other\n"}};
+  for (size_t t = 0; t < m.tet.size(); ++t)
+    if (m.region[t] == 1)
+      m.region[t] = m.point[m.tet[t][0]].x + m.point[m.tet[t][3]].x < 6 ? 4 : 5;
+  const json before = page({m}, 30e6, 1).report["meshes"][0];
+  const LargeArray<int32_t> across = face_neighbors(m, 1);
+  const size_t outer = m.tri.size();
+  for (int32_t f = 0; f < std::ssize(across); ++f)
+    if (across[f] >= 0 && m.region[f / 4] == 4 && m.region[across[f] / 4] == 5) {
+      m.tri.push_back(face_points(m, f));
+      m.boundary.push_back(8);
+    }
+  REQUIRE(m.tri.size() > outer);
+  const json j = page({m}, 30e6, 1).report["meshes"][0];
+  double volume = 0, area = 0;
+  for (const json& b : j["bodies"])
+    volume += b["molecular"].get<bool>() ? b["volume"].get<double>() : 0;
+  for (size_t i = 0; i < outer; ++i)
+    if (m.boundary[i] == 1)
+      area += tri_area(m.point[m.tri[i][0]], m.point[m.tri[i][1]], m.point[m.tri[i][2]]);
+  CHECK(j["surface"].get<double>() == Approx(area));
+  CHECK(before["surface"].get<double>() == Approx(area));
+  CHECK(volume > 40);
+  CHECK(volume < 100);
 }
 
 TEST_CASE("the worst elements are those of the optimizer's quality, with the residues there") {
