@@ -103,7 +103,7 @@ void note_losses(const cli::Run& run, const std::string& format, const TetMesh& 
     if (!has_arrays && (a.name != "patch" || format == "stl" || format == "off"))
       lose(a.name);
   for (const NamedText& t : m.named_text)
-    if (has_arrays && t.name != "patch_names" && t.name != "region_names")
+    if (has_arrays && t.name != "patch_names" && t.name != "boundary_names" && t.name != "region_names")
       lose(t.name);
   if (unplaced > 0)
     lose("labels of " + std::to_string(unplaced) + " triangles between regions");
