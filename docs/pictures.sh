@@ -106,7 +106,7 @@ domains() {
 }
 potential() { # by FreeFEM
   cp "$docs/../tests/data/1l2y.pqr" .
-  make -s -f "$docs/../Makefile.pipeline" BIN="$bin" HIER2DENSITY_FLAGS='--surface ses --spacing 0.35' 1l2y.energy
+  make -s -f "$docs/../Makefile.pipeline" BIN="$bin" HIER2DENSITY_FLAGS='--spacing 0.35' COARSEN=no 1l2y.energy
   draw potential.py 1l2y.potential.vtu potential.png
 }
 

@@ -2,9 +2,11 @@
 #pragma once
 #include "cli/plan.hpp"
 #include "density/plan.hpp"
+#include "distance/distance.hpp"
 #include "tools/element_limit.hpp"
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
 
 namespace molmesh {
@@ -19,8 +21,8 @@ struct CountedMesh {
 /// The finest spacing, in steps of 0.005 Å, of whose default mesh nine tenths of so many elements are planned. A
 /// note tells better ways where the body is a caricature there. Throws Error(usage) where none up to 20 Å has so
 /// few, and as density::plan().
-inline double spacing_of_elements(const Hierarchy& h, density::Options d, int64_t elements,
-                                  const std::string& region, const cli::Run& run) {
+inline double spacing_of_elements(const Hierarchy& h, const std::optional<distance::Body>& body, density::Options d,
+                                  int64_t elements, const std::string& region, const cli::Run& run) {
   // Shares of the volume at 1 Å. Nine tenths are left at 2 to 3 Å of 240 to 2,000 atoms, at 2.9 to 3.9 Å of 2,300
   // to 13,000.
   constexpr double least_shown = 0.85, well_shown = 0.91;
@@ -29,9 +31,17 @@ inline double spacing_of_elements(const Hierarchy& h, density::Options d, int64_
   contour::Options options;
   options.meshed = meshed_of(region);
   options.threads = d.threads;
+  d.tile = {};
+  const auto band = [&] {
+    if (!body)
+      return density::plan(h, d).band;
+    d.spacing = density::counted_spacing(d.spacing, std::ssize(h.atom));
+    density::Counts counts;
+    return distance::compute(h, *body, d, counts);
+  };
   const auto count = [&](double spacing) {
     d.spacing = spacing;
-    const BlockGrid grid = to_block_grid(density::plan(h, d).band, d.threads);
+    const BlockGrid grid = to_block_grid(band(), d.threads);
     const contour::LeafCounter counter(grid, options);
     return CountedMesh{grid.frame.spacing, counter.count(), counter.volume()};
   };

@@ -73,7 +73,6 @@ std::optional<distance::Body> body_of(const Options& o) {
   refuse("--search full", o.search == "full", gaussian);
   refuse("--atoms", o.atoms != "bvh", gaussian);
   refuse("--plan", o.plan, gaussian);
-  refuse("--elements", o.elements > 0, gaussian);
   refuse("--mode cuda", o.on_device(), "--mode omp: distances are computed on the host");
   return distance::Body{o.surface == "ses"   ? Surface::solvent_excluded
                         : o.surface == "sas" ? Surface::solvent_accessible
@@ -96,7 +95,7 @@ Status run(const Options& o, cli::Run& r) {
   if (body && !h.body.empty())
     fail_input(in.name() + ": found bodies without atoms, expected --surface gaussian for them");
   if (o.elements > 0)
-    d.spacing = spacing_of_elements(h, d, o.elements, o.region, r);
+    d.spacing = spacing_of_elements(h, body, d, o.elements, o.region, r);
   if (!body && plans::density_is_planned(o, o, d, h, r))
     return Status::good;
   formats::Leaves leaves(o.resolved_threads());

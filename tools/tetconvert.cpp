@@ -10,6 +10,7 @@
 #include "formats/tetgen/tetgen.hpp"
 #include "formats/vtu/vtu.hpp"
 #include "formats/xdmf/xdmf.hpp"
+#include "mesh/straddling.hpp"
 #include "tools/charges_file.hpp"
 #include "tools/mesh_endings.hpp"
 #include <algorithm>
@@ -122,6 +123,8 @@ Status run_tool(const Options& o, cli::Run& run) {
   TetMesh mesh = read_mesh(run, input, o.mesh, formats::CellArrays::keep, notes);
   if (mesh.creator.empty())
     mesh.creator = cli::creator("tetconvert");
+  if (o.straddle)
+    run.counts["moved"] = straddle_surface(mesh);
   run.counts["points"] = mesh.point.size();
   run.counts["tetrahedra"] = mesh.tet.size();
   run.counts["triangles"] = mesh.tri.size();

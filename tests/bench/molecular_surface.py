@@ -178,9 +178,8 @@ def write_dx(file, low, h, values):
         f.write(f"object 1 class gridpositions counts {n[0]} {n[1]} {n[2]}\norigin {low[0]} {low[1]} {low[2]}\n")
         f.write(f"delta {h} 0 0\ndelta 0 {h} 0\ndelta 0 0 {h}\nobject 2 class gridconnections counts {n[0]} {n[1]} {n[2]}\n")
         f.write(f"object 3 class array type double rank 0 items {values.size} data follows\n")
-        flat = values.ravel()
-        np.savetxt(f, flat[: flat.size // 3 * 3].reshape(-1, 3), "%g")
-        f.write(" ".join(f"{x:g}" for x in flat[flat.size // 3 * 3 :]) + "\n")
+        different, which = np.unique(values.ravel(), return_inverse=True)  # nearly all are of one medium or the other
+        f.write("".join(np.array([f"{x:g}\n" for x in different], object)[which].tolist()))
 
 
 def inside(u, v):

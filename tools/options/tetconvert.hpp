@@ -10,6 +10,7 @@ struct Options : cli::Common {
     chooses_format = true;
   }
   std::string format = "auto", charges;
+  bool straddle = false;
   MeshInput mesh;
   std::vector<std::string> outputs() const override;
 };
@@ -29,6 +30,9 @@ inline void describe(cli::Table& t, Options& o) {
         "each, beside the "
         "output: X.charges beside X.msh")
       .unit("FILE");
+  t.add("--straddle", o.straddle,
+        "for solvers with flat elements: points of the molecular surface move along their normals, by at most a "
+        "tenth of an edge, so that each triangle lies as much outside of the curved surface as inside");
   describe_mesh_input(t, o.mesh);
   t.page.about =
       "Reads a mesh of any format that is read and writes it in another. Regions, boundaries and named boundaries "
