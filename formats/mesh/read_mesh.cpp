@@ -29,6 +29,15 @@ std::string surface_format(std::string_view text) {
   return head + triangle * n == text.size() ? "STL" : "";
 }
 
+/// Its first character is <, behind blanks and the mark of UTF-8.
+bool begins_as_xml(std::string_view text) {
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  if (text.substr(0, mark.size()) == mark)
+    text.remove_prefix(mark.size());
+  const size_t first = text.find_first_not_of(" \t\r\n");
+  return first != text.npos && text[first] == '<';
+}
+
 } // namespace
 
 TetMesh read_mesh(std::istream& in, const std::string& file, const MeshReading& as, MeshNotes& notes) {
@@ -46,7 +55,7 @@ TetMesh read_mesh(std::istream& in, const std::string& file, const MeshReading& 
     fail_input(
         file + ":1: found a surface (" + surface +
         "), expected a mesh of tetrahedra: fill the surface first, as tetgen -pqg does, whose .mesh is read");
-  if (!text.empty() && start.find('<') == start.npos)
+  if (!text.empty() && !begins_as_xml(start))
     fail_input(file + ":1: found no mesh of a format that is known, expected .vtu, .vtk, .msh or .mesh");
   return read_vtu(text, file, as, notes);
 }

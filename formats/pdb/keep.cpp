@@ -223,7 +223,7 @@ void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, Pd
                                   [](Model, Chain, Residue) { return [](Atom a) { return a.is_hydrogen(); }; });
   if (!options.hetatm)
     report.hetatms = drop_atoms(parsed, charge.hetatms, [&report](Model, Chain c, Residue r) {
-      const bool ligand = r.het_flag == 'H' && r.flag != modified_residue;
+      const bool ligand = r.het_flag == 'H' && r.flag != modified_residue && !is_water(r);
       if (ligand)
         report.dropped_hetero[r.name].add(c.name, name_in_hierarchy(r), static_cast<int64_t>(r.atoms.size()));
       return [ligand](Atom) { return ligand; };

@@ -377,6 +377,13 @@ TEST_CASE("mesh readers: every broken rule is refused with its number and line")
   }
 }
 
+TEST_CASE("mesh readers: what is no mesh is refused with the formats that are read") {
+  for (const std::string& text : {std::string("hello\n"), std::string("\x8f\x03<\x11\n<"), std::string(100, '\0')})
+    CHECK(refusal(text) == "x:1: found no mesh of a format that is known, expected .vtu, .vtk, .msh or .mesh");
+  for (const char* text : {"<html>", "\xEF\xBB\xBF\n <html>"}) // XML, but none of VTK
+    CHECK(refusal(text).find("R1") != std::string::npos);
+}
+
 TEST_CASE("mesh readers: cut and damaged files are refused or read, never more") {
   std::mt19937 random(7);
   int refused = 0;
