@@ -83,6 +83,12 @@ def percent(p):
     return f"{p if abs(p) >= 0.005 else 0:.2f} %"
 
 
+def points_off(rows):
+    """How many of how many, and in which meshes."""
+    where = ", ".join(f"{r['file']} {r['region']}" for r in rows if r["off"] > 0)
+    return f"{sum(r['off'] for r in rows)} of {count(sum(r['surface_points'] for r in rows))}" + (where and f" ({where})")
+
+
 def table(head, rows):
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     return "\n".join(lines + ["| " + " | ".join(str(c) for c in row) + " |" for row in rows])
@@ -355,7 +361,10 @@ class Page:
                         continue
                     self.chain.density(*grid)
                     for region in ("both", "interior", "exterior"):
-                        of_set.append({"name": structure.name.split(".")[0], **self.chain.row(region)})
+                        row = {"name": structure.name.split(".")[0], "file": structure.name, **self.chain.row(region)}
+                        of_set.append(row)
+                        if row["off"] > 0:
+                            self.say(f"  points off: {points_off([row])}")
                 except ToolError as error:  # a file without atoms is refused, and is no mesh
                     self.say(f"  {name}: {error}")
             every += [(title, r) for r in of_set]
@@ -376,7 +385,7 @@ class Page:
         return (title, count(sum(r["elements"] for r in rows)),
                 angles((min(r["before"][0] for r in rows), max(r["before"][1] for r in rows))),
                 angles((min(r["after"][0] for r in rows), max(r["after"][1] for r in rows))), f"{pick('q', min):.3f}",
-                f"{pick('ratio'):.2f}", f"{sum(r['off'] for r in rows)} of {count(sum(r['surface_points'] for r in rows))}",
+                f"{pick('ratio'):.2f}", points_off(rows),
                 f"{pick('far'):.2f} ‰", f"{pick('turned'):.2f} ‰",
                 percent(max((r["missing"] for r in rows), key=abs)), seconds(sum(r["mesh_seconds"] for r in rows)),
                 seconds(total), count(sum(r["elements_before"] for r in rows) / total),
@@ -395,9 +404,7 @@ class Page:
         self.promise("angles after improvement", "25° to 140°", angles((low, high)), low >= 25 and high <= 140)
         self.promise("Joe-Liu's Q", "≥ 0.30", f"{min(r['q'] for r in rows):.3f}", min(r["q"] for r in rows) >= 0.3)
         self.promise("edge ratio", "≤ 6", f"{max(r['ratio'] for r in rows):.2f}", max(r["ratio"] for r in rows) <= 6)
-        off = sum(r["off"] for r in rows)
-        self.promise("I8: surface points off the isosurface", "0", f"{off} of {count(sum(r['surface_points'] for r in rows))}",
-                     off == 0)
+        self.promise("I8: surface points off the isosurface", "0", points_off(rows), not any(r["off"] for r in rows))
         self.promise("I8: centroids beyond 0.25 h", "≤ 10 ‰", f"{max(r['far'] for r in rows):.2f} ‰",
                      max(r["far"] for r in rows) <= 10)
         self.promise("surface triangles turned by over 45°", "≤ 1 ‰", f"{max(r['turned'] for r in rows):.2f} ‰",
