@@ -53,12 +53,36 @@ std::vector<int32_t> crossed(const std::vector<Core::ShellTriangle>& shell) {
   return vertices;
 }
 
+std::vector<int32_t> vertices_of(const std::vector<Core::ShellTriangle>& shell) {
+  std::vector<int32_t> vertices;
+  for (const auto& s : shell)
+    vertices.insert(vertices.end(), s.v.begin(), s.v.end());
+  par::sort_unique(vertices, 1);
+  return vertices;
+}
+
+// Where the surface inside touches the shell and does not run through it: it would leave these vertices.
+std::vector<int32_t> touched_by_surface(const Region& r, const Core& core) {
+  const std::vector<int32_t> on_surface = crossed(core.shell), outer = vertices_of(core.shell);
+  std::vector<int32_t> touched;
+  for (const int32_t t : core.element) {
+    const Element& e = r.mesh.element[t];
+    for (size_t f = 0; f < 4; ++f)
+      for (size_t i = 0; i < 4 && e.label[f] != 0; ++i)
+        if (f != i && is_in(outer, e.v[i]) && !is_in(on_surface, e.v[i]))
+          touched.push_back(e.v[i]);
+  }
+  par::sort_unique(touched, 1);
+  return touched;
+}
+
 } // namespace
 
 bool find_shell(const Region& r, Core& core, Vec3d c) {
   const auto ends_here = [&](const Element& e, size_t f) {
     return e.n[f] < 0 && (core.through ? r.mesh.labels[e.label[f]].curved() : core.has(outward_triangle(e.v, f)));
   };
+  std::vector<int32_t> touched;
   while (core.element.size() <= most_elements) {
     core.shell.clear();
     std::vector<int32_t> more;
@@ -72,7 +96,8 @@ bool find_shell(const Region& r, Core& core, Vec3d c) {
         const double area = norm(n), height = dot(p - c, n) / area, side = std::sqrt(area);
         const bool surface = e.label[f] != 0;
         const bool may_join = e.n[f] >= 0 && (core.through || !surface) && r.owned(e.n[f]);
-        if ((core.through && surface) || !(height > (may_join ? steep : steep_enough) * side)) {
+        if ((core.through && surface) || !(height > (may_join ? steep : steep_enough) * side) ||
+            std::any_of(s.begin(), s.end(), [&](int32_t v) { return is_in(touched, v); })) {
           if (!may_join)
             return false;
           more.push_back(e.n[f]);
@@ -80,7 +105,9 @@ bool find_shell(const Region& r, Core& core, Vec3d c) {
         core.shell.push_back({s, e.region});
       }
     }
-    if (more.empty())
+    if (!more.empty())
+      touched.clear();
+    else if (!core.through || (touched = touched_by_surface(r, core)).empty())
       return true;
     core.element.insert(core.element.end(), more.begin(), more.end());
     par::sort_unique(core.element, 1);
@@ -91,11 +118,8 @@ bool find_shell(const Region& r, Core& core, Vec3d c) {
 bool shrink(Region& r, const Core& core, Vec3d c, double scale, double ratio) {
   std::vector<int32_t>& old = r.work.old;
   std::vector<Candidate>& now = r.work.now;
-  std::vector<int32_t> outer, inner; // of the shell; inside
-  const std::vector<int32_t> on_surface = crossed(core.shell);
-  for (const auto& s : core.shell)
-    outer.insert(outer.end(), s.v.begin(), s.v.end());
-  par::sort_unique(outer, 1);
+  const std::vector<int32_t> on_surface = crossed(core.shell), outer = vertices_of(core.shell);
+  std::vector<int32_t> inner;
   for (const int32_t v : on_surface)
     if (!r.on_main_target(v))
       return false;
@@ -108,9 +132,6 @@ bool shrink(Region& r, const Core& core, Vec3d c, double scale, double ratio) {
         return false;
       if (inside)
         inner.push_back(e.v[i]);
-      for (size_t f = 0; f < 4 && core.through && !inside && !is_in(on_surface, e.v[i]); ++f)
-        if (f != i && e.label[f] != 0)
-          return false; // the surface touches the shell here, and would leave it
     }
   }
   par::sort_unique(inner, 1);

@@ -25,8 +25,8 @@ struct Core {
   bool has(const std::array<int32_t, 3>& t) const { return has(t[0]) && has(t[1]) && has(t[2]); }
 };
 
-/// Elements join the core's beyond triangles that do not face c, or that the surface may not be left at, until
-/// there are none; then those triangles are the shell. False where there is no such shell.
+/// Elements join the core's beyond triangles that do not face c, or that the surface may not be left at or touches
+/// from inside, until there are none; then those triangles are the shell. False where there is no such shell.
 bool find_shell(const Region& r, Core& core, Vec3d c);
 
 /// Contracts what is inside the shell towards c, to `scale`, with shells smaller by about `ratio` each. False, and
