@@ -5,19 +5,20 @@
 #include "geom/near_points.hpp"
 #include <algorithm>
 #include <optional>
+#include <string_view>
+#include <unordered_map>
 
 namespace molmesh::formats {
 namespace {
 
-std::string entity_of(const gemmi::Structure& st, const gemmi::Chain& chain) {
-  const auto polymer = std::find_if(chain.residues.begin(), chain.residues.end(), [](const gemmi::Residue& r) {
+std::string entity_of(const std::unordered_map<std::string_view, std::string_view>& of_subchain,
+                      const pdb::Chain& chain) {
+  const auto polymer = std::find_if(chain.residues.begin(), chain.residues.end(), [](const pdb::Residue& r) {
     return r.entity_type == gemmi::EntityType::Polymer;
   });
-  const gemmi::Residue& residue = polymer == chain.residues.end() ? chain.residues.front() : *polymer;
-  for (const gemmi::Entity& entity : st.entities)
-    if (gemmi::in_vector(residue.subchain, entity.subchains))
-      return "entity_" + entity.name;
-  return "entity_none";
+  const pdb::Residue& residue = polymer == chain.residues.end() ? chain.residues.front() : *polymer;
+  const auto known = of_subchain.find(residue.subchain.str());
+  return "entity_" + std::string(known == of_subchain.end() ? "none" : known->second);
 }
 
 /// Does the selection admit the model and the name of the chain?
@@ -44,10 +45,10 @@ std::vector<Selected> select_by_label(const Selection& s, const Arrangement& a) 
     std::optional<Selected>& known = of_residue[a.source[i]];
     if (!known) {
       const Flat::Residue& residue = a.residue(i);
-      const std::vector<gemmi::Atom>& atoms = residue.source->atoms;
+      const std::vector<pdb::Atom>& atoms = residue.source->atoms;
       const auto selected =
           s.residue(*residue.source)
-              ? std::count_if(atoms.begin(), atoms.end(), [&](const gemmi::Atom& atom) { return s.atom(atom); })
+              ? std::count_if(atoms.begin(), atoms.end(), [&](const pdb::Atom& atom) { return s.atom(atom); })
               : 0;
       known = share(selected, residue.end - residue.begin);
     }
@@ -106,10 +107,14 @@ void list_residues(Arrangement& a) {
   }
 }
 
-std::vector<std::string> domains_by_entity(const Arrangement& a, const gemmi::Structure& st) {
+std::vector<std::string> domains_by_entity(const Arrangement& a, const pdb::Structure& st) {
+  std::unordered_map<std::string_view, std::string_view> of_subchain; // the first entity that has it
+  for (const gemmi::Entity& entity : st.entities)
+    for (const std::string& subchain : entity.subchains)
+      of_subchain.try_emplace(subchain, entity.name);
   std::vector<std::string> names;
   for (const Flat::Chain& chain : a.flat.chain)
-    names.push_back(entity_of(st, *chain.source));
+    names.push_back(entity_of(of_subchain, *chain.source));
   std::vector<std::string> domains;
   for (const Placed& p : a.placed)
     domains.push_back(names[p.chain]);
@@ -130,7 +135,7 @@ std::vector<Selected> ArrangementSelections::select(const std::string& selection
 }
 
 std::string ArrangementSelections::address(int64_t residue, int64_t atom) const {
-  const gemmi::Residue& r = *a_.residue(residue).source;
+  const pdb::Residue& r = *a_.residue(residue).source;
   return residue_in_selection(a_.grouping.chain[a_.grouping.residue[residue].chain], name_in_hierarchy(r)) + '/' +
          in_selection(a_.flat.names[a_.flat.atom[atom].name]);
 }

@@ -18,7 +18,7 @@ struct Arrangement {
 void list_residues(Arrangement& a);
 
 /// The domain of each placed chain: "entity_1", of the chain's polymer or of its first residue.
-std::vector<std::string> domains_by_entity(const Arrangement& a, const gemmi::Structure& st);
+std::vector<std::string> domains_by_entity(const Arrangement& a, const pdb::Structure& st);
 /// The domain of each placed chain: "copy_1", the operator of the assembly.
 std::vector<std::string> domains_by_copy(const Arrangement& a);
 

@@ -119,13 +119,14 @@ void AtomSite::open_model() {
   const std::string& name = has(model) ? n : "1";
   if (rows_ > 0 && name == model_)
     return;
-  close_chain();
+  chain_open_ = false;
   model_ = name;
   const auto [known, is_new] = model_of_name_.try_emplace(cif::as_string(name), models_.size());
   if (is_new) {
     if (models_.size() == most_models)
       fail_input(at(0) + ": found more than " + std::to_string(most_models) + " models, expected fewer");
     models_.emplace_back(known->first);
+    chains_.emplace_back();
   }
   model_index_ = known->second;
 }
@@ -140,28 +141,46 @@ void AtomSite::open_residue() {
     }
   if (same)
     return;
-  const gemmi::ResidueId id = gemmi::impl::make_resid(cif::as_string(residue_[0]), cif::as_string(residue_[1]),
-                                                      has(insertion) ? &residue_[2] : nullptr);
+  const gemmi::ResidueId theirs = gemmi::impl::make_resid(cif::as_string(residue_[0]), cif::as_string(residue_[1]),
+                                                          has(insertion) ? &residue_[2] : nullptr);
+  const pdb::ResidueId id{theirs.seqid, {}, label(theirs.name)};
   if (residue_open_ && residues_[residue_index_].matches(id))
     return;
   close_residue();
   residue_open_ = true;
-  gemmi::Residue& fresh = residues_.emplace_back(id);
-  const auto [known, is_new] = known_.insert(residues_.size() - 1);
-  residue_index_ = *known;
-  if (!is_new) {
-    residues_.pop_back();
+  residue_index_ = index_of(id);
+  if (residue_index_ < residues_.size())
     return;
-  }
-  if (says(label_number))
-    fresh.label_seq = cif::as_int(value_[label_number]);
-  fresh.subchain = cif::as_string(value_[label_chain]);
+  pdb::Residue& fresh = residues_.emplace_back(id);
+  fresh.subchain = label(cif::as_string(value_[label_chain]));
   if (says(entity))
-    fresh.entity_id = cif::as_string(value_[entity]);
+    fresh.entity_id = label(cif::as_string(value_[entity]));
   if (says(group))
     for (size_t i = 0; i < 2 && i <= value_[group].size(); ++i) // the first may be a quote
       if (const char c = gemmi::alpha_up(value_[group][i]); c == 'A' || c == 'H' || c == '\0')
         fresh.het_flag = c;
+}
+
+/// Of the open run; a new one's is the next.
+size_t AtomSite::index_of(const pdb::ResidueId& id) {
+  const size_t begin = runs_.back().begin, count = residues_.size() - begin;
+  const auto slot_of = [&](const pdb::ResidueId& sought) {
+    size_t slot = pdb::hash(sought) & (known_.size() - 1);
+    while (known_[slot] != 0 && !residues_[begin + known_[slot] - 1].matches(sought))
+      slot = (slot + 1) & (known_.size() - 1);
+    return slot;
+  };
+  if (3 * (count + 1) > 2 * known_.size()) {
+    const size_t size = std::max<size_t>(2 * known_.size(), 16);
+    std::vector<uint32_t>().swap(known_);
+    known_.resize(size);
+    for (size_t r = 0; r < count; ++r)
+      known_[slot_of(residues_[begin + r])] = static_cast<uint32_t>(r + 1);
+  }
+  uint32_t& known = known_[slot_of(id)];
+  if (known == 0)
+    known = static_cast<uint32_t>(count + 1);
+  return begin + known - 1;
 }
 
 void AtomSite::close_residue() {
@@ -169,13 +188,49 @@ void AtomSite::close_residue() {
     atoms_.move_to(residues_[residue_index_].atoms);
 }
 
-void AtomSite::close_chain() {
-  if (!chain_open_)
-    return;
+void AtomSite::open_chain() {
   close_residue();
-  known_ = decltype(known_)(0, Hash{&residues_}, Same{&residues_}); // clear() takes as long as the largest did
-  residues_.move_to(models_[model_index_].chains.emplace_back(chain_).residues);
-  chain_open_ = residue_open_ = false;
+  chain_open_ = true;
+  residue_open_ = false;
+  known_.clear();
+  if (known_.capacity() > 16)
+    std::vector<uint32_t>().swap(known_); // to clear it takes as long as the largest run did
+  Chains& chains = chains_[model_index_];
+  const pdb::Label name = label(chain_);
+  const auto [known, is_new] = chains.index.try_emplace(&name.str(), static_cast<uint32_t>(chains.name.size()));
+  if (is_new)
+    chains.name.emplace_back(name);
+  runs_.emplace_back(
+      Run{static_cast<uint32_t>(model_index_), known->second, static_cast<uint32_t>(residues_.size())});
+}
+
+/// Into their chains, chunk by chunk.
+void AtomSite::place_residues() {
+  close_residue();
+  std::vector<uint32_t>().swap(known_);
+  for (size_t m = 0; m < models_.size(); ++m) {
+    std::unordered_map<const std::string*, uint32_t>().swap(chains_[m].index);
+    models_[m].chains.reserve(chains_[m].name.size());
+    chains_[m].name.move_each([&](size_t, pdb::Label name) { models_[m].chains.emplace_back(name.str()); });
+  }
+  const auto end_of = [&](size_t run) {
+    return run + 1 < runs_.size() ? size_t{runs_[run + 1].begin} : residues_.size();
+  };
+  std::vector<std::vector<uint32_t>> count(models_.size()); // of residues, by chain
+  for (size_t m = 0; m < models_.size(); ++m)
+    count[m].resize(models_[m].chains.size());
+  for (size_t run = 0; run < runs_.size(); ++run)
+    count[runs_[run].model][runs_[run].chain] += static_cast<uint32_t>(end_of(run) - runs_[run].begin);
+  size_t run = 0;
+  residues_.move_each([&](size_t r, pdb::Residue&& residue) {
+    while (r == end_of(run))
+      ++run;
+    pdb::Chain& chain = models_[runs_[run].model].chains[runs_[run].chain];
+    if (chain.residues.empty())
+      chain.residues.reserve(count[runs_[run].model][runs_[run].chain]);
+    residue.begins_run = r == runs_[run].begin;
+    chain.residues.push_back(std::move(residue));
+  });
 }
 
 void AtomSite::row(const std::vector<std::string_view>& values, int64_t line) {
@@ -188,28 +243,21 @@ void AtomSite::row(const std::vector<std::string_view>& values, int64_t line) {
     if (!chain_open_ || value_[chain_column_] != chain_name_) {
       chain_name_ = value_[chain_column_];
       if (std::string name = cif::as_string(chain_name_); !chain_open_ || name != chain_) {
-        close_chain();
         chain_ = std::move(name);
-        chain_open_ = true;
+        open_chain();
       }
     }
     open_residue();
-    gemmi::Atom& atom = atoms_.emplace_back();
-    atom.name = cif::as_string(value_[atom_column_]);
+    pdb::Atom& atom = atoms_.emplace_back();
+    atom.name = label(cif::as_string(value_[atom_column_]));
     atom.altloc = cif::as_char(value_[alternative], '\0');
     atom.element = element();
-    atom.serial = static_cast<int>(rows_);
+    atom.serial = static_cast<int32_t>(rows_);
     atom.pos = {cif::as_number(value_[x]), cif::as_number(value_[y]), cif::as_number(value_[z])};
     atom.occ = static_cast<float>(cif::as_number(value_[occupancy], 1.0));
     atom.b_iso = static_cast<float>(cif::as_number(value_[b_factor], 50.0));
-    if (has(deuterium) && atom.element == gemmi::El::H) {
-      gemmi::Residue residue;
-      residue.atoms.push_back(atom);
-      gemmi::impl::apply_hd_mixture(&residue, cif::as_number(value_[deuterium]));
-      atom = residue.atoms[0];
-      if (residue.atoms.size() > 1)
-        atoms_.emplace_back(residue.atoms[1]);
-    }
+    if (has(deuterium) && atom.element == gemmi::El::H)
+      mix_deuterium(cif::as_number(value_[deuterium]));
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) { // no fault of the file
@@ -228,10 +276,29 @@ void AtomSite::row(const std::vector<std::string_view>& values, int64_t line) {
   parsed_.pqr.push_back({q, r >= 0 ? r : none});
 }
 
+/// Of the last atom, a hydrogen: as gemmi::impl::apply_hd_mixture(), a deuterium, or both as alternatives.
+void AtomSite::mix_deuterium(double hydrogen) {
+  pdb::Atom& atom = atoms_.back();
+  if (hydrogen <= 0 || hydrogen >= 1) {
+    atom.element = hydrogen <= 0 ? gemmi::El::D : gemmi::El::H;
+    return;
+  }
+  const int alternative_of = atom.altloc == '\0' ? 0 : atom.altloc - 'A';
+  if (alternative_of < 0 || alternative_of >= 3)
+    return;
+  pdb::Atom other = atom;
+  other.element = gemmi::El::D;
+  other.occ = static_cast<float>(static_cast<double>(atom.occ) * (1 - hydrogen));
+  other.altloc = static_cast<char>('D' + alternative_of);
+  atom.occ = static_cast<float>(static_cast<double>(atom.occ) * hydrogen);
+  atom.altloc = static_cast<char>('A' + alternative_of);
+  atoms_.emplace_back(other);
+}
+
 void AtomSite::finish() {
   if (rows_ == 0)
     fail_input(at(0) + ": found an empty _atom_site category, expected atoms");
-  close_chain();
+  place_residues();
   parsed_.structure.models = std::move(models_);
   if (named_ > 0)
     parsed_.notes.push_back("atoms without an element, taken from the name: " + std::to_string(named_));

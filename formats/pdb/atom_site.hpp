@@ -3,13 +3,12 @@
 #include "formats/pdb/chunks.hpp"
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/parse.hpp"
+#include "formats/pdb/structure.hpp"
 #include <array>
 #include <cstdint>
-#include <gemmi/model.hpp>
 #include <string>
 #include <string_view>
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 namespace gemmi::cif {
@@ -24,7 +23,7 @@ inline const std::string atom_site = "_atom_site.";
 bool is_category_read(std::string_view name);
 
 /// The atoms of one data block. Columns are found in any case, and completed where the file has none. Residues and
-/// chains are those that gemmi::make_structure_from_block() makes, each looked up by hash; gemmi::Atom::serial is
+/// chains are those that gemmi::make_structure_from_block() makes, each looked up by hash; pdb::Atom::serial is
 /// the row.
 class AtomSite {
 public:
@@ -95,24 +94,18 @@ private:
                                                              "pqr_partial_charge",
                                                              "pqr_radius"}; ///< in small letters
 
-  /// Residues of the open chain by what they are; holds indices.
-  struct Hash {
-    const Chunks<gemmi::Residue>* residues;
-    size_t operator()(size_t r) const { return std::hash<gemmi::ResidueId>()((*residues)[r]); }
-  };
-  struct Same {
-    const Chunks<gemmi::Residue>* residues;
-    bool operator()(size_t a, size_t b) const { return (*residues)[a].matches((*residues)[b]); }
-  };
-
   std::string at(int64_t line) const;
   bool has(Column c) const { return at_[c] >= 0; }
   bool says(Column c) const; ///< the column is there, and its value is not null
   void complete(Column c, Column like, const char* value);
   void open_model();
+  void open_chain();
   void open_residue();
+  void mix_deuterium(double hydrogen);
+  pdb::Label label(const std::string& text) { return parsed_.structure.labels.add(text); }
+  size_t index_of(const pdb::ResidueId& id);
   void close_residue();
-  void close_chain();
+  void place_residues();
   gemmi::Element element();
   void check(int64_t line);
 
@@ -127,15 +120,24 @@ private:
   std::string model_, chain_name_;         ///< of the row before
   Column chain_column_ = label_chain, residue_column_ = label_residue, atom_column_ = label_atom;
 
-  std::vector<gemmi::Model> models_;
+  std::vector<pdb::Model> models_;
   std::unordered_map<std::string, size_t> model_of_name_;
   size_t model_index_ = 0;
   bool chain_open_ = false, residue_open_ = false;
-  std::string chain_;               ///< name of the open one
-  Chunks<gemmi::Residue> residues_; ///< of the open chain
-  std::unordered_set<size_t, Hash, Same> known_{0, Hash{&residues_}, Same{&residues_}};
+  std::string chain_; ///< name of the open one
+  struct Chains {     ///< of a model, by their places in the pool of labels
+    std::unordered_map<const std::string*, uint32_t> index;
+    Chunks<pdb::Label> name;
+  };
+  std::vector<Chains> chains_; ///< of each model
+  struct Run {                 ///< of residues that stand together in the file, of one chain
+    uint32_t model, chain, begin;
+  };
+  Chunks<Run> runs_;
+  Chunks<pdb::Residue> residues_; ///< of all models and chains, run by run
+  std::vector<uint32_t> known_;   ///< those of the open run by hash: 1 + index in it, 0: none; a power of two
   size_t residue_index_ = 0;
-  Chunks<gemmi::Atom> atoms_; ///< of the open residue, since it has been opened
+  Chunks<pdb::Atom> atoms_; ///< of the open residue, since it has been opened
   ElementGuesses guesses_;
   int64_t named_ = 0, without_radius_ = 0, large_ = 0;
 };

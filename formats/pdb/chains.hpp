@@ -1,10 +1,10 @@
 // chains.hpp — the parts of chains joined. gemmi searches all chains from the start for each; here it is looked up.
 #pragma once
-#include <gemmi/model.hpp>
+#include "formats/pdb/structure.hpp"
 
 namespace molmesh::formats {
 
 /// As gemmi::Structure::merge_chain_parts().
-void merge_chain_parts(gemmi::Structure& structure);
+void merge_chain_parts(pdb::Structure& structure);
 
 } // namespace molmesh::formats

@@ -51,6 +51,21 @@ public:
     size_ = 0;
   }
 
+  /// Calls take(i, element) for each, in order; none are left here, and each chunk's memory is given back.
+  template <class Take>
+  void move_each(Take take) {
+    size_t i = 0;
+    for (std::vector<T>& part : chunk_) {
+      for (T& element : part)
+        take(i++, std::move(element));
+      std::vector<T>().swap(part);
+      if (size_ > first)
+        give_back_memory();
+    }
+    chunk_.clear();
+    size_ = 0;
+  }
+
 private:
   static constexpr size_t first = 4096;             ///< of the first chunk; all others are of `length`:
   static constexpr size_t length = size_t{1} << 16; ///< so large that their memory is worth giving back

@@ -95,7 +95,7 @@ private:
 
   void atom(std::string_view line) {
     const size_t width = width_of(line);
-    gemmi::Atom atom;
+    pdb::Atom atom;
     double* const axis[] = {&atom.pos.x, &atom.pos.y, &atom.pos.z};
     for (size_t a = 0; a < 3; ++a) {
       const std::optional<double> value = width > 0 ? coordinate(line, a, width) : std::nullopt;
@@ -108,12 +108,12 @@ private:
     if (!number)
       refuse("found residue number " + in_quotes(line.substr(0, 5)) + ", expected an integer");
     const std::string_view residue = trimmed(line.substr(5, 5));
-    atom.name = trimmed(line.substr(10, 5));
-    atom.element = named_element(atom.name, residue);
+    atom.name = builder_.label(trimmed(line.substr(10, 5)));
+    atom.element = named_element(atom.name.str(), residue);
     atom.serial = static_cast<int>(atoms_++);
-    guesses_.add(atom.name, residue, atom.element);
-    builder_.add("", {gemmi::SeqId(static_cast<int>(*number), ' '), {}, std::string(residue)}, false, true,
-                 std::move(atom));
+    guesses_.add(atom.name.str(), residue, atom.element);
+    builder_.add("", {gemmi::SeqId(static_cast<int>(*number), ' '), {}, builder_.label(residue)}, false, true,
+                 atom);
   }
 
   enum class Line { title, count, atom, box } expected_ = Line::title;

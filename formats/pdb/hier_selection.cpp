@@ -1,4 +1,4 @@
-// hier_selection.cpp — gemmi's chains, residues and atoms made up from the names in a .hier.
+// hier_selection.cpp — chains, residues and atoms of a structure made up from the names in a .hier.
 #include "formats/pdb/hier_selection.hpp"
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/selection.hpp"
@@ -15,10 +15,16 @@
 namespace molmesh::formats {
 namespace {
 
-/// "GLY:52A" as gemmi has it; false when the name is none of that kind.
-bool read_residue(const std::string& name, gemmi::Residue& r) {
+/// A residue that holds its own name.
+struct NamedResidue : pdb::Residue {
+  std::string text;
+};
+
+/// "GLY:52A" as a structure has it; false when the name is none of that kind.
+bool read_residue(const std::string& name, NamedResidue& r) {
   const size_t colon = name.rfind(':');
-  r.name = name.substr(0, colon);
+  r.text = name.substr(0, colon);
+  r.name = pdb::Label(r.text);
   if (colon == std::string::npos)
     return false;
   const char *begin = name.data() + colon + 1, *end = name.data() + name.size();
@@ -64,7 +70,7 @@ void filter(const Hierarchy& h, size_t l, std::vector<uint8_t>& chosen, Take tak
 /// For a message: residues of the chains that a selection names, in whose atoms it finds nothing.
 std::string residues_there(const Hierarchy& h, const std::vector<uint8_t>& in_chains, std::optional<int> number) {
   ResiduesThere there(number);
-  gemmi::Residue r;
+  NamedResidue r;
   const size_t chain = find_level(h, "chain"), residue = find_level(h, "residue");
   size_t c = 0;
   for (const Group& g : h.level[residue].group) {
@@ -102,7 +108,7 @@ std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& text, c
     if (residue == h.level.size())
       refuse("no residue: the .hier has no level 'residue'");
     in_chains = chosen;
-    gemmi::Residue r;
+    NamedResidue r;
     constexpr size_t most = 100;
     if (const std::vector<std::string> numbers = s.numbers(); absent != nullptr && numbers.size() <= most)
       for (size_t i = 0; i < numbers.size(); ++i) {
@@ -115,11 +121,11 @@ std::vector<uint8_t> select_atoms(const Hierarchy& h, const std::string& text, c
     filter(h, residue, chosen,
            [&](const Group& g) { return (read_residue(g.name, r) || !s.numbers_residues()) && s.residue(r); });
   }
-  gemmi::Atom atom;
+  pdb::Atom atom;
   for (size_t a = 0; a < h.atom.size(); ++a) {
     if (!chosen[a])
       continue;
-    atom.name = h.names[h.atom[a].name];
+    atom.name = pdb::Label(h.names[h.atom[a].name]);
     atom.element = gemmi::Element(h.names[h.atom[a].element]);
     chosen[a] = s.atom(atom);
   }

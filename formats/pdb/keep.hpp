@@ -10,10 +10,10 @@ namespace molmesh::formats {
 void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, PdbReport& report);
 
 /// By its name in the PDB or in the files of molecular dynamics.
-bool is_water(const gemmi::Residue& residue);
+bool is_water(const pdb::Residue& residue);
 /// "ANS:373", as in a .hier.
-inline std::string name_in_hierarchy(const gemmi::Residue& residue) {
-  return residue.name + ':' + residue.seqid.str();
+inline std::string name_in_hierarchy(const pdb::Residue& residue) {
+  return residue.name.str() + ':' + residue.seqid.str();
 }
 
 } // namespace molmesh::formats

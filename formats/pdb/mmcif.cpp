@@ -3,6 +3,7 @@
 #include "formats/pdb/atom_site.hpp"
 #include "formats/pdb/bcif.hpp"
 #include "formats/pdb/mmcif_assembly.hpp"
+#include "formats/pdb/mmcif_entities.hpp"
 #include "formats/pdb/mmjson.hpp"
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/structure_builder.hpp"
@@ -10,9 +11,6 @@
 #include <algorithm>
 #include <exception>
 #include <gemmi/cif.hpp>
-#include <gemmi/mmcif.hpp>
-#include <set>
-#include <unordered_map>
 #include <unordered_set>
 
 namespace molmesh::formats {
@@ -82,39 +80,6 @@ bool is_of_structure(const std::string& tag) {
          tag.compare(0, 17, "_entity_poly_seq.") == 0 || tag.compare(0, 13, "_struct_asym.") == 0;
 }
 
-/// What gemmi does with atoms in hand: names the subchains of entities where the file does not, and the kinds of
-/// residues.
-void set_entity_types(gemmi::Structure& st, bool subchains_are_named) {
-  if (!subchains_are_named && !st.models.empty()) {
-    std::unordered_map<std::string, gemmi::Entity*> of_name;
-    for (gemmi::Entity& entity : st.entities)
-      of_name.try_emplace(entity.name, &entity);
-    std::set<std::pair<gemmi::Entity*, std::string>> known;
-    for (const gemmi::Chain& chain : st.models[0].chains)
-      for (const gemmi::ConstResidueSpan& sub : chain.subchains()) {
-        const auto entity = of_name.find(sub.front().entity_id);
-        if (entity != of_name.end() && known.emplace(entity->second, sub.front().subchain).second)
-          entity->second->subchains.push_back(sub.front().subchain);
-      }
-  }
-  std::unordered_map<std::string, gemmi::EntityType> of_subchain;
-  for (const gemmi::Entity& entity : st.entities)
-    for (const std::string& subchain : entity.subchains)
-      of_subchain.try_emplace(subchain, entity.entity_type);
-  for (gemmi::Model& model : st.models)
-    for (gemmi::Chain& chain : model.chains)
-      for (gemmi::ResidueSpan& sub : chain.subchains()) {
-        const auto known = sub[0].subchain.empty() ? of_subchain.end() : of_subchain.find(sub[0].subchain);
-        gemmi::EntityType type = known == of_subchain.end() ? gemmi::EntityType::Unknown : known->second;
-        if (type == gemmi::EntityType::Unknown)
-          type = sub[0].is_water()  ? gemmi::EntityType::Water
-                 : sub.length() > 1 ? gemmi::EntityType::Polymer
-                                    : gemmi::EntityType::NonPolymer;
-        for (gemmi::Residue& residue : sub)
-          residue.entity_type = type;
-      }
-}
-
 /// atoms: those of the first block that has them as a loop; document: all else, and of that loop the tags.
 Parsed from_document(cif::Document& document, AtomSite& atoms, Parsed& parsed, std::string_view text,
                      const std::string& file, const char* format, const std::string& assembly) {
@@ -153,16 +118,13 @@ Parsed from_document(cif::Document& document, AtomSite& atoms, Parsed& parsed, s
       needed.items.push_back(std::move(other));
     }
   }
-  std::vector<gemmi::Model> models = std::move(parsed.structure.models);
   try {
-    parsed.structure = gemmi::make_structure_from_block(needed);
+    read_entities(needed, parsed.structure);
   } catch (const std::bad_alloc&) { // no fault of the file
     throw;
   } catch (const std::exception& e) {
     fail_input(file + ": " + std::string(e.what()).substr(0, std::string_view(e.what()).find('\n')));
   }
-  parsed.structure.models = std::move(models);
-  set_entity_types(parsed.structure, needed.find("_struct_asym.", {"id", "entity_id"}).ok());
   if (const int64_t restarted = part_restarted(parsed.structure); restarted > 0)
     parsed.notes.push_back("residues whose number has started again, kept apart: " + std::to_string(restarted));
   parsed.structure.assemblies = assemblies; // gemmi 0.5.7 reads no products of operators
@@ -303,19 +265,10 @@ Parsed parse_bcif(const std::string& bytes, const std::string& file, const std::
   return from_document(document, atoms, parsed, {}, file, "BinaryCIF", assembly);
 }
 
-Parsed parse_mmjson(std::string& text, const std::string& file, const std::string& assembly) {
+Parsed parse_mmjson(std::string_view text, const std::string& file, const std::string& assembly) {
   Parsed parsed;
   AtomSite atoms(parsed, file);
-  cif::Document document;
-  try {
-    document = read_mmjson(text, file, atoms);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception&) {
-    fail_input(file + ":1: found a value that is an array or an object, expected numbers, text or null in mmJSON");
-  }
+  cif::Document document = read_mmjson(text, file, atoms);
   return from_document(document, atoms, parsed, {}, file, "mmJSON", assembly);
 }
 

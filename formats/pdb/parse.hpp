@@ -1,7 +1,7 @@
-// parse.hpp — the text of a structure file into gemmi's structure.
+// parse.hpp — the text of a structure file into a structure.
 #pragma once
+#include "formats/pdb/structure.hpp"
 #include <cstdint>
-#include <gemmi/model.hpp>
 #include <map>
 #include <string>
 #include <string_view>
@@ -14,9 +14,9 @@ namespace molmesh::formats {
 inline constexpr size_t most_models = 9999;
 
 struct Parsed {
-  gemmi::Structure structure;
+  pdb::Structure structure;
   std::string format; ///< "PDB", "mmCIF", "mmJSON", "PQR"
-  /// Of formats that have charges or radii, by gemmi::Atom::serial, which is then the index of the atom in the
+  /// Of formats that have charges or radii, by pdb::Atom::serial, which is then the index of the atom in the
   /// file.
   struct Values {
     double charge, radius; ///< e, Å; NaN: the file gives none
@@ -36,7 +36,7 @@ Parsed parse_structure(std::string text, const std::string& file, const std::str
 /// The single formats; `text` holds no NUL byte and ends its lines with a line feed.
 Parsed parse_pdb(std::string_view text, const std::string& file, const std::string& assembly);
 Parsed parse_mmcif(std::string_view text, const std::string& file, const std::string& assembly);
-Parsed parse_mmjson(std::string& text, const std::string& file, const std::string& assembly);
+Parsed parse_mmjson(std::string_view text, const std::string& file, const std::string& assembly);
 /// believed: radii of any size; otherwise those beyond believed_radius are refused.
 Parsed parse_pqr(std::string_view text, const std::string& file, bool believed);
 Parsed parse_gro(std::string_view text, const std::string& file);

@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <gemmi/polyheur.hpp>
 #include <istream>
 
 namespace molmesh::formats {
@@ -39,7 +38,7 @@ bool needs_entities(const PdbOptions& o) {
          std::any_of(o.domain_parts.begin(), o.domain_parts.end(), asks);
 }
 
-void set_domains(Arrangement& a, const gemmi::Structure& st, const std::string& file, const PdbOptions& options) {
+void set_domains(Arrangement& a, const pdb::Structure& st, const std::string& file, const PdbOptions& options) {
   const ArrangementSelections selections(a);
   switch (options.domains) {
   case PdbOptions::Domains::none:
@@ -117,11 +116,11 @@ PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbO
   p.report.format = p.parsed.format;
   p.report.passed_over = p.parsed.passed_over;
   p.report.guessed_elements = p.parsed.guessed;
-  gemmi::Structure& st = p.parsed.structure;
+  pdb::Structure& st = p.parsed.structure;
   merge_chain_parts(st);
   mark_modified_residues(st, p.parsed.format == "PDB");
   if (needs_entities(options))
-    gemmi::setup_entities(st);
+    pdb::set_up_entities(st);
   keep(p.parsed, name, options, p.report);
 
   Arrangement& a = p.arrangement;
@@ -140,7 +139,7 @@ PdbHierarchy::PdbHierarchy(std::istream& in, const std::string& name, const PdbO
   p.report.domains = static_cast<int64_t>(a.grouping.domain.size());
   for (int64_t r = 0; r < p.report.residues; ++r) {
     p.report.atoms += a.residue(r).end - a.residue(r).begin;
-    const gemmi::Residue& source = *a.residue(r).source;
+    const pdb::Residue& source = *a.residue(r).source;
     if (const bool water = options.waters && is_water(source);
         water || (source.het_flag == 'H' && !source.is_water())) {
       PdbReport::Heteros& kind = water                             ? p.report.kept_waters

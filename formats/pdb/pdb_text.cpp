@@ -124,8 +124,8 @@ private:
     const ResidueNumbers::Number number = numbers_.read(labels.number);
     if (!number.is_number && odd_numbers_++ == 0)
       first_odd_number_ = line_;
-    gemmi::Atom atom;
-    atom.name = trimmed(line.substr(12, 4));
+    pdb::Atom atom;
+    atom.name = builder_.label(trimmed(line.substr(12, 4)));
     atom.altloc = line[16] == ' ' ? '\0' : line[16];
     atom.pos = {number_in(line, first_x, coordinate_width),
                 number_in(line, first_x + coordinate_width, coordinate_width),
@@ -139,17 +139,17 @@ private:
       atom.element = written_element(line);
     } else {
       atom.element = element_in_columns(line.substr(12, 4), labels.residue);
-      guesses_.add(atom.name, labels.residue, atom.element, !is_letter(line[12]));
+      guesses_.add(atom.name.str(), labels.residue, atom.element, !is_letter(line[12]));
     }
-    atom.serial = static_cast<int>(atoms_ - 1);
+    atom.serial = static_cast<int32_t>(atoms_ - 1);
     if (types_ > 0) {
       constexpr double none = std::numeric_limits<double>::quiet_NaN();
       parsed_.pqr.resize(static_cast<size_t>(atoms_), {none, none});
       if (has_autodock_type(line))
         parsed_.pqr.back().charge = number_in(line, 70, 6);
     }
-    const gemmi::ResidueId id{number.id, std::string(labels.segment), std::string(labels.residue)};
-    builder_.add(labels.chain, id, is_record(line, "HETATM"), number.is_number, std::move(atom));
+    const pdb::ResidueId id{number.id, builder_.label(labels.segment), builder_.label(labels.residue)};
+    builder_.add(labels.chain, id, is_record(line, "HETATM"), number.is_number, atom);
   }
 
   void check_coordinates(std::string_view line) const {

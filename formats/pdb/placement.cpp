@@ -47,6 +47,17 @@ std::vector<int64_t> generated(const Flat& flat, const Flat::Chain& chain, const
   return residues;
 }
 
+/// Do the chains all have names of their own? Takes less memory than a table of the names.
+bool are_unique(const Flat& flat, const std::vector<Placed>& placed) {
+  std::vector<const std::string*> name;
+  name.reserve(placed.size());
+  for (const Placed& p : placed)
+    name.push_back(&flat.chain[p.chain].source->name);
+  std::sort(name.begin(), name.end(), [](const std::string* a, const std::string* b) { return *a < *b; });
+  return std::adjacent_find(name.begin(), name.end(),
+                            [](const std::string* a, const std::string* b) { return *a == *b; }) == name.end();
+}
+
 } // namespace
 
 Vec3d Placed::position(Vec3d p) const {
@@ -61,11 +72,11 @@ Vec3d Placed::position(Vec3d p) const {
 Flat flatten(Parsed& parsed, const std::string& file, const PdbOptions& options, bool let_go, PdbReport& report) {
   Flat flat;
   size_t atoms = 0, residues = 0, chains = 0;
-  for (const gemmi::Model& model : parsed.structure.models) {
+  for (const pdb::Model& model : parsed.structure.models) {
     chains += model.chains.size();
-    for (const gemmi::Chain& chain : model.chains) {
+    for (const pdb::Chain& chain : model.chains) {
       residues += chain.residues.size();
-      for (const gemmi::Residue& residue : chain.residues)
+      for (const pdb::Residue& residue : chain.residues)
         atoms += residue.atoms.size();
     }
   }
@@ -75,27 +86,28 @@ Flat flatten(Parsed& parsed, const std::string& file, const PdbOptions& options,
   std::string refused;
   constexpr size_t many = size_t{1} << 18; // atoms: their memory is worth giving back
   size_t given_back = 0;
-  for (gemmi::Model& model : parsed.structure.models)
-    for (gemmi::Chain& chain : model.chains) {
+  for (pdb::Model& model : parsed.structure.models)
+    for (pdb::Chain& chain : model.chains) {
       const auto first_residue = static_cast<int64_t>(flat.residue.size());
-      for (gemmi::Residue& residue : chain.residues) {
-        const auto first_atom = static_cast<int64_t>(flat.atom.size());
-        for (const gemmi::Atom& a : residue.atoms) {
+      for (pdb::Residue& residue : chain.residues) {
+        const auto first_atom = static_cast<uint32_t>(flat.atom.size());
+        for (const pdb::Atom& a : residue.atoms) {
           Atom atom;
           atom.center = {a.pos.x, a.pos.y, a.pos.z};
-          atom.name = flat.names.add(a.name.empty() ? "X" : a.name);
+          atom.name = flat.names.add(a.name.empty() ? "X" : a.name.str());
           atom.element = flat.names.add(a.element.name());
           const Parsed::Values* own = parsed.pqr.empty() ? nullptr : &parsed.pqr[a.serial];
           if (own != nullptr)
             atom.charge = own->charge;
           if (own != nullptr && options.own_radii && !std::isnan(own->radius)) {
             atom.radius = own->radius;
-          } else if (const auto radius = options.radii.find(residue.name, a.name, a.element.name())) {
+          } else if (const auto radius = options.radii.find(residue.name.str(), a.name.str(), a.element.name())) {
             atom.radius = *radius;
           } else {
             PdbReport::Unknown& unknown = report.unknown_elements[a.element.name()];
             if (unknown.atoms++ == 0)
-              unknown.first = a.name + " of " + residue.name + " " + chain.name + "/" + residue.seqid.str();
+              unknown.first =
+                  a.name.str() + " of " + residue.name.str() + " " + chain.name + "/" + residue.seqid.str();
             atom.radius = options.unknown_radius;
             if (refused.empty())
               refused = "found atom " + unknown.first +
@@ -104,9 +116,9 @@ Flat flatten(Parsed& parsed, const std::string& file, const PdbOptions& options,
           }
           flat.atom.push_back(atom);
         }
-        flat.residue.push_back({&residue, first_atom, static_cast<int64_t>(flat.atom.size())});
+        flat.residue.push_back({&residue, first_atom, static_cast<uint32_t>(flat.atom.size())});
         if (let_go)
-          std::vector<gemmi::Atom>().swap(residue.atoms);
+          std::vector<pdb::Atom>().swap(residue.atoms);
         if (let_go && flat.atom.size() - given_back > many) {
           given_back = flat.atom.size();
           give_back_memory();
@@ -119,7 +131,7 @@ Flat flatten(Parsed& parsed, const std::string& file, const PdbOptions& options,
   return flat;
 }
 
-std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const std::string& file,
+std::vector<Placed> place(const Flat& flat, const pdb::Structure& st, const std::string& file,
                           const std::string& assembly, PdbReport& report) {
   std::vector<Placed> placed;
   if (assembly == "none") {
@@ -194,14 +206,14 @@ std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const st
 std::vector<std::string> chain_names(const Flat& flat, const std::vector<Placed>& placed) {
   std::unordered_map<std::string_view, int> times, seen;
   std::unordered_set<std::string> taken;
-  times.reserve(placed.size());
-  bool all_once = true;
-  for (const Placed& p : placed)
-    all_once &= ++times[flat.chain[p.chain].source->name] == 1;
-  if (!all_once)
+  const bool all_once = are_unique(flat, placed);
+  if (!all_once) {
+    for (const Placed& p : placed)
+      ++times[flat.chain[p.chain].source->name];
     for (const auto& [name, n] : times)
       if (n == 1)
         taken.emplace(name);
+  }
   std::vector<std::string> names;
   names.reserve(placed.size());
   for (const Placed& p : placed) {

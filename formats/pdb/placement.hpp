@@ -10,12 +10,12 @@ namespace molmesh::formats {
 /// The atoms of the file, without copies.
 struct Flat {
   struct Residue {
-    const gemmi::Residue* source;
-    int64_t begin, end; ///< atoms
+    const pdb::Residue* source;
+    uint32_t begin, end; ///< atoms
   };
   struct Chain {
-    const gemmi::Model* model;
-    const gemmi::Chain* source;
+    const pdb::Model* model;
+    const pdb::Chain* source;
     int64_t begin, end; ///< residues
   };
   std::vector<Chain> chain;
@@ -38,7 +38,7 @@ struct Placed {
 Flat flatten(Parsed& parsed, const std::string& file, const PdbOptions& options, bool let_go, PdbReport& report);
 
 /// Every chain once, or as the assembly says. Throws Error(bad_input) when the assembly is not there.
-std::vector<Placed> place(const Flat& flat, const gemmi::Structure& st, const std::string& file,
+std::vector<Placed> place(const Flat& flat, const pdb::Structure& st, const std::string& file,
                           const std::string& assembly, PdbReport& report);
 
 /// Unique names of the placed chains: NAME, or NAME_1, NAME_2, … of chains that come more than once (in copies, in

@@ -194,18 +194,19 @@ private:
       refuse("found radius " + std::to_string(a.radius) + ", expected a number ≥ 0 (Å)");
     if (!in_model_)
       open_model("");
-    gemmi::Model& model = parsed_.structure.models.back();
+    pdb::Model& model = parsed_.structure.models.back();
     const auto [found, is_new] = chain_.try_emplace(a.chain, model.chains.size());
     if (is_new)
       model.chains.emplace_back(a.chain);
-    gemmi::Chain& chain = model.chains[found->second];
-    const gemmi::ResidueId id{gemmi::SeqId(a.number, a.insertion), {}, a.residue};
+    pdb::Chain& chain = model.chains[found->second];
+    pdb::Labels& labels = parsed_.structure.labels;
+    const pdb::ResidueId id{gemmi::SeqId(a.number, a.insertion), {}, labels.add(a.residue)};
     if (chain.residues.empty() || !chain.residues.back().matches(id)) {
       chain.residues.emplace_back(id);
       chain.residues.back().het_flag = hetero ? 'H' : 'A';
     }
-    gemmi::Atom atom;
-    atom.name = a.name;
+    pdb::Atom atom;
+    atom.name = labels.add(a.name);
     atom.element = a.element == gemmi::El::X ? named_element(a.name, a.residue) : a.element;
     atom.pos = {a.x, a.y, a.z};
     atom.serial = static_cast<int>(parsed_.pqr.size());

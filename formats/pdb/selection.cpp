@@ -237,13 +237,25 @@ bool Selection::chain(const std::string& name, const std::string& copy) const {
   return (listed(name) || (copy != name && listed(copy))) != chains_.inverted;
 }
 
-bool Selection::residue(const gemmi::Residue& r) const {
-  if (!residues_.has(r.name) || !rest_.matches(r))
+bool Selection::residue(const pdb::Residue& r) const {
+  if (!residues_.has(r.name) || !(rest_.entity_types.all || rest_.et_flags[static_cast<size_t>(r.entity_type)]))
     return false;
   for (size_t i = 0; i < ranges_.size(); ++i)
     if (number_fits(i, r))
       return true;
   return ranges_.empty();
+}
+
+bool Selection::atom(const pdb::Atom& a) const {
+  if (!atoms_.has(a.name) || !rest_.atom_names.has(a.name) ||
+      !(rest_.elements.empty() || rest_.elements[static_cast<size_t>(a.element.ordinal())]) ||
+      !rest_.altlocs.has(std::string(a.altloc == '\0' ? 0 : 1, a.altloc)))
+    return false;
+  gemmi::Atom values;
+  values.occ = a.occ;
+  values.b_iso = a.b_iso;
+  return std::all_of(rest_.atom_inequalities.begin(), rest_.atom_inequalities.end(),
+                     [&](const gemmi::Selection::AtomInequality& i) { return i.matches(values); });
 }
 
 std::optional<int> Selection::first_number() const {

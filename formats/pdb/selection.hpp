@@ -2,6 +2,7 @@
 // atoms.
 #pragma once
 #include "base/error.hpp"
+#include "formats/pdb/structure.hpp"
 #define USE_STD_SNPRINTF // gemmi's own wants stb_sprintf.h, which is not in Debian's gemmi-dev; only messages are
                          // printed
 #include <algorithm>
@@ -30,12 +31,12 @@ public:
   Selection(const std::string& text, const std::string& where, bool around_allowed = false,
             Status status = Status::bad_input);
 
-  bool model(const gemmi::Model& m) const { return rest_.matches(m); }
+  bool model(const pdb::Model& m) const { return rest_.mdl == 0 || std::to_string(rest_.mdl) == m.name; }
   /// name: in the file; copy: the unique name of one copy of an assembly. Either may be selected, as it is or as a
   /// .hier has it (percent-encoded).
   bool chain(const std::string& name, const std::string& copy) const;
-  bool residue(const gemmi::Residue& r) const;
-  bool atom(const gemmi::Atom& a) const { return rest_.matches(a) && atoms_.has(a.name); }
+  bool residue(const pdb::Residue& r) const;
+  bool atom(const pdb::Atom& a) const;
   bool names_chains() const { return !chains_.all; }
   bool names_residues() const { return !residues_.all || numbers_residues(); }
   bool numbers_residues() const { return !ranges_.empty(); }
@@ -44,7 +45,7 @@ public:
   /// The first number asked for, if any.
   std::optional<int> first_number() const;
   /// Fits the residue's number the i-th of them?
-  bool number_fits(size_t i, const gemmi::Residue& r) const {
+  bool number_fits(size_t i, const pdb::Residue& r) const {
     return ranges_[i].first.compare(r.seqid) <= 0 && ranges_[i].last.compare(r.seqid) >= 0;
   }
   /// Does it ask for what a .hier does not hold: other models than the first, alternative locations, occupancies …?

@@ -1,8 +1,8 @@
 // structure_builder.hpp — atoms, one after the other, become models, chains and residues.
 #pragma once
 #include "formats/pdb/chunks.hpp"
+#include "formats/pdb/structure.hpp"
 #include <cstdint>
-#include <gemmi/model.hpp>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -17,11 +17,13 @@ namespace molmesh::formats {
 /// that repeats an atom of the residue is a residue of its own: its number has started again.
 class StructureBuilder {
 public:
-  explicit StructureBuilder(gemmi::Structure& structure) : structure_(structure) {}
+  explicit StructureBuilder(pdb::Structure& structure) : structure_(structure) {}
 
   void open_model(const std::string& name);
   /// has_number: false where the field held none; then an atom named like the first one begins a new residue.
-  void add(std::string_view chain, const gemmi::ResidueId& id, bool hetero, bool has_number, gemmi::Atom atom);
+  void add(std::string_view chain, const pdb::ResidueId& id, bool hetero, bool has_number, const pdb::Atom& atom);
+  /// What atoms and residues are named with.
+  pdb::Label label(std::string_view text) { return structure_.labels.add(text); }
   /// TER: what has come of the chain is a polymer.
   void end_polymer();
   /// A line of SEQRES.
@@ -39,19 +41,20 @@ private:
   void open_chain(std::string_view name);
   void close_residue();
   bool repeats(Slot& slot) const;
-  gemmi::Chain& chain() { return structure_.models.back().chains.back(); }
+  pdb::Chain& chain() { return structure_.models.back().chains.back(); }
 
-  gemmi::Structure& structure_;
+  pdb::Structure& structure_;
   bool chain_open_ = false, after_ter_ = false;
+  std::unordered_map<std::string, size_t> entity_; ///< of structure_, by name
   std::unordered_map<std::string, size_t> chains_; ///< of the model: the first of each name
   std::unordered_multimap<size_t, Slot> slot_;     ///< by the hash of what the residue is
-  gemmi::Residue run_;                             ///< consecutive atoms of one residue
-  Chunks<gemmi::Atom> atoms_;                      ///< these
+  pdb::Residue run_;                               ///< consecutive atoms of one residue
+  Chunks<pdb::Atom> atoms_;                        ///< these
   int64_t restarted_ = 0;
 };
 
 /// The same for a structure of which gemmi has joined the residues: Atom::serial is the place in the file,
 /// ascending. Returns how many residues are new.
-int64_t part_restarted(gemmi::Structure& structure);
+int64_t part_restarted(pdb::Structure& structure);
 
 } // namespace molmesh::formats

@@ -78,14 +78,14 @@ Parsed parse_xyzr(std::string_view text, const std::string& file) {
     const std::optional<Label> written = word.size() >= 6 ? read_label(word[5]) : std::nullopt;
     const Label label = written.value_or(Label{});
     named |= written.has_value();
-    gemmi::Atom atom;
-    atom.name = label.name;
+    pdb::Atom atom;
+    atom.name = builder.label(label.name);
     atom.element = written ? named_element(label.name, label.residue) : gemmi::Element(gemmi::El::X);
     atom.pos = {value[0], value[1], value[2]};
     atom.serial = static_cast<int>(parsed.pqr.size());
     large += value[3] > believed_radius;
     parsed.pqr.push_back({std::numeric_limits<double>::quiet_NaN(), value[3]});
-    builder.add("", {gemmi::SeqId(label.number, ' '), {}, label.residue}, false, true, std::move(atom));
+    builder.add("", {gemmi::SeqId(label.number, ' '), {}, builder.label(label.residue)}, false, true, atom);
   });
   if (parsed.pqr.empty())
     fail_input(file + ":" + std::to_string(last) + ": found no sphere, expected lines x y z radius (Å)");

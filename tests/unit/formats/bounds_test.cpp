@@ -8,11 +8,13 @@
 #include "mesh/adjacency.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <functional>
 #include <limits>
 #include <sstream>
+#include <streambuf>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -98,9 +100,15 @@ void read_hier(std::istream& in) {
 void read_vdb(std::istream& in) {
   formats::read_vdb(in, "x", 1);
 }
+/// Takes what is written and keeps nothing: the output is none of the reader's memory.
+struct Nothing : std::streambuf {
+  int overflow(int c) override { return c == EOF ? 0 : c; }
+  std::streamsize xsputn(const char*, std::streamsize n) override { return n; }
+};
 /// And places the atoms; the name says the format.
 void place_atoms(std::istream& in, const char* name) {
-  std::ostringstream out;
+  Nothing nothing;
+  std::ostream out(&nothing);
   formats::PdbHierarchy(in, name, {}).write(out);
 }
 void read_structure(std::istream& in) {
@@ -226,6 +234,12 @@ const std::string vtu_cell =
 
 const std::string cif_head = "data_x\nloop_\n_atom_site.label_atom_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n"
                              "_atom_site.Cartn_z\n";
+
+/// "name": n values, as many times `values` as there are.
+std::string json_column(const std::string& name, size_t n, const std::string& values) {
+  const size_t each = static_cast<size_t>(std::count(values.begin(), values.end(), ',')) + 1;
+  return "\"" + name + "\":[" + values + repeated("," + values, n / each - 1) + "]";
+}
 
 struct Contrived {
   const char* name;
@@ -412,6 +426,54 @@ const std::vector<Contrived> table = {
        return cif_head + "C 0 0 0\n" + lines(n, [](size_t i) { return "data_" + number(i) + "\n"; });
      },
      200000},
+    {".cif: two residues in turn, ten bytes an atom", read_cif,
+     [](size_t n) {
+       return cif_head + "_atom_site.auth_seq_id\n" +
+              lines(n, [](size_t i) { return "C 0 0 0 " + number(i % 2) + "\n"; });
+     },
+     1000000},
+    {".cif: two chains in turn, ten bytes an atom", read_cif,
+     [](size_t n) {
+       return cif_head + "_atom_site.auth_asym_id\n" +
+              lines(n, [](size_t i) { return "C 0 0 0 " + number(i % 2) + "\n"; });
+     },
+     1000000},
+    {".cif: two models in turn, ten bytes an atom", read_cif,
+     [](size_t n) {
+       return cif_head + "_atom_site.pdbx_PDB_model_num\n" +
+              lines(n, [](size_t i) { return "C 0 0 0 " + number(i % 2) + "\n"; });
+     },
+     1000000},
+    {".cif: alternatives of two residues in turn", read_cif,
+     [](size_t n) {
+       return cif_head + "_atom_site.label_alt_id\n_atom_site.auth_seq_id\n" + lines(n, [](size_t i) {
+                return "C 0 0 0 " + std::string(i % 2 ? "A " : "B ") + number(i / 2 % 2) + "\n";
+              });
+     },
+     800000},
+    {".cif: an alternative of a residue for each atom", read_cif,
+     [](size_t n) {
+       return cif_head + "_atom_site.label_alt_id\n_atom_site.auth_seq_id\n" +
+              lines(n, [](size_t i) { return "C 0 0 0 A " + number(i) + "\n"; });
+     },
+     600000},
+    {".cif: a name of a residue for each atom", read_cif,
+     [](size_t n) {
+       return cif_head + "_atom_site.auth_comp_id\n" +
+              lines(n, [](size_t i) { return "C 0 0 0 " + number(i) + "\n"; });
+     },
+     600000},
+    {".cif: entities in turn, whose subchains are named backwards", read_cif,
+     [](size_t n) {
+       return "data_x\nloop_\n_entity.id\n_entity.type\n" +
+              lines(n, [](size_t i) { return number(i) + " polymer\n"; }) +
+              "loop_\n_entity_poly.entity_id\n_entity_poly.type\n" +
+              lines(n, [&](size_t i) { return number(n - 1 - i) + " other\n"; }) +
+              "loop_\n_struct_asym.id\n_struct_asym.entity_id\n" +
+              lines(n, [&](size_t i) { return "A" + number(i) + " " + number(n - 1 - i) + "\n"; }) +
+              cif_head.substr(7) + "C 0 0 0\n";
+     },
+     60000},
     {".cif: entities and their subchains", read_cif,
      [](size_t n) {
        return "data_x\nloop_\n_entity.id\n_entity.type\n" +
@@ -431,6 +493,32 @@ const std::vector<Contrived> table = {
               "," + column("Cartn_y", "2.25") + "," + column("Cartn_z", "3.25") + "}}}";
      },
      400000},
+    {"mmJSON: two residues in turn", read_cif,
+     [](size_t n) {
+       return "{\"data_x\":{\"atom_site\":{" + json_column("label_atom_id", n, "0") + "," +
+              json_column("Cartn_x", n, "0") + "," + json_column("Cartn_y", n, "0") + "," +
+              json_column("Cartn_z", n, "0") + "," + json_column("auth_seq_id", n, "0,1") + "}}}";
+     },
+     1000000},
+    {"mmJSON: two chains in turn", read_cif,
+     [](size_t n) {
+       return "{\"data_x\":{\"atom_site\":{" + json_column("label_atom_id", n, "0") + "," +
+              json_column("Cartn_x", n, "0") + "," + json_column("Cartn_y", n, "0") + "," +
+              json_column("Cartn_z", n, "0") + "," + json_column("auth_asym_id", n, "0,1") + "}}}";
+     },
+     1000000},
+    {"mmJSON: one digit for all of an atom", read_cif,
+     [](size_t n) {
+       return "{\"data_x\":{\"atom_site\":{" + json_column("label_atom_id", n, "0") + "," +
+              json_column("Cartn_x", n, "0") + "," + json_column("Cartn_y", n, "0") + "," +
+              json_column("Cartn_z", n, "0") + "}}}";
+     },
+     1000000},
+    {"mmJSON: values that are used", read_cif,
+     [](size_t n) { return "{\"data_x\":{\"entity_poly_seq\":{" + json_column("num", n, "0") + "}}}"; }, 3000000},
+    {"mmJSON: arrays in arrays", read_cif,
+     [](size_t n) { return "{\"data_x\":{\"x\":{\"a\":[" + std::string(n, '[') + std::string(n, ']') + "]}}}"; },
+     2000000},
     {".gro: atoms in one place", read_gro,
      [](size_t n) {
        return "x\n" + number(n) + "\n" + repeated("    1ALA     CA    1   0.000   0.000   0.000\n", n) + "1 1 1\n";
@@ -449,6 +537,34 @@ const std::vector<Contrived> table = {
      3000000},
     {".xyzrn: a residue for each atom", read_xyzr,
      [](size_t n) { return lines(n, [](size_t i) { return "1.2 3.4 5.6 1.7 1 CA_ALA_" + number(i) + "\n"; }); },
+     300000},
+    {".xyzrn: two residues in turn", read_xyzr,
+     [](size_t n) { return lines(n, [](size_t i) { return "0 0 0 1 1 C_A_" + number(i % 2) + "\n"; }); }, 500000},
+    {".xyzrn: a name of a residue for each atom", read_xyzr,
+     [](size_t n) { return lines(n, [](size_t i) { return "0 0 0 1 1 C_" + number(i) + "_1\n"; }); }, 400000},
+    {".gro: a name of a residue for each atom", read_gro,
+     [](size_t n) {
+       return "x\n" + number(n) + "\n" +
+              lines(n,
+                    [](size_t i) {
+                      const std::string residue = number(10000 + i % 90000);
+                      return "    1" + residue + "    C    10.0.0.\n";
+                    }) +
+              "1 1 1\n";
+     },
+     200000},
+    {".pdb: sequences of many chains", read_structure,
+     [](size_t n) {
+       return lines(n,
+                    [](size_t i) {
+                      return "SEQRES   1 " + std::string(1, static_cast<char>('A' + i % 26)) + "   13  ALA" +
+                             repeated(" GLY", 12) + "\n";
+                    }) +
+              repeated("HETATM    1  C   GLX A   1       0.000   0.000   0.000\n", n);
+     },
+     20000},
+    {".pqr: two residues in turn", read_pqr,
+     [](size_t n) { return lines(n, [](size_t i) { return "ATOM 1 C " + number(i % 2) + " 0 0 0 0 1\n"; }); },
      300000},
     {".pqr: a chain for each atom", read_pqr,
      [](size_t n) { return lines(n, [](size_t i) { return "ATOM 1 C ALA A" + number(i) + " 1 0 0 0 0 1\n"; }); },
