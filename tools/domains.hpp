@@ -2,7 +2,7 @@
 #pragma once
 #include "base/error.hpp"
 #include "cli/file.hpp"
-#include "contour/octree/border_nodes.hpp"
+#include "contour/octree/owner_borders.hpp"
 #include "formats/hier/hier.hpp"
 #include "formats/vtu/names.hpp"
 #include "label/divide.hpp"

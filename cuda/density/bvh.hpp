@@ -1,6 +1,7 @@
 // bvh.hpp — the bounding volume hierarchy of the molecule itself (§3.2 of Liao et al. 2013): boxes of
 // domains, chains, residues and their clusters of atoms, in the order of the file. What is found comes out group by
-// group, so the sums of every level are formed while passing by, without a list per level.
+// group, so the sums of every level are formed while passing by, without a list per level. The host halves the
+// grid's cubes instead (density/culling/bvh.hpp).
 #pragma once
 #include "density/field/field.hpp"
 #include <vector>

@@ -17,7 +17,7 @@ RefineOptions refine_options(const Lattice& lattice, const Options& options, dou
   }
   if (options.owners) {
     refine.divided.resize(std::max<size_t>(1, refine.divided.size()));
-    refine.divided[0] = united(refine.divided[0], border_nodes(lattice, options.owners));
+    refine.divided[0] = united(refine.divided[0], owner_borders(lattice, options.owners));
   }
   return refine;
 }

@@ -1,8 +1,8 @@
 // options.hpp — the options and the summary of contour().
 #pragma once
-#include "contour/octree/border_nodes.hpp"
 #include "contour/octree/lattice.hpp"
 #include "contour/octree/leaves.hpp"
+#include "contour/octree/owner_borders.hpp"
 #include "contour/octree/sized_nodes.hpp"
 #include "contour/surface/split_cell.hpp"
 #include <algorithm>

@@ -1,4 +1,4 @@
-// partition.cpp — partitions the dual graph of the tetrahedra, or of compact clusters of many, with METIS.
+// partition.cpp — parts of the output: METIS on the dual graph of the tetrahedra, or of compact clusters of them.
 #include "mesh/partition.hpp"
 #include "base/error.hpp"
 #include "geom/hilbert.hpp" // clusters follow the curve

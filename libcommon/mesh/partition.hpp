@@ -1,4 +1,6 @@
 // partition.hpp — divides tetrahedra into parts of equal size with few faces between them (METIS).
+// Numbers the elements of the output, for solvers; the threads of tetsmooth share out optimize/mesh/parts.hpp
+// instead.
 #pragma once
 #include "mesh/tet_mesh.hpp"
 

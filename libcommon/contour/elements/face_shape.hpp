@@ -2,7 +2,7 @@
 // flat. Host and device.
 #pragma once
 #include "contour/complex/edge_crossing.hpp"
-#include "contour/elements/element_shape.hpp"
+#include "contour/elements/least_sine.hpp"
 #include "geom/tet_measures.hpp"
 #include <cmath>
 

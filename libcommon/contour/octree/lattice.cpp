@@ -1,4 +1,5 @@
-// lattice.cpp — where the walls go, and what lies between them.
+// lattice.cpp — where the walls go, and what lies between them. A wall may cut the molecule, as the cuboid outer
+// boundary of section 6 of Liao et al. 2013 cuts the membrane and the filaments.
 #include "contour/octree/lattice.hpp"
 #include "base/bits.hpp"
 #include "base/error.hpp"

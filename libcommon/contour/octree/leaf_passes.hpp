@@ -1,12 +1,12 @@
-// leaf_passes.hpp — from the surface's cells to the leaves of a strongly balanced octree, pass by pass, over a
-// launcher. Every sum keeps its order, sets are united by sorting: the same leaves from every launcher.
+// leaf_passes.hpp — passes from the surface's cells to the leaves of an octree that is balanced across faces.
+// Over a launcher. Every sum keeps its order, sets are united by sorting: the same leaves from every launcher.
 #pragma once
 #include "base/error.hpp"
 #include "contour/octree/chord_items.hpp"
 #include "contour/octree/error_function.hpp"
+#include "contour/octree/face_balance.hpp"
 #include "contour/octree/leaf_items.hpp"
 #include "contour/octree/leaves.hpp"
-#include "contour/octree/strong_balance.hpp"
 #include "contour/surface/surface_passes.hpp"
 #include "isosurface/isosurface_view.hpp"
 #include <algorithm>

@@ -1,4 +1,4 @@
-// leaves.hpp — the fine cells that the surface crosses, and the leaves of the strongly balanced octree over them.
+// leaves.hpp — the fine cells that the surface crosses, and the leaves of the balanced octree over them.
 #pragma once
 #include "base/large_array.hpp"
 #include "contour/octree/lattice.hpp"

@@ -1,4 +1,4 @@
-// octree.cpp — the octree over leaves on the host.
+// octree.cpp — the octree's index over leaves, built on the host.
 #include "contour/octree/octree.hpp"
 #include "contour/octree/octree_index.hpp"
 #include "par/launcher.hpp"

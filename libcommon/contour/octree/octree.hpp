@@ -1,5 +1,6 @@
-// octree.hpp — a balanced linear octree over the lattice: leaves along the Z-order curve.
+// octree.hpp — the index of a balanced linear octree: finds the leaf at a place, leaves along the Z-order curve.
 // Section 4.1 of Liao et al. 2013. Neighbours across faces differ by one level at most, those across edges by two.
+// leaf_passes.hpp finds the leaves.
 #pragma once
 #include "base/bits.hpp"
 #include "base/large_array.hpp"

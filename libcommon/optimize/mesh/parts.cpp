@@ -1,4 +1,4 @@
-// parts.cpp — lattices over boxes, and boxes of their cells around points.
+// parts.cpp — the parts of threads: lattices over boxes, and boxes of their cells around points.
 #include "optimize/mesh/parts.hpp"
 #include <cmath>
 

@@ -1,4 +1,5 @@
 // parts.hpp — divides a mesh among threads: cells of a coarse lattice, or boxes of such cells.
+// They stand for the METIS partition of section 5 of Liao et al. 2013; mesh/partition.hpp numbers the output alone.
 #pragma once
 #include "geom/vec.hpp"
 #include <algorithm>

@@ -1,5 +1,5 @@
 // shape_test.cpp — how flat elements are: eight at once as one by one, to the last bit, by every instruction set.
-#include "contour/elements/element_shape.hpp"
+#include "contour/elements/least_sine.hpp"
 #include "geom/tet_measures.hpp"
 #include <algorithm>
 #include <array>

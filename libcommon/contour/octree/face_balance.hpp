@@ -1,6 +1,7 @@
-// strong_balance.hpp — kernels that find the nodes with children: for the strong balance of the octree, where the
-// surface passes near a face of smaller cells, and in a uniform region. Section 4.1 of Liao et al. 2013. Neighbours
-// across faces differ by one level at most; elements need no balance across edges and corners. Host and device.
+// face_balance.hpp — kernels that find the nodes with children: for the octree's balance across faces, where the
+// surface passes near a face of smaller cells, and in a uniform region. Neighbours across faces differ by one level
+// at most. The octree of section 4.1 of Liao et al. 2013 is balanced across edges and corners too, which no element
+// needs (docs/theory/meshing.md §5). Host and device.
 #pragma once
 #include "contour/octree/node_mask.hpp"
 #include "contour/surface/block_window.hpp"

@@ -1,4 +1,4 @@
-// border_nodes.hpp — finds the nodes of the octree that a border between owners of the inside may cross.
+// owner_borders.hpp — finds the nodes of the octree that a border between two domains of the molecule may cross.
 #pragma once
 #include "contour/octree/lattice.hpp"
 #include "par/passes.hpp"
@@ -19,6 +19,6 @@ using FindOwners = std::function<std::vector<Owner>(const std::vector<Vec3d>&)>;
 /// Nodes of level 1 with a point inside, in words of 4³ nodes: those whose corners and middle have several owners,
 /// or leads that vary by so much that another owner may come first between them. Found from larger nodes down, so
 /// what an owner has in one place alone, smaller than 16 spacings, may be missed.
-std::vector<par::KeyedWord> border_nodes(const Lattice& lattice, const FindOwners& owners);
+std::vector<par::KeyedWord> owner_borders(const Lattice& lattice, const FindOwners& owners);
 
 } // namespace molmesh::contour

@@ -1,4 +1,4 @@
-// element_shape.hpp — the least sine of an element's dihedral angles, by which flat elements are avoided. Host and
+// least_sine.hpp — the least sine of an element's dihedral angles, by which flat elements are avoided. Host and
 // device.
 #pragma once
 #include "contour/elements/shape_simd.hpp"

@@ -1,5 +1,5 @@
-// border_nodes.cpp — halves nodes between owners, level by level.
-#include "contour/octree/border_nodes.hpp"
+// owner_borders.cpp — halves nodes in which several domains own the inside, level by level.
+#include "contour/octree/owner_borders.hpp"
 #include "geom/morton.hpp"
 #include <algorithm>
 #include <map>
@@ -43,7 +43,7 @@ bool any_inside(const LatticeView& l, Vec3i low) {
 
 } // namespace
 
-std::vector<par::KeyedWord> border_nodes(const Lattice& lattice, const FindOwners& owners) {
+std::vector<par::KeyedWord> owner_borders(const Lattice& lattice, const FindOwners& owners) {
   const LatticeView& l = lattice.view();
   std::vector<Vec3i> node; // lower corners
   const int first = std::max(1, std::min(start_level, lattice.top_level));
