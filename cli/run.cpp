@@ -1,7 +1,7 @@
 // run.cpp — common options, exit statuses, main().
 #include "cli/run.hpp"
-#include "base/large_array.hpp"
 #include "base/memory.hpp"
+#include "base/settle_heap.hpp"
 #include "cli/cleanup.hpp"
 #include "cli/cpus.hpp"
 #include "cli/file_kind.hpp"
@@ -231,7 +231,7 @@ int run_program(Table& table, Common& options, int argc, char** argv, const std:
                 const std::function<Status(Run&)>& work) {
   try {
     guard_process();
-    keep_freed_pages();
+    settle_heap();
     std::ios::sync_with_stdio(false);
     describe_common(table, options);
     describe();

@@ -1,6 +1,7 @@
 // arena.hpp — hands out memory piece by piece; pieces stay where they are.
 #pragma once
 #include "base/large_array.hpp"
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -14,10 +15,10 @@ public:
   static constexpr size_t largest = (size_t{1} << 17) / sizeof(T);
   /// A piece of at most `most` ≤ largest elements; keep() says how many of them stay.
   T* take(size_t most) {
-    if (chunk_.empty() || used_ + most > size) {
+    if (chunk_.empty() || used_ + most > size_of(at_)) {
       at_ += chunk_.empty() ? 0 : 1;
       if (at_ == chunk_.size())
-        chunk_.push_back({LargeArray<T>(size)});
+        chunk_.push_back({LargeArray<T>(size_of(at_))});
       used_ = 0;
     }
     Chunk& c = chunk_[at_];
@@ -41,7 +42,8 @@ public:
   }
 
 private:
-  static constexpr size_t size = 64 * largest; // 8 MiB
+  /// Small at first: a large page is not for a few pieces alone.
+  static size_t size_of(size_t chunk) { return largest << std::min<size_t>(chunk, 6); }
   struct Chunk {
     LargeArray<T> room;
     size_t ready = 0; ///< elements whose pages are there
