@@ -5,14 +5,32 @@
 
 namespace molmesh::optimize {
 
+namespace {
+
+using Places = std::vector<std::pair<int32_t, int32_t>>;
+
+std::shared_ptr<const Places> places_of(const std::vector<int32_t>& slots) {
+  const auto places = std::make_shared<Places>();
+  places->reserve(slots.size());
+  for (const int32_t slot : slots)
+    places->emplace_back(slot, static_cast<int32_t>(places->size()));
+  std::sort(places->begin(), places->end());
+  return places;
+}
+
+} // namespace
+
 LowElements::LowElements(const DynamicMesh& m, const std::vector<int32_t>& slots, const ChangeLog& log, float goal)
-    : m_(m), slots_(slots), log_(log), goal_(goal), place_(std::make_shared<SmallNumbers>(slots)) {}
+    : m_(m), slots_(slots), log_(log), goal_(goal), place_(places_of(slots)) {}
 
 LowElements::LowElements(const LowElements& other, float goal)
     : m_(other.m_), slots_(other.slots_), log_(other.log_), goal_(goal), place_(other.place_) {}
 
 const std::vector<int32_t>& LowElements::operator()() {
   const auto is_low = [&](int32_t t) { return m_.element[t].alive() && m_.element[t].q < goal_; };
+  const auto place = [&](int32_t t) {
+    return std::lower_bound(place_->begin(), place_->end(), std::pair{t, 0})->second;
+  };
   const bool some = log_.since(seen_, written_);
   seen_ = log_.now();
   if (some && written_.empty())
@@ -22,7 +40,7 @@ const std::vector<int32_t>& LowElements::operator()() {
                   [&](const auto& at) { return std::binary_search(written_.begin(), written_.end(), at.second); });
     for (const int32_t t : written_)
       if (t >= 0 && is_low(t))
-        by_place_.emplace_back(size_t(place_->find(t)), t);
+        by_place_.emplace_back(size_t(place(t)), t);
     std::sort(by_place_.begin(), by_place_.end());
   } else {
     by_place_.clear();

@@ -24,7 +24,8 @@ private:
   const std::vector<int32_t>& slots_;
   const ChangeLog& log_;
   const float goal_;
-  const std::shared_ptr<const SmallNumbers> place_; ///< of the slots
+  /// Slots, ascending, and where in `slots_`: a table of tens of thousands of them would take six times the memory.
+  const std::shared_ptr<const std::vector<std::pair<int32_t, int32_t>>> place_;
   ChangeLog::Moment seen_;
   std::vector<std::pair<size_t, int32_t>> by_place_;
   std::vector<int32_t> low_, written_;
