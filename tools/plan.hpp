@@ -26,7 +26,9 @@ struct Chain {
   contour::Plan mesh(contour::Options::Meshed meshed) const { return contour::plan(leaves, size.blocks, meshed); }
   optimize::Plan improvement(contour::Options::Meshed meshed, int threads) const {
     const contour::Plan m = mesh(meshed);
-    optimize::Work work{m.elements, m.triangles, m.split, size.blocks};
+    optimize::Work work{m.elements, m.triangles};
+    work.split = m.split;
+    work.blocks = size.blocks;
     work.threads = threads;
     return optimize::plan(work);
   }
@@ -231,7 +233,10 @@ inline bool improvement_is_planned(const cli::Common& o, const cli::PlanOptions&
                                    const BlockGrid* grid, const Improvement& how, const cli::Run& run) {
   const int64_t elements = std::ssize(mesh.tet);
   optimize::Work work{elements, std::ssize(mesh.tri)};
-  work.split = grid && p.plan ? split_cells(*grid, how.threads) : -1;
+  if (p.plan) {
+    work.low = optimize::count_low(mesh, how.threads);
+    work.split = grid ? split_cells(*grid, how.threads) : -1;
+  }
   work.blocks = grid ? std::ssize(grid->corner) : 0;
   work.iterations = how.iterations;
   work.effort = how.effort;

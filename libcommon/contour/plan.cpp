@@ -15,6 +15,7 @@ namespace molmesh::contour {
 namespace {
 
 constexpr double elements_of_leaf = 15.8;
+constexpr double usual_split = 0.025; // of the leaves at the surface
 
 /// Leaves of a structure over those at 1 Å, all and inside, and all over the active points: the mean of five
 /// proteins of 2,300 to 16,000 atoms.
@@ -181,10 +182,14 @@ Leaves expected_leaves(double spacing, int64_t active_points) {
 }
 
 Plan plan(const Leaves& leaves, int64_t blocks, Options::Meshed meshed) {
-  const double meshed_leaves = meshed == Options::interior   ? leaves.inside
-                               : meshed == Options::exterior ? leaves.all - leaves.inside
-                                                             : leaves.all;
-  const double elements = elements_of_leaf * meshed_leaves;
+  struct OfSide {
+    double leaves, of_pieces; // elements that split cells of a coarse grid have beyond others, where they are many
+  };
+  const OfSide side = meshed == Options::interior   ? OfSide{leaves.inside, 67}
+                      : meshed == Options::exterior ? OfSide{leaves.all - leaves.inside, 33}
+                                                    : OfSide{leaves.all, 100};
+  const double elements =
+      elements_of_leaf * side.leaves + side.of_pieces * std::max(0., leaves.split - usual_split * leaves.surface);
   Plan p;
   p.elements = std::llround(elements);
   p.points = std::llround(elements / (meshed == Options::both ? 5.6 : 4.6));
@@ -194,9 +199,9 @@ Plan plan(const Leaves& leaves, int64_t blocks, Options::Meshed meshed) {
   const double triangles = leaves.surface * (2.6 + std::min(42 * thin, 0.5 + 8 * thin)) + of_box;
   p.triangles = std::llround(triangles);
   p.split = std::llround(leaves.split);
-  p.memory =
-      std::llround(1.1 * (12e6 + 4500 * double(blocks) + 231 * leaves.all + 29.4 * elements + 264 * triangles));
-  const double far = 0.6 + 0.4 * std::min(1., leaves.all / 45'000); // small meshes stay in the cache
+  const double bytes = 6000 * double(blocks) + 500 * leaves.all + 17.3 * elements + 250 * triangles;
+  p.memory = std::llround(9.4e6 + bytes + 0.32 * std::min(bytes, 22e6)); // small meshes fit large pages less well
+  const double far = 0.6 + 0.4 * std::min(1., leaves.all / 45'000);      // small meshes stay in the cache
   p.seconds =
       0.008 + far * (2e-6 * leaves.all + 1.6e-7 * elements) + 0.0012 * leaves.split; // some 130 points relaxed
   return p;

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """plans.py BIN DATA OUT.md: the plans of the programs beside what the runs took, one thread, as a table.
 
-DATA holds typical/, paper/ and large/. --spacing H (1 by default), --region R, --most N: meshes planned larger are left
-out; --improve N: tetsmooth up to N elements; --raw FILE: all figures, a line of JSON a structure.
+DATA holds typical/, paper/ and large/. Each program's plan is its own, of what it reads. --spacing H (1 by default),
+--region R, --most N: meshes planned larger are left out; --improve N: tetsmooth up to N elements; --raw FILE: all figures, a line of JSON a structure.
 
 Memory is that of the run reports. Seconds are those of the processor, put right for what else the machine does: a small
 run before and after each tells how fast the machine is just then, and the fastest of all is the idle machine (--idle
@@ -74,7 +74,7 @@ def main():
             improve = tool("tetsmooth") + ["--effort", effort, "--density", at("a.vdb"), at("a.tet.vtu")]
             once(improve + ["--plan", "--json", "-o", at("s.json")])
             key = "tetsmooth" if effort == "good" else "--effort " + effort
-            planned[key] = mesh["tetsmooth"] if effort == "good" else read("s.json")
+            planned[key] = read("s.json")
             took[key] = run(improve, "a.vtu")
         rows.append({"name": name, "atoms": plan["atoms"], "elements": elements, "planning": planning, "took": took,
                      "from_atoms": plan["density2tet"][o.region]["elements"], "from_grid": mesh["elements"],

@@ -1,6 +1,7 @@
 // plan_test.cpp — a plan of the improvement grows with what makes it longer.
 #include "optimize/plan.hpp"
 #include <catch2/catch.hpp>
+#include <cmath>
 
 using namespace molmesh;
 using optimize::Effort;
@@ -19,12 +20,28 @@ TEST_CASE(
   };
   CHECK(plan.elements == work.elements);
   CHECK(changed([](auto& w) { w.split = -1; }).seconds == Approx(plan.seconds));
+  CHECK(changed([](auto& w) { w.low = 0; }).seconds < 0.5 * plan.seconds);
+  CHECK(changed([](auto& w) { w.low = 200'000; }).seconds > 2 * plan.seconds);
   CHECK(changed([](auto& w) { w.split = 2000; }).seconds > 2 * plan.seconds);
   CHECK(changed([](auto& w) { w.effort = Effort::fast; }).seconds < 0.6 * plan.seconds);
   CHECK(changed([](auto& w) { w.effort = Effort::best; }).seconds > 2 * plan.seconds);
-  CHECK(changed([](auto& w) { w.threads = 9; }).memory == plan.memory + 8 * 4'000'000);
+  CHECK(changed([](auto& w) { w.threads = 9; }).memory == plan.memory + 8 * 4'320'000);
   CHECK(changed([](auto& w) { w.blocks = 1000; }).memory == plan.memory + 2'200'000);
   const optimize::Plan none = changed([](auto& w) { w.iterations = 0; });
   CHECK(none.seconds < 0.1 * plan.seconds);
   CHECK(none.memory < plan.memory);
+}
+
+TEST_CASE("elements with angles below 18 degrees, or as far above, are low") {
+  TetMesh mesh;
+  const auto add = [&](double height) { // over an equilateral triangle
+    const auto first = static_cast<int32_t>(mesh.point.size());
+    mesh.point.insert(mesh.point.end(), {{1, 0, 0}, {-0.5, 0.866, 0}, {-0.5, -0.866, 0}, {0, 0, height}});
+    mesh.tet.push_back({first, first + 1, first + 2, first + 3});
+  };
+  const double flat = 0.5 * std::tan(18 * 3.14159265358979 / 180);
+  for (const double height : {1.4, 1.1 * flat, 0.9 * flat, 0.1 * flat, 0.5})
+    add(height);
+  CHECK(optimize::count_low(mesh, 1) == 2);
+  CHECK(optimize::count_low(mesh, 3) == 2);
 }
