@@ -10,15 +10,26 @@
 
 namespace molmesh::optimize {
 
-/// How many operations were done.
+/// How many operations were done. A new one is one more member and one more entry of `all`.
 struct Counts {
   int64_t moves = 0, edge_removals = 0, surface_flips = 0, face_swaps = 0, contractions = 0, splits = 0,
           cavity_shrinks = 0;
-  Counts& operator+=(const Counts& o);
+  static constexpr std::array<int64_t Counts::*, 7> all = {
+      &Counts::moves,        &Counts::edge_removals, &Counts::surface_flips, &Counts::face_swaps,
+      &Counts::contractions, &Counts::splits,        &Counts::cavity_shrinks};
+  Counts& operator+=(const Counts& o) {
+    for (const auto count : all)
+      this->*count += o.*count;
+    return *this;
+  }
   int64_t total() const {
-    return moves + edge_removals + surface_flips + face_swaps + contractions + splits + cavity_shrinks;
+    int64_t sum = 0;
+    for (const auto count : all)
+      sum += this->*count;
+    return sum;
   }
 };
+static_assert(sizeof(Counts) == Counts::all.size() * sizeof(int64_t), "every member is in the list");
 
 /// Slots reserved for new elements and vertices of one part; nothing lives in them.
 struct PartRoom {

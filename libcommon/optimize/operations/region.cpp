@@ -7,17 +7,6 @@
 
 namespace molmesh::optimize {
 
-Counts& Counts::operator+=(const Counts& o) {
-  moves += o.moves;
-  edge_removals += o.edge_removals;
-  surface_flips += o.surface_flips;
-  face_swaps += o.face_swaps;
-  contractions += o.contractions;
-  splits += o.splits;
-  cavity_shrinks += o.cavity_shrinks;
-  return *this;
-}
-
 Region::Region(DynamicMesh& m, const Target* t, const FreeTriangles* free, const Parts& parts,
                std::vector<uint32_t>& stamp, PartRoom& r, uint32_t clock)
     : mesh(m), target(t), room(r), crossings(m, free, parts, r.part, stamp), parts_(parts), stamp_(stamp),
