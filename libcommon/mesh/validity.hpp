@@ -1,4 +1,5 @@
-// validity.hpp — checks every point of I6: a conforming mesh whose regions are bounded by closed 2-manifolds.
+// validity.hpp — checks I6: a conforming mesh whose regions are bounded by closed 2-manifolds.
+// That no two triangles cross is looked for on request (add_crossings).
 #pragma once
 #include "mesh/region_summary.hpp"
 #include <optional>

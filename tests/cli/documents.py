@@ -9,7 +9,8 @@ capitals (MAP.map.gz), are small stand-ins made here; 1tii.pdb is a part of 1TII
 follows a command is what it prints; … stands for any text, seconds for any seconds, and other numbers are right within 5 %, since processors differ. But where
 the programs print one number twice (of 1,000 and more), as elements of a mesh, the page has one number there too: it is of one run. --record writes into the
 page what the programs print, where more than seconds differs.
-Besides, every option that a page names belongs to the program it names, and every link leads somewhere.
+Besides, every option that a page names belongs to the program it names, every link leads somewhere, and every source
+that a page names by its folder is there.
 
 What is not on a machine (FreeFEM, meshio, OpenVDB) is skipped with a line. NOT_RUN lists the blocks that no test runs, and why.
 """
@@ -346,12 +347,20 @@ def check_links(page, path, text):
             fail(page, f"a link to {target}: no such heading")
 
 
+def check_paths(page, text):
+    """Every source that a page names by its folder is there: from the root, libcommon, include or tests."""
+    for name in re.findall(r"`([\w.-]+/[\w./-]+\.(?:hpp|cpp|cu|cuh|py|sh))`", text):
+        if "NAME" not in name and not any((SOURCE / base / name).exists() for base in ("", "libcommon", "include", "tests")):
+            fail(page, f"names {name}, which is not there")
+
+
 # --- pages
 
 def check_page(page, work, kit=None):
     path = SOURCE / page
     text = path.read_text()
     check_links(page, path, text)
+    check_paths(page, text)
     plain = text
     for number, block in blocks(text):
         for line in block:
