@@ -15,7 +15,6 @@ namespace molmesh::contour {
 namespace {
 
 constexpr double elements_of_leaf = 15.8;
-constexpr double usual_split = 0.025; // of the leaves at the surface
 
 /// Leaves of a structure over those at 1 Å, all and inside, and all over the active points: the mean of five
 /// proteins of 2,300 to 16,000 atoms.
@@ -182,14 +181,10 @@ Leaves expected_leaves(double spacing, int64_t active_points) {
 }
 
 Plan plan(const Leaves& leaves, int64_t blocks, Options::Meshed meshed) {
-  struct OfSide {
-    double leaves, of_pieces; // elements that split cells of a coarse grid have beyond others, where they are many
-  };
-  const OfSide side = meshed == Options::interior   ? OfSide{leaves.inside, 67}
-                      : meshed == Options::exterior ? OfSide{leaves.all - leaves.inside, 33}
-                                                    : OfSide{leaves.all, 100};
-  const double elements =
-      elements_of_leaf * side.leaves + side.of_pieces * std::max(0., leaves.split - usual_split * leaves.surface);
+  const double meshed_leaves = meshed == Options::interior   ? leaves.inside
+                               : meshed == Options::exterior ? leaves.all - leaves.inside
+                                                             : leaves.all;
+  const double elements = elements_of_leaf * meshed_leaves;
   Plan p;
   p.elements = std::llround(elements);
   p.points = std::llround(elements / (meshed == Options::both ? 5.6 : 4.6));
