@@ -99,6 +99,8 @@ inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, 
     if (d.grid_points == 0 && d.tile.whole()) {
       say_growth(run, "a density of up to " + grouped(most.active_points) + " points", bound, 50 * atoms);
       if (density::of_great_balls(h)) { // no count
+        if (limit >= 0 && bound / 2 > limit)
+          density::check_field(h, d); // what no spacing would change is said first
         cli::require_memory(p, bound / 2, "a density at " + cli::length_text(d.spacing), "a larger --spacing fits");
         return false;
       }

@@ -88,6 +88,12 @@ SearchOptions band_of(const Options& o) {
   return s;
 }
 
+void check_field(const Hierarchy& hierarchy, const Options& o) {
+  if (!all_have_bodies(hierarchy))
+    return check_field(bodies_of(hierarchy).hierarchy, o);
+  make_field(hierarchy, o.decay, budget_for(band_of(o)).far, o.threads);
+}
+
 Band compute(const Hierarchy& hierarchy, const Options& o, Counts& counts, const BandFinder& find) {
   if (!all_have_bodies(hierarchy))
     return compute(bodies_of(hierarchy).hierarchy, o, counts, find);

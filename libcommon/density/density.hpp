@@ -24,6 +24,8 @@ struct Options {
 
 /// What compute() refuses of the options, at a grid's spacing of h Å. Throws Error(usage).
 void check(const Options& options, double h);
+/// What compute() refuses of the field at any spacing: logarithms of 1e8 and more. Throws Error(usage).
+void check_field(const Hierarchy& hierarchy, const Options& options);
 
 /// Which band to search for; how, on which part and with what progress, is as by default.
 SearchOptions band_of(const Options& options);

@@ -166,6 +166,21 @@ bool of_great_balls(const Hierarchy& hierarchy) {
 
 namespace {
 
+/// Half the thickness of the thickest body, Å: a grid of this spacing cannot miss it.
+double thickest(const Hierarchy& hierarchy) {
+  using Shape = Body::Shape;
+  double r = 0;
+  for (const Atom& a : hierarchy.atom)
+    r = std::max(r, a.radius);
+  for (const Body& b : hierarchy.body) {
+    const double s = b.size, u = norm(b.u), v = norm(b.v);
+    r = std::max(r, b.shape == Shape::cylinder || b.shape == Shape::slab ? std::min(s, u)
+                    : b.shape == Shape::box                              ? std::min({s, u, v})
+                                                                         : s);
+  }
+  return r;
+}
+
 double countable_spacing(double spacing, double most_points, double most_spacing) {
   while (spacing * 2 <= most_spacing && most_points / (spacing * spacing) > countable)
     spacing *= 2;
@@ -219,7 +234,7 @@ Plan plan(const Hierarchy& hierarchy, const Options& options) {
               (static_cast<double>(options.grid_points) - walls);
     o.grid_points = 0;
   }
-  o.spacing = smooth ? countable_spacing(spacing, most_active_points(hierarchy), HUGE_VAL)
+  o.spacing = smooth ? countable_spacing(spacing, most_active_points(hierarchy), thickest(hierarchy))
                      : counted_spacing(spacing, std::ssize(hierarchy.atom));
   o.any_values = o.spacing > spacing;
   count();

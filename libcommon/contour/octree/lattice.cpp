@@ -6,6 +6,7 @@
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace molmesh::contour {
 namespace {
@@ -137,10 +138,14 @@ Lattice::Lattice(const BlockGrid& grid, const BoxRequest& request, bool walls, i
       fail(Status::usage,
            "box: found an extent of " + std::to_string(extent * h) + " Å, expected at least four grid spacings",
            {"box"});
-    if (!(extent < most_cells / 2))
-      fail(Status::usage,
-           "box: found " + std::to_string(extent) + " grid spacings along an axis, expected fewer than 524288",
-           {"box"});
+    if (!(extent < most_cells / 2)) {
+      char text[160];
+      std::snprintf(text, sizeof text,
+                    "found a box of %.0f grid spacings along an axis, expected fewer than 524288: a larger spacing "
+                    "of the density, or a smaller box",
+                    extent);
+      fail(Status::usage, text, {"spacing", "box"});
+    }
     least = std::min(least, extent);
   }
   top_level = level_for(least);

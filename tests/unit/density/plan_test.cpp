@@ -71,3 +71,25 @@ TEST_CASE("a great body without atoms is known as one by its surface") {
   h.body[0].size = 200;
   CHECK_FALSE(density::of_great_balls(h));
 }
+
+TEST_CASE("a body that is long and thin is planned by a grid that cannot miss it", "[slow]") {
+  Hierarchy h = ball(1);
+  Body b;
+  b.shape = Body::Shape::capsule;
+  b.u = {3e5, 0, 0};
+  b.size = 3;
+  b.skin = 1;
+  h.body.push_back(b);
+  density::Options o;
+  o.spacing = 3;
+  REQUIRE(density::of_great_balls(h));
+  const density::Plan plan = density::plan(h, o);
+  CHECK(plan.counted.spacing == 3);
+  CHECK(plan.size.active_points > 100'000);
+}
+
+TEST_CASE("a field that no spacing allows is refused before it is planned") {
+  density::Options o;
+  CHECK_THROWS_WITH(density::check_field(ball(1e4), o), Catch::Contains("logarithm reaches 1e+08"));
+  CHECK_NOTHROW(density::check_field(ball(9e3), o));
+}
