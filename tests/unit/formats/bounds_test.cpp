@@ -595,7 +595,7 @@ TEST_CASE("readers: memory is at most 20 times the bytes of the file beyond 64 M
   }
 }
 
-TEST_CASE("readers: four times the file is at most eight times the time", "[slow]") {
+TEST_CASE("readers: four times the file is at most eight times the time", "[slow][time]") {
   for (const Contrived& c : table) {
     const std::string small = c.bytes(c.size / 4), large = c.bytes(c.size);
     const Growth g = growth([&] { read_or_refuse(c.read, small); }, [&] { read_or_refuse(c.read, large); });
