@@ -358,7 +358,7 @@ const std::vector<Contrived> table = {
        return "hier 1\nlevels a\n" +
               lines(n, [](size_t i) { return "a " + number(i) + " 1\natom " + number(i) + " C 0 0 0 1\n"; });
      },
-     300000},
+     1000000},
     {".hier: one long line", read_hier, [](size_t n) { return "hier 1\nsource " + std::string(n, 'x') + "\n"; },
      4000000},
     {".hier: atoms in one place", read_hier,
