@@ -4,7 +4,6 @@
 #include "formats/medit/medit.hpp"
 #include "formats/mesh/read_mesh.hpp"
 #include "formats/vtu/names.hpp"
-#include "geom/tet_measures.hpp"
 #include "mesh/validity.hpp"
 #include "unit/mesh/meshes.hpp"
 #include "unit/refusal.hpp"
@@ -59,14 +58,6 @@ TetMesh read(const std::string& text, const MeshReading& as = keeping()) {
 
 std::string refusal(const std::string& text, const MeshReading& as = keeping()) {
   return test::refusal(Status::bad_input, [&] { read(text, as); });
-}
-
-double volume(const TetMesh& m, int32_t region) {
-  double v = 0;
-  for (size_t t = 0; t < m.tet.size(); ++t)
-    if (m.region[t] == region)
-      v += tet_volume(m.point[m.tet[t][0]], m.point[m.tet[t][1]], m.point[m.tet[t][2]], m.point[m.tet[t][3]]);
-  return v;
 }
 
 std::string as_gmsh(const TetMesh& m, formats::GmshVersion v) {
@@ -158,7 +149,7 @@ TEST_CASE("two boxes of Gmsh are the same mesh through every format, regions and
     CHECK(regions ==
           (p.extension() == ".mesh" ? std::set<int32_t>{1, 2} : std::set<int32_t>{7, 12})); // entities there
     for (const int32_t r : regions)
-      CHECK(volume(m, r) == Approx(1));
+      CHECK(testing::volume(m, r) == Approx(1));
     CHECK(notes.region_array == (msh ? "gmsh:physical" : p.extension() == ".mesh" ? "medit:ref" : "CellEntityIds"));
     CHECK(notes.dropped_triangles == 0);
     int64_t between = 0;
@@ -274,7 +265,7 @@ TEST_CASE("regions are found in other arrays by usual names or by the name that 
   CHECK(notes.renumbered == std::map<int32_t, int32_t>{{-4, 1}, {0, 2}});
   CHECK(find(m, "MATERIALIDS")->integer[0] == 0);
   CHECK(m.region[0] == 2);
-  CHECK(volume(m, 1) == Approx(4));
+  CHECK(testing::volume(m, 1) == Approx(4));
   CHECK(check_validity(m, 1).valid());
 
   plain = with_array(box, "colour", region); // no usual name: one region, and a warning that names it
@@ -336,14 +327,14 @@ TEST_CASE("scale makes Å, and the other order of corners is turned round with a
   TetMesh m = testing::cubes(1, testing::all_molecule);
   m.decay = 4;
   const TetMesh scaled = read(as_vtu(m), keeping("", false, 2));
-  CHECK(volume(scaled, 1) == Approx(8));
+  CHECK(testing::volume(scaled, 1) == Approx(8));
   CHECK(scaled.decay == 1);
   for (Tet& t : m.tet)
     std::swap(t[0], t[1]);
   MeshNotes notes;
   const TetMesh turned = read(as_medit(m), notes);
   CHECK(notes.turned);
-  CHECK(volume(turned, 1) == Approx(1));
+  CHECK(testing::volume(turned, 1) == Approx(1));
   CHECK_FALSE(described(notes).empty());
 }
 

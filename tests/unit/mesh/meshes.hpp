@@ -1,5 +1,6 @@
 // meshes.hpp — small meshes of which everything is known.
 #pragma once
+#include "geom/tet_measures.hpp"
 #include "mesh/adjacency.hpp"
 #include <functional>
 
@@ -88,6 +89,15 @@ inline TetMesh extract(const TetMesh& m, const std::function<bool(int32_t)>& kee
     out.boundary.push_back(m.boundary[t]);
   }
   return out;
+}
+
+/// The sum over the elements of a region.
+inline double volume(const TetMesh& m, int32_t region) {
+  double sum = 0;
+  for (size_t t = 0; t < m.tet.size(); ++t)
+    if (m.region[t] == region)
+      sum += tet_volume(m.point[m.tet[t][0]], m.point[m.tet[t][1]], m.point[m.tet[t][2]], m.point[m.tet[t][3]]);
+  return sum;
 }
 
 inline int32_t all_molecule(Vec3i) {

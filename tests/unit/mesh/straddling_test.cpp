@@ -10,14 +10,6 @@ using namespace molmesh;
 
 namespace {
 
-double volume(const TetMesh& m, int32_t region) {
-  double sum = 0;
-  for (size_t t = 0; t < m.tet.size(); ++t)
-    if (m.region[t] == region)
-      sum += tet_volume(m.point[m.tet[t][0]], m.point[m.tet[t][1]], m.point[m.tet[t][2]], m.point[m.tet[t][3]]);
-  return sum;
-}
-
 /// n³ cubes of the middle as a ball of radius 1, the rest round it. Points of the cubes' faces go to the sphere,
 /// others as much nearer to the middle, so that shells of cubes become shells.
 TetMesh ball(int n, int around) {
@@ -39,12 +31,12 @@ TetMesh ball(int n, int around) {
 TEST_CASE("triangles whose points lie on a sphere straddle it") {
   for (const int n : {8, 16}) {
     TetMesh m = ball(n, 2);
-    const double exact = 4 * 3.14159265358979 / 3, before = volume(m, 1) / exact - 1,
-                 both = volume(m, 1) + volume(m, 2);
+    const double exact = 4 * 3.14159265358979 / 3, before = testing::volume(m, 1) / exact - 1,
+                 both = testing::volume(m, 1) + testing::volume(m, 2);
     CHECK(before < -0.018 * (8.0 / n) * (8.0 / n));
     CHECK(straddle_surface(m) == 6 * n * n + 2);
-    CHECK(std::fabs(volume(m, 1) / exact - 1) < -0.05 * before);
-    CHECK(volume(m, 1) + volume(m, 2) == Approx(both));
+    CHECK(std::fabs(testing::volume(m, 1) / exact - 1) < -0.05 * before);
+    CHECK(testing::volume(m, 1) + testing::volume(m, 2) == Approx(both));
   }
 }
 
