@@ -17,9 +17,9 @@ struct Effect {
 Effect effect_of(Effort effort) {
   switch (effort) {
   case Effort::fast:
-    return {0.53, 0.6, 0.083, 0};
+    return {1.1, 0.35, 0.167, 0};
   case Effort::best:
-    return {3.5, 2.4, 2.5, 100};
+    return {7.5, 1.4, 5, 100};
   default:
     return {1, 1, 1, 0};
   }
@@ -56,9 +56,9 @@ Plan plan(const Work& work) {
   p.memory =
       std::llround(9.9e6 + 60 * n + 690 * surface + 2200 * static_cast<double>(work.blocks) +
                    (improves ? e.room * n + (work.effort == Effort::fast ? 0 : 36 * part) * work.threads : 0));
-  const double searches = 1.11e-2 * split + 9.8e-3 * std::max(0., split - many_split);
+  const double searches = 5.9e-3 * split + 5.1e-3 * std::max(0., split - many_split);
   p.seconds =
-      0.012 + 2.5e-7 * n + (improves ? e.elements * 3.2e-7 * n + e.low * 3.3e-5 * low + e.searches * searches : 0);
+      0.012 + 2.6e-7 * n + (improves ? e.elements * 1.6e-7 * n + e.low * 6e-5 * low + e.searches * searches : 0);
   return p;
 }
 
