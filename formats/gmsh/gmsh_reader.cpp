@@ -354,7 +354,7 @@ private:
     }
     std::array<Values, 2> value;
     if (taken) {
-      cells_.spend(4 * element_.size(), "'" + name + "'");
+      cells_.spend(sizeof(double) * element_.size(), "'" + name + "'");
       for (const bool tet : {false, true})
         value[tet].resize(counts_[tet]);
     }

@@ -9,9 +9,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <istream>
-#include <map>
+#include <numeric>
+#include <tuple>
 
 namespace molmesh::formats {
 namespace {
@@ -255,8 +255,10 @@ private:
         return atom();
       if (version_ == 2 && word == "body")
         return body();
-      if (const auto l = level_number_.find(word); l != level_number_.end())
-        return group(l->second);
+      const auto l = std::lower_bound(by_name_.begin(), by_name_.end(), word,
+                                      [&](uint32_t i, std::string_view w) { return h_.level[i].name < w; });
+      if (l != by_name_.end() && h_.level[*l].name == word)
+        return group(*l);
       if (word == "hier" || word == "source" || word == "levels")
         refuse("R5: found a second or late record " + shown(word) + ", expected a group or an atom");
       std::string known;
@@ -283,22 +285,36 @@ private:
       h_.source.assign(at_, stop_);
       has_source_ = true;
     } else if (word == "levels") {
-      while (at_ != stop_)
-        level(field());
+      levels();
       stage_ = Stage::body;
     } else {
       refuse("R4: found " + shown(word) + " before 'levels', expected 'source' or 'levels'");
     }
   }
 
-  void level(std::string_view word) {
-    if (!is_level_name(word, version_))
-      refuse("R4: found level " + shown(word) +
-             ", expected a word of letters, digits, _ and - that is no record's");
-    if (!level_number_.emplace(word, h_.level.size()).second)
-      refuse("R4: found level " + shown(word) + " twice, expected distinct levels");
-    h_.level.push_back({std::string(word), {}});
-    product_.push_back(1);
+  void levels() {
+    const char* const begin = at_;
+    size_t count = 0;
+    for (; at_ != stop_; ++count)
+      if (const std::string_view word = field(); !is_level_name(word, version_))
+        refuse("R4: found level " + shown(word) +
+               ", expected a word of letters, digits, _ and - that is no record's");
+    at_ = begin;
+    h_.level.reserve(count);
+    product_.assign(count, 1);
+    by_name_.resize(count);
+    std::iota(by_name_.begin(), by_name_.end(), 0);
+    while (at_ != stop_)
+      h_.level.push_back({std::string(field()), {}});
+    const auto name = [&](uint32_t l) -> const std::string& { return h_.level[l].name; };
+    std::sort(by_name_.begin(), by_name_.end(),
+              [&](uint32_t a, uint32_t b) { return std::tie(name(a), a) < std::tie(name(b), b); });
+    auto twice = static_cast<uint32_t>(count); // the first that has come before
+    for (size_t i = 1; i < count; ++i)
+      if (name(by_name_[i]) == name(by_name_[i - 1]))
+        twice = std::min(twice, by_name_[i]);
+    if (twice < count)
+      refuse("R4: found level " + shown(name(twice)) + " twice, expected distinct levels");
   }
 
   int64_t children(size_t l) const {
@@ -416,7 +432,7 @@ private:
   std::istream& in_;
   const std::string& file_;
   Hierarchy h_;
-  std::map<std::string, size_t, std::less<>> level_number_;
+  std::vector<uint32_t> by_name_; ///< levels, ascending
   NameCache cache_;
   std::string decoded_;
   Stage stage_ = Stage::start;

@@ -102,7 +102,7 @@ void list_residues(Arrangement& a) {
     if (placed.residues)
       std::for_each(placed.residues->begin(), placed.residues->end(), add);
     else
-      for (int64_t r = all_of(placed).begin; r < all_of(placed).end; ++r)
+      for (uint32_t r = all_of(placed).begin; r < all_of(placed).end; ++r)
         add(r);
   }
 }

@@ -163,24 +163,11 @@ void AtomSite::open_residue() {
 
 /// Of the open run; a new one's is the next.
 size_t AtomSite::index_of(const pdb::ResidueId& id) {
-  const size_t begin = runs_.back().begin, count = residues_.size() - begin;
-  const auto slot_of = [&](const pdb::ResidueId& sought) {
-    size_t slot = pdb::hash(sought) & (known_.size() - 1);
-    while (known_[slot] != 0 && !residues_[begin + known_[slot] - 1].matches(sought))
-      slot = (slot + 1) & (known_.size() - 1);
-    return slot;
-  };
-  if (3 * (count + 1) > 2 * known_.size()) {
-    const size_t size = std::max<size_t>(2 * known_.size(), 16);
-    std::vector<uint32_t>().swap(known_);
-    known_.resize(size);
-    for (size_t r = 0; r < count; ++r)
-      known_[slot_of(residues_[begin + r])] = static_cast<uint32_t>(r + 1);
-  }
-  uint32_t& known = known_[slot_of(id)];
-  if (known == 0)
-    known = static_cast<uint32_t>(count + 1);
-  return begin + known - 1;
+  const size_t begin = runs_.back().begin;
+  return begin + known_.find_or_add(
+                     static_cast<uint32_t>(residues_.size() - begin), pdb::hash(id),
+                     [&](uint32_t r) { return residues_[begin + r].matches(id); },
+                     [&](uint32_t r) { return pdb::hash(residues_[begin + r]); });
 }
 
 void AtomSite::close_residue() {
@@ -193,25 +180,25 @@ void AtomSite::open_chain() {
   chain_open_ = true;
   residue_open_ = false;
   known_.clear();
-  if (known_.capacity() > 16)
-    std::vector<uint32_t>().swap(known_); // to clear it takes as long as the largest run did
   Chains& chains = chains_[model_index_];
-  const pdb::Label name = label(chain_);
-  const auto [known, is_new] = chains.index.try_emplace(&name.str(), static_cast<uint32_t>(chains.name.size()));
-  if (is_new)
-    chains.name.emplace_back(name);
-  runs_.emplace_back(
-      Run{static_cast<uint32_t>(model_index_), known->second, static_cast<uint32_t>(residues_.size())});
+  const auto next = static_cast<uint32_t>(chains.name.size());
+  const std::hash<std::string> hash;
+  const uint32_t chain = chains.index.find_or_add(
+      next, hash(chain_), [&](uint32_t c) { return chains.name[c] == chain_; },
+      [&](uint32_t c) { return hash(chains.name[c]); });
+  if (chain == next)
+    chains.name.emplace_back(label(chain_));
+  runs_.emplace_back(Run{static_cast<uint32_t>(model_index_), chain, static_cast<uint32_t>(residues_.size())});
 }
 
 /// Into their chains, chunk by chunk.
 void AtomSite::place_residues() {
   close_residue();
-  std::vector<uint32_t>().swap(known_);
+  known_.clear();
   for (size_t m = 0; m < models_.size(); ++m) {
-    std::unordered_map<const std::string*, uint32_t>().swap(chains_[m].index);
+    chains_[m].index.clear();
     models_[m].chains.reserve(chains_[m].name.size());
-    chains_[m].name.move_each([&](size_t, pdb::Label name) { models_[m].chains.emplace_back(name.str()); });
+    chains_[m].name.move_each([&](size_t, pdb::Label name) { models_[m].chains.emplace_back(name); });
   }
   const auto end_of = [&](size_t run) {
     return run + 1 < runs_.size() ? size_t{runs_[run + 1].begin} : residues_.size();

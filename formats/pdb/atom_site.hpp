@@ -1,5 +1,6 @@
 // atom_site.hpp — mmCIF's table of atoms, row by row, becomes models: no table of texts is kept.
 #pragma once
+#include "base/index_table.hpp"
 #include "formats/pdb/chunks.hpp"
 #include "formats/pdb/element_name.hpp"
 #include "formats/pdb/parse.hpp"
@@ -125,8 +126,8 @@ private:
   size_t model_index_ = 0;
   bool chain_open_ = false, residue_open_ = false;
   std::string chain_; ///< name of the open one
-  struct Chains {     ///< of a model, by their places in the pool of labels
-    std::unordered_map<const std::string*, uint32_t> index;
+  struct Chains {     ///< of a model
+    IndexTable index;
     Chunks<pdb::Label> name;
   };
   std::vector<Chains> chains_; ///< of each model
@@ -135,7 +136,7 @@ private:
   };
   Chunks<Run> runs_;
   Chunks<pdb::Residue> residues_; ///< of all models and chains, run by run
-  std::vector<uint32_t> known_;   ///< those of the open run by hash: 1 + index in it, 0: none; a power of two
+  IndexTable known_;              ///< those of the open run: their indices in it
   size_t residue_index_ = 0;
   Chunks<pdb::Atom> atoms_; ///< of the open residue, since it has been opened
   ElementGuesses guesses_;

@@ -225,10 +225,11 @@ bool is_water(const pdb::Residue& residue) {
 
 void keep(Parsed& parsed, const std::string& file, const PdbOptions& options, PdbReport& report) {
   pdb::Structure& st = parsed.structure;
+  const pdb::Label nameless = st.labels.add("_");
   for (pdb::Model& model : st.models)
     for (pdb::Chain& chain : model.chains)
       if (chain.name.empty())
-        chain.name = "_";
+        chain.name = nameless;
   keep_models(st, file, options.model, report);
   if (options.altloc.size() == 1 && !has_altloc(st, options.altloc[0]))
     report.notes.push_back("--altloc " + options.altloc + ": no atom has this letter, as occupancy");

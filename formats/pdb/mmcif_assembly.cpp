@@ -7,6 +7,7 @@
 #include <cmath>
 #include <gemmi/numb.hpp>
 #include <map>
+#include <set>
 
 namespace molmesh::formats {
 namespace {
@@ -101,18 +102,26 @@ std::vector<gemmi::Assembly> read_assemblies(cif::Block& block, const std::strin
   std::vector<gemmi::Assembly> assemblies;
   const std::map<std::string, gemmi::Transform> operators =
       wanted == "none" ? std::map<std::string, gemmi::Transform>() : read_operators(block, file);
+  constexpr size_t most_named = 1000; // for a message
+  std::set<std::string> named;
+  size_t operators_of_all = 0;
   for (const auto row :
        block.find("_pdbx_struct_assembly_gen.", {"assembly_id", "oper_expression", "asym_id_list"})) {
     const std::string name = row.str(0);
+    if (name != wanted) {
+      if (named.size() < most_named && named.insert(name).second)
+        assemblies.emplace_back(name);
+      continue;
+    }
     const auto known = std::find_if(assemblies.begin(), assemblies.end(),
                                     [&](const gemmi::Assembly& a) { return a.name == name; });
     gemmi::Assembly& assembly = known == assemblies.end() ? assemblies.emplace_back(name) : *known;
-    if (name != wanted)
-      continue;
     gemmi::Assembly::Gen& gen = assembly.generators.emplace_back();
     gemmi::split_str_into_multi(row.str(2), ", \n", gen.subchains);
     const std::string where = file + ": assembly " + name;
     for (const std::vector<std::string>& product : parse_operators(row.str(1), where)) {
+      if (++operators_of_all > most_operators)
+        fail_input(where + ": found more than 100000 operators, expected fewer");
       gemmi::Assembly::Operator op;
       for (const std::string& id : product) {
         const auto found = operators.find(id);

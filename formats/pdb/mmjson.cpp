@@ -210,10 +210,12 @@ private:
   size_t at_;
 };
 
+/// Of a category that is used; dictionaries have some 30.
+constexpr size_t most_columns = 1000;
+
 /// A column, gone through from its first element on.
 struct Column {
   Json json;
-  size_t rows = 0;
   /// The next value as CIF writes it.
   std::string value(const std::string& file) {
     json.has(','); // of the element before
@@ -238,22 +240,31 @@ cif::Loop read_category(Json& json, std::string_view text, const std::string& na
     refuse("no object");
   cif::Loop loop;
   std::vector<Column> columns;
+  size_t rows = 0, width = 0;
+  const bool is_atoms = gemmi::to_lower("_" + name) + "." == atom_site,
+             is_read = is_atoms || is_category_read("_" + name);
   json.object([&](const std::string& key) {
-    loop.tags.push_back("_" + name + "." + key);
     if (json.next() != '[')
       refuse("no array");
-    Column& column = columns.emplace_back(Column{Json(text, file, json.at() + 1)});
+    if (is_read || width == 0) { // of what is not used, the first tag alone: it tells that the category is there
+      loop.tags.push_back("_" + name + "." + key);
+      columns.emplace_back(Column{Json(text, file, json.at() + 1)});
+    }
+    size_t its_rows = 0;
     json.array([&] {
       json.skip();
-      ++column.rows;
+      ++its_rows;
     });
-    if (column.rows != columns[0].rows)
+    if (width++ == 0)
+      rows = its_rows;
+    if (its_rows != rows)
       refuse("arrays of different lengths");
+    if (is_read && width > most_columns)
+      refuse("more than " + std::to_string(most_columns) + " arrays");
   });
-  const size_t width = columns.size(), rows = columns.empty() ? 0 : columns[0].rows;
   if (rows == 0)
     return {};
-  if (gemmi::to_lower("_" + name) + "." == atom_site) {
+  if (is_atoms) {
     if (atoms.begun())
       return loop;
     atoms.begin(loop.tags, 1);
@@ -268,7 +279,7 @@ cif::Loop read_category(Json& json, std::string_view text, const std::string& na
         row[used[u]] = value[u] = columns[used[u]].value(file);
       atoms.row(row, 1);
     }
-  } else if (is_category_read("_" + name)) {
+  } else if (is_read) {
     loop.values.reserve(width * rows);
     for (size_t r = 0; r < rows; ++r)
       for (Column& column : columns)

@@ -1,6 +1,5 @@
 // msgpack.cpp — one byte tells the kind, then come lengths and numbers, big-endian.
 #include "formats/pdb/msgpack.hpp"
-#include <algorithm>
 #include <bit>
 #include <stdexcept>
 #include <string>
@@ -9,15 +8,13 @@ namespace molmesh::formats::msgpack {
 namespace {
 
 constexpr int deepest = 32;
-constexpr int64_t most_values = 1'000'000; // a file has some ten a column
+constexpr uint64_t most_values = 1'000'000; // a file has some ten a column
 
 class Reader {
 public:
   explicit Reader(std::string_view bytes) : rest_(bytes) {}
 
   Value value(int depth = 0) {
-    if (++values_ > most_values)
-      throw std::runtime_error("more than " + std::to_string(most_values) + " values");
     if (depth > deepest)
       throw std::runtime_error("values nested deeper than " + std::to_string(deepest));
     const auto code = static_cast<uint8_t>(take(1)[0]);
@@ -116,38 +113,38 @@ private:
     return v;
   }
 
+  /// Takes memory at once for all of them; those of all arrays are counted before.
   Value array(uint64_t n, int depth) {
+    if (n > most_values - values_)
+      throw std::runtime_error("more than " + std::to_string(most_values) + " values");
+    values_ += n;
     Value v;
     v.kind = Value::Kind::array;
+    v.array.reserve(n);
     for (uint64_t i = 0; i < n; ++i)
       v.array.push_back(value(depth + 1));
     return v;
   }
 
   Value map(uint64_t n, int depth) {
-    Value v;
+    Value v = array(2 * n, depth);
     v.kind = Value::Kind::map;
-    for (uint64_t i = 0; i < n; ++i) {
-      const Value key = value(depth + 1);
-      Value of_key = value(depth + 1);
-      if (key.kind == Value::Kind::text) {
-        v.key.push_back(key.text);
-        v.array.push_back(std::move(of_key));
-      }
-    }
     return v;
   }
 
   std::string_view rest_;
-  int64_t values_ = 0;
+  uint64_t values_ = 0;
 };
 
 } // namespace
 
 const Value& Value::operator[](std::string_view name) const {
   static const Value none;
-  const auto found = std::find(key.begin(), key.end(), name);
-  return found == key.end() ? none : array[static_cast<size_t>(found - key.begin())];
+  if (kind == Kind::map)
+    for (size_t i = 0; i + 1 < array.size(); i += 2)
+      if (array[i].kind == Kind::text && array[i].text == name)
+        return array[i + 1];
+  return none;
 }
 
 Value parse(std::string_view bytes) {

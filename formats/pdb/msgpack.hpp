@@ -8,11 +8,10 @@ namespace molmesh::formats::msgpack {
 
 struct Value {
   enum class Kind { nil, boolean, integer, real, text, bytes, array, map } kind = Kind::nil;
-  int64_t integer = 0;               ///< boolean, integer
-  double real = 0;                   ///< integer too
-  std::string_view text;             ///< text, bytes
-  std::vector<std::string_view> key; ///< of a map; only those that are text
-  std::vector<Value> array;          ///< elements; values of a map, by key
+  int64_t integer = 0;      ///< boolean, integer
+  double real = 0;          ///< integer too
+  std::string_view text;    ///< text, bytes
+  std::vector<Value> array; ///< elements; of a map: key, value, key, value, …
 
   /// nil where there is none.
   const Value& operator[](std::string_view name) const;

@@ -39,9 +39,9 @@ bool is_rotation(const gemmi::Mat33& m) {
 /// The residues of a chain that a generator names: all of them (PDB: by chain), or those of its subchains (mmCIF).
 std::vector<int64_t> generated(const Flat& flat, const Flat::Chain& chain, const gemmi::Assembly::Gen& gen) {
   std::vector<int64_t> residues;
-  const bool whole = gemmi::in_vector(chain.source->name, gen.chains);
+  const bool whole = gemmi::in_vector(chain.source->name.str(), gen.chains);
   const std::unordered_set<std::string> subchains(gen.subchains.begin(), gen.subchains.end());
-  for (int64_t r = chain.begin; r < chain.end; ++r)
+  for (uint32_t r = chain.begin; r < chain.end; ++r)
     if (whole || subchains.count(flat.residue[r].source->subchain) > 0)
       residues.push_back(r);
   return residues;
@@ -52,7 +52,7 @@ bool are_unique(const Flat& flat, const std::vector<Placed>& placed) {
   std::vector<const std::string*> name;
   name.reserve(placed.size());
   for (const Placed& p : placed)
-    name.push_back(&flat.chain[p.chain].source->name);
+    name.push_back(&flat.chain[p.chain].source->name.str());
   std::sort(name.begin(), name.end(), [](const std::string* a, const std::string* b) { return *a < *b; });
   return std::adjacent_find(name.begin(), name.end(),
                             [](const std::string* a, const std::string* b) { return *a == *b; }) == name.end();
@@ -88,7 +88,7 @@ Flat flatten(Parsed& parsed, const std::string& file, const PdbOptions& options,
   size_t given_back = 0;
   for (pdb::Model& model : parsed.structure.models)
     for (pdb::Chain& chain : model.chains) {
-      const auto first_residue = static_cast<int64_t>(flat.residue.size());
+      const auto first_residue = static_cast<uint32_t>(flat.residue.size());
       for (pdb::Residue& residue : chain.residues) {
         const auto first_atom = static_cast<uint32_t>(flat.atom.size());
         for (const pdb::Atom& a : residue.atoms) {
@@ -107,7 +107,7 @@ Flat flatten(Parsed& parsed, const std::string& file, const PdbOptions& options,
             PdbReport::Unknown& unknown = report.unknown_elements[a.element.name()];
             if (unknown.atoms++ == 0)
               unknown.first =
-                  a.name.str() + " of " + residue.name.str() + " " + chain.name + "/" + residue.seqid.str();
+                  a.name.str() + " of " + residue.name.str() + " " + chain.name.str() + "/" + residue.seqid.str();
             atom.radius = options.unknown_radius;
             if (refused.empty())
               refused = "found atom " + unknown.first +
@@ -124,7 +124,7 @@ Flat flatten(Parsed& parsed, const std::string& file, const PdbOptions& options,
           give_back_memory();
         }
       }
-      flat.chain.push_back({&model, &chain, first_residue, static_cast<int64_t>(flat.residue.size())});
+      flat.chain.push_back({&model, &chain, first_residue, static_cast<uint32_t>(flat.residue.size())});
     }
   if (!refused.empty() && !(options.unknown_radius > 0))
     fail_input(file + ": " + refused + ", expected an element with a radius");
@@ -136,7 +136,7 @@ std::vector<Placed> place(const Flat& flat, const pdb::Structure& st, const std:
   std::vector<Placed> placed;
   if (assembly == "none") {
     placed.reserve(flat.chain.size());
-    for (size_t c = 0; c < flat.chain.size(); ++c)
+    for (uint32_t c = 0; c < flat.chain.size(); ++c)
       placed.push_back({c, 1, nullptr, nullptr});
     return placed;
   }
@@ -169,13 +169,12 @@ std::vector<Placed> place(const Flat& flat, const pdb::Structure& st, const std:
       int& copy = copies.try_emplace({op.name, numbers(op.transform)}, 0).first->second;
       if (copy == 0 || !used.insert(copy).second)
         used.insert(copy = ++count);
-      for (size_t c = 0; c < flat.chain.size(); ++c) {
+      for (uint32_t c = 0; c < flat.chain.size(); ++c) {
         if (parts[c]->empty())
           continue;
         const auto [part, is_new] = of_chain.try_emplace({copy, c}, placed.size());
         if (is_new) {
-          auto transform = op.transform.is_identity() ? nullptr : std::make_shared<gemmi::Transform>(op.transform);
-          placed.push_back({c, copy, std::move(transform), parts[c]});
+          placed.push_back({c, copy, op.transform.is_identity() ? nullptr : &op.transform, parts[c]});
           continue;
         }
         std::vector<int64_t> merged;
@@ -209,7 +208,7 @@ std::vector<std::string> chain_names(const Flat& flat, const std::vector<Placed>
   const bool all_once = are_unique(flat, placed);
   if (!all_once) {
     for (const Placed& p : placed)
-      ++times[flat.chain[p.chain].source->name];
+      ++times[flat.chain[p.chain].source->name.str()];
     for (const auto& [name, n] : times)
       if (n == 1)
         taken.emplace(name);

@@ -16,7 +16,7 @@ struct Flat {
   struct Chain {
     const pdb::Model* model;
     const pdb::Chain* source;
-    int64_t begin, end; ///< residues
+    uint32_t begin, end; ///< residues
   };
   std::vector<Chain> chain;
   std::vector<Residue> residue;
@@ -26,9 +26,9 @@ struct Flat {
 
 /// One copy of one chain, whole or in part.
 struct Placed {
-  size_t chain;                                         ///< in Flat::chain
+  uint32_t chain;                                       ///< in Flat::chain
   int copy;                                             ///< which operator of the assembly, from 1
-  std::shared_ptr<const gemmi::Transform> transform;    ///< null: the identity
+  const gemmi::Transform* transform;                    ///< the structure's; null: the identity
   std::shared_ptr<const std::vector<int64_t>> residues; ///< indices into Flat::residue, ascending; null: all
   Vec3d position(Vec3d p) const;
 };

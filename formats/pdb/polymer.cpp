@@ -90,7 +90,7 @@ void mark_modified_residues(pdb::Structure& structure, bool is_pdb) {
     for (pdb::Chain& chain : model.chains) {
       if (std::none_of(chain.residues.begin(), chain.residues.end(), is_hetero))
         continue;
-      const auto entity = is_pdb ? sequence.find(chain.name) : sequence.end();
+      const auto entity = is_pdb ? sequence.find(chain.name.str()) : sequence.end();
       const auto in_sequence = [&](const pdb::Residue& r) {
         return r.entity_type == gemmi::EntityType::Polymer &&
                (!is_pdb || (entity != sequence.end() && entity->second.count(r.name.str()) > 0));

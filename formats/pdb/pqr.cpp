@@ -195,11 +195,11 @@ private:
     if (!in_model_)
       open_model("");
     pdb::Model& model = parsed_.structure.models.back();
+    pdb::Labels& labels = parsed_.structure.labels;
     const auto [found, is_new] = chain_.try_emplace(a.chain, model.chains.size());
     if (is_new)
-      model.chains.emplace_back(a.chain);
+      model.chains.emplace_back(labels.add(a.chain));
     pdb::Chain& chain = model.chains[found->second];
-    pdb::Labels& labels = parsed_.structure.labels;
     const pdb::ResidueId id{gemmi::SeqId(a.number, a.insertion), {}, labels.add(a.residue)};
     if (chain.residues.empty() || !chain.residues.back().matches(id)) {
       chain.residues.emplace_back(id);

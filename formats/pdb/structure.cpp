@@ -27,16 +27,16 @@ void name_subchains(Chain& chain, Labels& labels) {
   for (Residue& residue : chain.residues)
     switch (residue.entity_type) {
     case gemmi::EntityType::Polymer:
-      residue.subchain = labels.add(chain.name + "poly");
+      residue.subchain = labels.add(chain.name.str() + "poly");
       break;
     case gemmi::EntityType::NonPolymer:
-      residue.subchain = labels.add(chain.name + residue.seqid.str());
+      residue.subchain = labels.add(chain.name.str() + residue.seqid.str());
       break;
     case gemmi::EntityType::Water:
-      residue.subchain = labels.add(chain.name + "wat");
+      residue.subchain = labels.add(chain.name.str() + "wat");
       break;
     default:
-      residue.subchain = labels.add(chain.name);
+      residue.subchain = chain.name;
     }
 }
 

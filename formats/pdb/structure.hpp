@@ -1,11 +1,11 @@
 // structure.hpp — models, chains, residues and atoms of a structure file, in a third of the memory of gemmi's.
 #pragma once
+#include "molecule/hierarchy.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <gemmi/model.hpp>
 #include <string>
 #include <string_view>
-#include <unordered_set>
 #include <vector>
 
 /// Fields are named as gemmi's, and mean the same.
@@ -41,10 +41,10 @@ public:
   Labels& operator=(const Labels&) = delete;
   Labels(Labels&&) = default;
   Labels& operator=(Labels&&) = default;
-  Label add(std::string_view text) { return text.empty() ? Label() : Label(*all_.emplace(text).first); }
+  Label add(std::string_view text) { return text.empty() ? Label() : Label(all_[all_.add(text)]); }
 
 private:
-  std::unordered_set<std::string> all_;
+  Names all_;
 };
 
 struct Atom {
@@ -78,9 +78,9 @@ struct Residue : ResidueId {
 };
 
 struct Chain {
-  std::string name;
+  Label name;
   std::vector<Residue> residues;
-  explicit Chain(std::string its_name) : name(std::move(its_name)) {}
+  explicit Chain(Label its_name) : name(its_name) {}
 };
 
 struct Model {

@@ -29,7 +29,7 @@ void StructureBuilder::open_chain(std::string_view name) {
   pdb::Model& model = structure_.models.back();
   const auto [first, is_new] = chains_.try_emplace(std::string(name), model.chains.size());
   after_ter_ = !is_new && model.chains[first->second].residues[0].entity_type == gemmi::EntityType::Polymer;
-  model.chains.emplace_back(std::string(name));
+  model.chains.emplace_back(label(name));
   chain_open_ = true;
   slot_.clear();
 }

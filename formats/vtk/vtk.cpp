@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <deque>
 #include <limits>
 #include <set>
 
@@ -309,6 +310,8 @@ private:
       };
       kept_[c] == 10 ? cells_.add_tet(corner) : cells_.add_tri(corner);
     }
+    names_.clear();
+    cells_.m.cell_array.reserve(array_.size());
     for (auto& [name, values] : array_) {
       if (values.size() != kept_.size())
         in_.refuse("R4", "array '" + name + "' has " + std::to_string(values.size()) + " values, expected " +
@@ -331,7 +334,7 @@ private:
   std::vector<int32_t> corner_;
   std::vector<uint8_t> kept_; ///< [cells] VTK's type
   std::set<std::string> names_;
-  std::vector<std::pair<std::string, Values>> array_;
+  std::deque<std::pair<std::string, Values>> array_;
 };
 
 } // namespace

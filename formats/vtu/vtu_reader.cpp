@@ -13,6 +13,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace molmesh::formats {
 namespace {
@@ -62,7 +63,7 @@ public:
     for (const Piece& p : d_.piece)
       read_piece(p);
     for (size_t a = 0; a < m_.cell_array.size(); ++a)
-      append(m_.cell_array[a], triangles_[a]);
+      append(m_.cell_array[a], std::exchange(triangles_[a], {}));
     if (m_.tet.empty())
       d_.refuse(
           d_.piece.front().line, "R7",
@@ -181,8 +182,10 @@ private:
     for (const ArrayTag& first : d_.piece.front().cell_data) {
       bool everywhere = own.count(first.name) == 0 && find(arrays_of_.front(), first.name) == &first, real = false;
       for (const Index& of_piece : arrays_of_) {
+        if (!everywhere)
+          break;
         const ArrayTag* a = find(of_piece, first.name);
-        everywhere = everywhere && a && a->components == 1;
+        everywhere = a && a->components == 1;
         real |= a && a->type >= ValueType::float32;
       }
       if (!everywhere)

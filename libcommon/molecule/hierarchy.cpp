@@ -3,15 +3,31 @@
 #include "base/error.hpp"
 #include "molecule/grouping.hpp"
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <functional>
 
 namespace molmesh {
 
+const std::string& Names::operator[](int32_t entry) const {
+  const auto n = static_cast<uint32_t>(entry) + first;
+  const int b = std::bit_width(n) - std::bit_width(first);
+  return block_[b][n - (first << b)];
+}
+
 int32_t Names::add(std::string_view text) {
-  const auto [found, is_new] = entry_.try_emplace(std::string(text), static_cast<int32_t>(text_.size()));
-  if (is_new)
-    text_.emplace_back(text);
-  return found->second;
+  const std::hash<std::string_view> hash;
+  const auto at = [&](uint32_t i) -> const std::string& { return (*this)[static_cast<int32_t>(i)]; };
+  const auto entry = static_cast<int32_t>(entry_.find_or_add(
+      static_cast<uint32_t>(size_), hash(text), [&](uint32_t i) { return at(i) == text; },
+      [&](uint32_t i) { return hash(at(i)); }));
+  if (entry < size_)
+    return entry;
+  const uint32_t of_next = first << block_.size();
+  if (static_cast<uint32_t>(size_) == of_next - first) // all blocks are full
+    block_.emplace_back().reserve(of_next);
+  block_.back().emplace_back(text);
+  return size_++;
 }
 
 void check(const Hierarchy& h, const std::string& file) {

@@ -1,29 +1,32 @@
 // hierarchy.hpp — atoms grouped into residues, chains, domains …, each group with its exponent.
 // Equations 2 to 6 of Liao et al. 2013, for any depth.
 #pragma once
+#include "base/index_table.hpp"
 #include "geom/vec.hpp"
 #include "molecule/body.hpp"
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 namespace molmesh {
 
 /// Atom names and elements, each text stored once: a capsid has 10⁷ atoms and a few dozen names. Entry 0 is "X".
+/// Texts stay where they are when more are added or this is moved, unless it is a copy.
 class Names {
 public:
   Names() { add("X"); }
   /// The entry of `text`, added when new.
   int32_t add(std::string_view text);
-  const std::string& operator[](int32_t entry) const { return text_[entry]; }
-  int64_t size() const { return static_cast<int64_t>(text_.size()); }
+  const std::string& operator[](int32_t entry) const;
+  int64_t size() const { return size_; }
 
 private:
-  std::vector<std::string> text_;
-  std::unordered_map<std::string, int32_t> entry_;
+  static constexpr uint32_t first = 16; ///< texts in the first block; each next one has twice as many
+  std::vector<std::vector<std::string>> block_;
+  int32_t size_ = 0;
+  IndexTable entry_;
 };
 
 struct Atom {

@@ -241,6 +241,116 @@ std::string json_column(const std::string& name, size_t n, const std::string& va
   return "\"" + name + "\":[" + values + repeated("," + values, n / each - 1) + "]";
 }
 
+/// A text of these letters, another one for each i below 62^size.
+std::string letters(size_t i, size_t size) {
+  static const std::string all = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+  std::string s;
+  for (size_t k = 0; k < size; ++k, i /= all.size())
+    s += all[i % all.size()];
+  return s;
+}
+
+/// MessagePack.
+namespace pack {
+void big_endian(std::string& s, uint64_t n, int bytes) {
+  for (int b = bytes; b-- > 0;)
+    s += static_cast<char>(n >> 8 * b);
+}
+std::string sized(char code, size_t n) {
+  std::string s(1, code);
+  big_endian(s, n, 4);
+  return s;
+}
+std::string text(const std::string& t) {
+  return sized('\xDB', t.size()) + t;
+}
+std::string bytes(const std::string& b) {
+  return sized('\xC6', b.size()) + b;
+}
+std::string integer(size_t n) {
+  return sized('\xD2', n);
+}
+std::string array(const std::vector<std::string>& elements) {
+  std::string s = sized('\xDD', elements.size());
+  for (const std::string& e : elements)
+    s += e;
+  return s;
+}
+std::string map(const std::vector<std::pair<std::string, std::string>>& members) {
+  std::string s = sized('\xDF', members.size());
+  for (const auto& [key, value] : members)
+    s += text(key) + value;
+  return s;
+}
+} // namespace pack
+
+const std::string int32s = pack::map({{"kind", pack::text("ByteArray")}, {"type", pack::integer(3)}}),
+                  runs = pack::map({{"kind", pack::text("RunLength")}}),
+                  steps = pack::map({{"kind", pack::text("Delta")}, {"origin", pack::integer(0)}});
+
+std::string raw(const std::vector<int32_t>& numbers) {
+  std::string s;
+  for (const int32_t n : numbers)
+    put(s, n);
+  return s;
+}
+/// A column of n values, first, first + step, first + 2 step, …
+std::string column_of_runs(const std::string& name, int32_t first, int32_t step, size_t n) {
+  return pack::map({{"name", pack::text(name)},
+                    {"data", pack::map({{"data", pack::bytes(raw({first, 1, step, static_cast<int32_t>(n) - 1}))},
+                                        {"encoding", pack::array({steps, runs, int32s})}})}});
+}
+/// A column of n times the same text.
+std::string column_of_text(const std::string& name, const std::string& text, size_t n) {
+  const auto size = static_cast<int32_t>(text.size());
+  return pack::map(
+      {{"name", pack::text(name)},
+       {"data", pack::map({{"data", pack::bytes(raw({0, static_cast<int32_t>(n)}))},
+                           {"encoding", pack::array({pack::map({{"kind", pack::text("StringArray")},
+                                                                {"dataEncoding", pack::array({runs, int32s})},
+                                                                {"stringData", pack::text(text)},
+                                                                {"offsetEncoding", pack::array({int32s})},
+                                                                {"offsets", pack::bytes(raw({0, size}))}})})}})}});
+}
+std::string bcif(const std::string& category, size_t rows, const std::vector<std::string>& columns,
+                 const std::string& more = "") {
+  const std::string c = pack::map(
+      {{"name", pack::text(category)}, {"rowCount", pack::integer(rows)}, {"columns", pack::array(columns)}});
+  return pack::map(
+      {{"encoder", pack::text(more)},
+       {"version", pack::text("0.3.0")},
+       {"dataBlocks", pack::array({pack::map({{"header", pack::text("X")}, {"categories", pack::array({c})}})})}});
+}
+/// n atoms; name: the text of all their names.
+std::string bcif_atoms(size_t n, const std::string& name, const std::string& more = "") {
+  return bcif("_atom_site", n,
+              {column_of_text("label_atom_id", name, n), column_of_runs("Cartn_x", 0, 1, n),
+               column_of_runs("Cartn_y", 0, 0, n), column_of_runs("Cartn_z", 0, 0, n),
+               column_of_runs("auth_seq_id", 0, 1, n)},
+              more);
+}
+
+/// An array of a .vtu, packed.
+std::string vtu_array(const std::string& type, const std::string& name, const std::string& raw_values) {
+  std::string head;
+  for (const size_t n : {size_t{1}, raw_values.size(), raw_values.size(), zlib(raw_values).size()})
+    put(head, static_cast<uint32_t>(n));
+  const auto base64 = [](const std::string& s) {
+    static const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    for (size_t i = 0; i < s.size(); i += 3) {
+      uint32_t bits = 0;
+      for (size_t k = 0; k < 3; ++k)
+        bits = bits << 8 | (i + k < s.size() ? static_cast<unsigned char>(s[i + k]) : 0u);
+      for (size_t k = 0; k < 4; ++k)
+        out += i + k > s.size() ? '=' : digits[bits >> (18 - 6 * k) & 63];
+    }
+    return out;
+  };
+  return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" format=\"binary\">" + base64(head) +
+         base64(zlib(raw_values)) + "</DataArray>";
+}
+
 struct Contrived {
   const char* name;
   Reader read;
@@ -272,6 +382,16 @@ const std::vector<Contrived> table = {
               "$EndElements\n";
      },
      50000},
+    {".msh: arrays of one value that is no integer", read_mesh,
+     [](size_t n) {
+       const std::string mesh = msh_head + four_points + "$Elements\n" + number(n) + "\n" +
+                                lines(n, [](size_t i) { return number(i + 1) + " 4 0 1 2 3 4\n"; }) +
+                                "$EndElements\n";
+       return mesh + lines((8 * mesh.size() + (size_t{16} << 20)) / (4 * n), [](size_t i) {
+                return "$ElementData\n1\n\"a" + number(i) + "\"\n0\n3\n0\n1\n1\n1 0.5\n$EndElementData\n";
+              });
+     },
+     400000},
     {".msh: arrays without values", read_mesh,
      [](size_t n) {
        return msh_head + four_points + "$Elements\n" + number(n) + "\n" +
@@ -310,6 +430,49 @@ const std::vector<Contrived> table = {
               number(n) + "\n" + lines(n, [](size_t i) { return "a" + number(i) + " 1 1 int\n1\n"; });
      },
      100000},
+    {".vtk: arrays of no cell", read_mesh,
+     [](size_t n) {
+       return "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 "
+              "0 0 1\nCELL_DATA 0\nFIELD f 2\na 1 0 int\nb 1 0 int\nFIELD f " +
+              number(n - 2) + "\n" + lines(n - 2, [](size_t i) { return letters(i, 4) + " 1 0 int\n"; });
+     },
+     (size_t{1} << 20) + 1},
+    {".vtu: arrays of the first piece alone", read_mesh,
+     [](size_t n) {
+       return vtu_head + vtu_cell +
+              lines(
+                  8 * n,
+                  [](size_t i) { return "<DataArray type=\"Int8\" Name=\"a" + number(i) + "\">1</DataArray>\n"; }) +
+              "</CellData></Piece>" + repeated(vtu_cell + "</CellData></Piece>\n", n) +
+              "</UnstructuredGrid></VTKFile>\n";
+     },
+     10000},
+    {".vtu: packed arrays of triangles", read_mesh,
+     [](size_t n) {
+       std::string corners("\0\1\2\3", 4), offsets, types("\xA"), values;
+       put(offsets, uint32_t{4});
+       put(values, 0.5);
+       for (size_t i = 0; i < n; ++i) {
+         corners += std::string("\0\1\2", 3);
+         put(offsets, static_cast<uint32_t>(7 + 3 * i));
+         types += '\5';
+         put(values, 0.5);
+       }
+       std::string s = "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+                       "compressor=\"vtkZLibDataCompressor\"><!--" +
+                       std::string(27 * n, 'x') +
+                       "--><UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"" + number(n + 1) +
+                       "\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\">0 0 0 1 0 0 0 1 0 0 0 1"
+                       "</DataArray></Points><Cells>" +
+                       vtu_array("UInt8", "connectivity", corners) + vtu_array("UInt32", "offsets", offsets) +
+                       vtu_array("UInt8", "types", types) + "</Cells><CellData>";
+       const std::string array = vtu_array("Float64", "@", values);
+       const size_t at = array.find('@');
+       for (size_t i = 0; i < 60; ++i)
+         s += array.substr(0, at) + number(i) + array.substr(at + 1);
+       return s + "</CellData></Piece></UnstructuredGrid></VTKFile>\n";
+     },
+     300000},
     {".vtu: arrays of one cell", read_mesh,
      [](size_t n) {
        return vtu_head + vtu_cell +
@@ -341,6 +504,9 @@ const std::vector<Contrived> table = {
               lines(n, [](size_t i) { return "l" + number(i) + " X 1\n"; }) + "atom A C 0 0 0 1\n";
      },
      100000},
+    {".hier: levels without groups", read_hier,
+     [](size_t n) { return "hier 1\nlevels" + lines(n, [](size_t i) { return " l" + letters(i, 4); }) + "\n"; },
+     2000000},
     {".hier: groups of one atom", read_hier,
      [](size_t n) { return "hier 1\nlevels a\n" + repeated("a X 1\natom A C 0 0 0 1\n", n); }, 100000},
     {".hier: groups of one group, eight deep", read_hier,
@@ -463,6 +629,70 @@ const std::vector<Contrived> table = {
               lines(n, [](size_t i) { return "C 0 0 0 " + number(i) + "\n"; });
      },
      600000},
+    {".cif: a name of four letters for each atom", read_cif,
+     [](size_t n) { return cif_head + lines(n, [](size_t i) { return letters(i, 4) + " 0 0 0\n"; }); }, 1000000},
+    {".cif: a name of a residue of four letters for each atom", read_cif,
+     [](size_t n) {
+       return cif_head + "_atom_site.auth_comp_id\n" +
+              lines(n, [](size_t i) { return "C 0 0 0 " + letters(i, 4) + "\n"; });
+     },
+     1000000},
+    {".cif: a chain of four letters for each atom", read_cif,
+     [](size_t n) {
+       return cif_head + "_atom_site.auth_asym_id\n" +
+              lines(n, [](size_t i) { return "C 0 0 0 " + letters(i, 4) + "\n"; });
+     },
+     400000},
+    {".cif: assemblies", read_cif,
+     [](size_t n) {
+       return cif_head +
+              "C 0 0 0\nloop_\n_pdbx_struct_assembly_gen.assembly_id\n"
+              "_pdbx_struct_assembly_gen.oper_expression\n_pdbx_struct_assembly_gen.asym_id_list\n" +
+              lines(n, [](size_t i) { return number(i) + " 1 A\n"; });
+     },
+     400000},
+    {"BinaryCIF: atoms out of runs", read_cif, [](size_t n) { return bcif_atoms(n, "C"); }, 260000},
+    {"BinaryCIF: atoms out of runs, in a large file", read_cif,
+     [](size_t n) { return bcif_atoms(n, "C", std::string(10 * n, 'x')); }, 1000000},
+    {"BinaryCIF: more atoms than a file can hold", read_cif, [](size_t n) { return bcif_atoms(n, "C"); },
+     2000000000},
+    {"BinaryCIF: a long text for each atom", read_cif,
+     [](size_t n) { return bcif_atoms(200000, std::string(n, 'C')); }, 1000000},
+    {"BinaryCIF: columns of runs", read_cif,
+     [](size_t n) {
+       return bcif("_entity", 200000, std::vector<std::string>(n, column_of_runs("id", 0, 1, 200000)));
+     },
+     10000},
+    {"BinaryCIF: columns of a category with a long name", read_cif,
+     [](size_t n) {
+       return bcif("_" + std::string(100 * n, 'x'), 1, std::vector<std::string>(n, column_of_runs("id", 0, 0, 1)));
+     },
+     10000},
+    {"BinaryCIF: values of one byte", read_cif,
+     [](size_t n) {
+       return pack::map({{"encoder", pack::sized('\xDD', n) + std::string(n, '\xC0')},
+                         {"version", pack::text("0.3.0")},
+                         {"dataBlocks", pack::array({})}});
+     },
+     990000},
+    {"mmJSON: arrays of a category with a long name", read_cif,
+     [](size_t n) {
+       return "{\"data_x\":{\"" + std::string(100 * n, 'x') + "\":{\"a\":[0]" +
+              lines(n, [](size_t i) { return ",\"" + number(i) + "\":[0]"; }) + "}}}";
+     },
+     20000},
+    {"mmJSON: arrays of a category", read_cif,
+     [](size_t n) {
+       return "{\"data_x\":{\"entity\":{\"a\":[0]" +
+              lines(n, [](size_t i) { return ",\"" + number(i) + "\":[0]"; }) + "}}}";
+     },
+     400000},
+    {"mmJSON: categories", read_cif,
+     [](size_t n) {
+       return "{\"data_x\":{\"a\":{\"a\":[0]}" +
+              lines(n, [](size_t i) { return ",\"" + number(i) + "\":{\"a\":[0]}"; }) + "}}";
+     },
+     400000},
     {".cif: entities in turn, whose subchains are named backwards", read_cif,
      [](size_t n) {
        return "data_x\nloop_\n_entity.id\n_entity.type\n" +
@@ -626,6 +856,70 @@ TEST_CASE("tetstat: four times the regions take at most eight times the time", "
   const Growth g = growth([&] { work(2500); }, [&] { work(10000); });
   INFO(g.one << " s, " << g.four << " s");
   CHECK(g.is_linear());
+}
+
+TEST_CASE("BinaryCIF that stands for more than its bytes allow is refused with one line") {
+  const auto said = [](const std::string& bytes) {
+    std::istringstream in(bytes);
+    try {
+      read_cif(in);
+    } catch (const Error& e) {
+      CHECK(e.status == Status::bad_input);
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  CHECK(said(bcif_atoms(1000, "C")).empty());
+  const size_t bytes = bcif_atoms(1, "C").size(), most = bytes / 3 + 262144;
+  CHECK(said(bcif_atoms(most, "C")).empty());
+  CHECK(said(bcif_atoms(most + 1, "C")) == "x.cif: found a category '_atom_site' of " + number(most + 1) +
+                                               " rows in a file of " + number(bytes) +
+                                               " bytes, expected BinaryCIF");
+  const std::string long_names = bcif_atoms(1000, std::string(1000000, 'C'));
+  CHECK(said(long_names) == "x.cif: found values that are over " +
+                                number(20 * long_names.size() + (size_t{64} << 20)) +
+                                " bytes of text, 20 times the file's and 64 MiB, expected BinaryCIF");
+  CHECK(said(bcif("_atom_site", 3,
+                  {column_of_text("label_atom_id", "C", 2), column_of_runs("Cartn_x", 0, 1, 3),
+                   column_of_runs("Cartn_y", 0, 0, 3), column_of_runs("Cartn_z", 0, 0, 3)})) ==
+        "x.cif: found a column of 2 rows in a category of 3, expected BinaryCIF");
+  CHECK(said(bcif("_atom_site", 3,
+                  {column_of_text("label_atom_id", "C", 3), column_of_runs("Cartn_x", 0, 1, 4),
+                   column_of_runs("Cartn_y", 0, 0, 3), column_of_runs("Cartn_z", 0, 0, 3)})) ==
+        "x.cif: found a run longer than its column, expected BinaryCIF");
+}
+
+TEST_CASE("an assembly of mmCIF has at most 100000 operators in all, and the message lists 1000 others") {
+  const auto said = [](const std::string& rows) {
+    std::istringstream in(cif_head +
+                          "C 0 0 0\nloop_\n_pdbx_struct_assembly_gen.assembly_id\n"
+                          "_pdbx_struct_assembly_gen.oper_expression\n"
+                          "_pdbx_struct_assembly_gen.asym_id_list\n" +
+                          rows +
+                          "loop_\n_pdbx_struct_oper_list.id\n_pdbx_struct_oper_list.matrix[1][1]\n"
+                          "_pdbx_struct_oper_list.matrix[1][2]\n_pdbx_struct_oper_list.matrix[1][3]\n"
+                          "_pdbx_struct_oper_list.vector[1]\n_pdbx_struct_oper_list.matrix[2][1]\n"
+                          "_pdbx_struct_oper_list.matrix[2][2]\n_pdbx_struct_oper_list.matrix[2][3]\n"
+                          "_pdbx_struct_oper_list.vector[2]\n_pdbx_struct_oper_list.matrix[3][1]\n"
+                          "_pdbx_struct_oper_list.matrix[3][2]\n_pdbx_struct_oper_list.matrix[3][3]\n"
+                          "_pdbx_struct_oper_list.vector[3]\nX 1 0 0 0 0 1 0 0 0 0 1 0\n");
+    formats::PdbOptions options;
+    options.assembly = "1";
+    try {
+      formats::PdbHierarchy(in, "x.cif", options);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const std::string many = "(X" + repeated(",X", 299) + ")";
+  CHECK(said("1 " + many + " A\n").empty());
+  CHECK(said("1 " + many + many + " A\n").empty());
+  CHECK(said(repeated("1 " + many + many + " A\n", 2)) ==
+        "x.cif: assembly 1: found more than 100000 operators, expected fewer");
+  const std::string others = said(lines(2000, [](size_t i) { return "a" + number(i) + " X A\n"; }));
+  CHECK(others.find("expected one of a0, a1, ") != std::string::npos);
+  CHECK(others.find("a999") == others.size() - 4);
 }
 
 TEST_CASE("a .vdb of voxels or places that no structure has is refused with the rule") {

@@ -58,3 +58,22 @@ TEST_CASE("a name has one entry") {
   CHECK(names[ca] == "CA");
   CHECK(names.size() == 2);
 }
+
+TEST_CASE("names: each text has one entry and stays where it is") {
+  Names names;
+  CHECK(names[0] == "X");
+  std::vector<const std::string*> at;
+  for (int32_t i = 0; i < 5000; ++i) {
+    const std::string text = "a name of many letters, number " + std::to_string(i);
+    REQUIRE(names.add(text) == i + 1);
+    REQUIRE(names.add(text) == i + 1);
+    at.push_back(&names[i + 1]);
+  }
+  CHECK(names.size() == 5001);
+  CHECK(names.add("X") == 0);
+  const Names copy = names, moved = std::move(names);
+  for (int32_t i = 0; i < 5000; ++i) {
+    REQUIRE(&moved[i + 1] == at[i]);
+    REQUIRE(copy[i + 1] == *at[i]);
+  }
+}
