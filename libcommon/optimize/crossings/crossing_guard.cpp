@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <iterator>
+#include <utility>
 
 namespace molmesh::optimize {
 namespace {
@@ -100,8 +102,8 @@ bool CrossingGuard::fan_turns_over() const {
   return false;
 }
 
-// Whether one of the fans of near_ closes such a hole.
-bool CrossingGuard::any_fan_turns_over() const {
+// The vertices of the fans of near_ that close such a hole.
+void CrossingGuard::add_fans_that_turn_over(SmallNumbers& vertices) const {
   std::vector<std::array<int32_t, 4>> edge;  // ends, triangle, corner opposite
   std::vector<std::array<int32_t, 3>> stand; // tip, beyond, triangle
   for (size_t n = 0; n < near_.size(); ++n)
@@ -124,11 +126,13 @@ bool CrossingGuard::any_fan_turns_over() const {
     fan.push_back(near_[size_t(stand[i][2])].triangle.v);
     if (i + 1 < stand.size() && stand[i + 1][0] == stand[i][0] && stand[i + 1][1] == stand[i][1])
       continue;
-    if (fan.size() > 2 && is_inside_out(fan, stand[i][0], stand[i][1]))
-      return true;
+    if (fan.size() > 2 && is_inside_out(fan, stand[i][0], stand[i][1])) {
+      vertices(stand[i][1]);
+      for (const auto& t : fan)
+        std::for_each(t.begin(), t.end(), std::ref(vertices));
+    }
     fan.clear();
   }
-  return false;
 }
 
 // near_: what may stand in the way of any triangle of now_. Triangles of other parts change meanwhile, each in its
@@ -238,7 +242,7 @@ void CrossingGuard::note_moved() {
     changes.insert(free_triangle(m_.point, now_[i], face_[i]));
 }
 
-bool CrossingGuard::any_crosses(std::vector<int64_t> face) {
+std::vector<int32_t> CrossingGuard::find_crossing(std::vector<int64_t> face) {
   par::sort_unique(face, 1);
   clear();
   near_.clear();
@@ -253,25 +257,43 @@ bool CrossingGuard::any_crosses(std::vector<int64_t> face) {
     near_.push_back({moved_.back(), Near::Stays::yes});
     around.add(moved_.back());
   }
-  free_->any(around, [&](const FreeTriangle& other) {
-    if (Near n{other, Near::Stays::not_asked}; !has_moved.find(uint64_t(other.face)) && stays_near(n, 0))
-      near_.push_back(n);
-    return false;
-  });
+  const BoxTree moved(moved_.size(), [&](size_t n) { return moved_[n]; });
+  for (const FreeTriangles* const from : {&std::as_const(changes), free_})
+    from->any(around, [&](const FreeTriangle& other) {
+      Near n{other, from == free_ ? Near::Stays::may_be_stale : Near::Stays::not_asked};
+      if (moved.any(other, [](size_t) { return true; }) && !has_moved.find(uint64_t(other.face)) &&
+          stays_near(n, 0))
+        near_.push_back(n);
+      return false;
+    });
   const BoxTree tree(near_.size(), [&](size_t n) { return near_[n].triangle; });
+  SmallNumbers vertices;
+  const auto add = [&](const FreeTriangle& t) { std::for_each(t.v.begin(), t.v.end(), std::ref(vertices)); };
   // Each with those after it: the first of a hole's four has the others at its edges.
-  bool crossing = false;
-  for (size_t i = 0; i < face.size() && !crossing; ++i) {
+  for (size_t i = 0; i < face.size(); ++i) {
     const FreeTriangle& now = near_[i].triangle;
     beyond_.clear();
-    crossing = tree.any(
-                   now, [&](size_t n) { return crosses(now, near_[n], 0); }, i + 1) ||
-               turns_over(now.v, 0);
+    tree.any(
+        now,
+        [&](size_t n) {
+          if (crosses(now, near_[n], 0))
+            add(now), add(near_[n].triangle);
+          return false;
+        },
+        i + 1);
+    if (turns_over(now.v, 0)) {
+      add(now);
+      for (const Beyond& b : beyond_)
+        vertices(b.apex);
+    }
   }
-  if (!crossing && !any_fan_turns_over())
-    return false;
-  moved_.clear();
-  return true;
+  add_fans_that_turn_over(vertices);
+  if (!vertices.met().empty() || changes.alive() > 0) {
+    for (const FreeTriangle& t : moved_)
+      changes.insert(t);
+    moved_.clear();
+  }
+  return vertices.met();
 }
 
 FreeTriangleChanges CrossingGuard::take_changes() const {

@@ -32,12 +32,12 @@ public:
   /// Those of add_at() are known from now on as they are now.
   void note_moved();
   const std::vector<int64_t>& faces() const { return face_; } ///< of those of add_at(): 4 element + face
-  /// Whether one of the triangles on these faces, all that have moved in the part, crosses another one. If not,
-  /// they are known from now on as they are now.
-  bool any_crosses(std::vector<int64_t> face);
+  /// Vertices of the triangles on these faces that cross others, and of those others. face: all that have moved in
+  /// the part since the last call; they are known from now on as they are now.
+  std::vector<int32_t> find_crossing(std::vector<int64_t> face);
 
   FreeTriangles changes; ///< in this part, since work on it began
-  /// All changes, those of any_crosses() too.
+  /// All changes, those of find_crossing() too.
   FreeTriangleChanges take_changes() const;
 
 private:
@@ -61,7 +61,7 @@ private:
   bool turns_over(const std::array<int32_t, 3>& t, uint32_t leaving);
   bool is_inside_out(const std::vector<std::array<int32_t, 3>>& fan, int32_t tip, int32_t other) const;
   bool fan_turns_over() const;
-  bool any_fan_turns_over() const;
+  void add_fans_that_turn_over(SmallNumbers& vertices) const;
 
   const DynamicMesh& m_;
   const FreeTriangles* free_;
@@ -75,7 +75,7 @@ private:
   std::vector<EightBoxes> near_box_; ///< of these; EightBoxes::id: index into near_
   std::vector<Beyond> beyond_;
   std::vector<std::array<int32_t, 3>> opposite_; ///< now_: the apex across the edge opposite each vertex, -1: none
-  std::vector<FreeTriangle> moved_;              ///< of any_crosses(): known to cross none
+  std::vector<FreeTriangle> moved_;              ///< of find_crossing(), where none crosses
 };
 
 } // namespace molmesh::optimize

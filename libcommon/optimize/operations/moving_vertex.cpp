@@ -3,6 +3,7 @@
 #include "geom/tet_quality_simd.hpp"
 #include "optimize/acceptance/sag.hpp"
 #include <algorithm>
+#include <utility>
 
 namespace molmesh::optimize {
 
@@ -154,15 +155,14 @@ bool accept_move(Region& r, const Acceptance& accept, const std::vector<int32_t>
   if (later ? r.crossings.leave_part() : r.crossings.cross(0))
     return refuse();
   if (later) {
-    later->vertex.emplace_back(v, from);
+    later->vertex(v);
+    later->from.push_back(from);
     later->face.insert(later->face.end(), r.crossings.faces().begin(), r.crossings.faces().end());
   } else {
     r.crossings.note_moved();
   }
   for (size_t i = 0; i < star.size(); ++i) {
     Element& e = m.element[star[i]];
-    if (later)
-      later->element.emplace_back(star[i], e.q);
     e.q = now[i].q;
     r.note_change(star[i]);
     r.touch(star[i]);

@@ -1,9 +1,9 @@
 // moving_vertex.hpp — what operations share that look for the place of a vertex: its elements, a search, a step.
 #pragma once
+#include "base/open_table.hpp"
 #include "optimize/acceptance/surface_fit.hpp"
 #include "optimize/operations/operations.hpp"
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace molmesh::optimize {
@@ -30,11 +30,11 @@ float worth_at(Region& r, const Acceptance& accept, Vec3d x, float above);
 bool search_place(Region& r, const Acceptance& accept, const Vertex& vertex, Vec3d& x, float& best, float aim,
                   double length, const Fit& before, float above);
 
-/// What has moved, in order, and was before, where crossings are tested later.
+/// What has moved where crossings are tested later.
 struct Moves {
-  std::vector<std::pair<int32_t, Vec3d>> vertex;
-  std::vector<std::pair<int32_t, float>> element; ///< and its quality
-  std::vector<int64_t> face;                      ///< triangles that may cross others, 4 element + face
+  SmallNumbers vertex;
+  std::vector<Vec3d> from;   ///< of these
+  std::vector<int64_t> face; ///< triangles that may cross others, 4 element + face
 };
 /// v is at its new place: stays when every element of its star is above `above` and their deficit no more than
 /// `allowed`, and goes back to `from` otherwise. later: crossings are tested later.

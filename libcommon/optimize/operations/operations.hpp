@@ -25,7 +25,8 @@ bool is_tiny(const Region& r, int32_t e, int i, int j);
 
 /// Moves surface vertices onto the target, in order, all the way or part of it; no element falls under `floor`.
 /// floor ≥ 1 means: an element may lose at most half its quality. The part has not been changed before. Crossings
-/// are tested once, after all moves. If any is found, the moves are undone and repeated with a test after each.
+/// are tested once, after all moves. Where triangles cross, their vertices are put back and moved once more, with a
+/// test after each.
 void project_to_surface(Region& r, const Acceptance& accept, const std::vector<int32_t>& vertices, float floor);
 /// Moves a vertex of the surface or a trace towards the nearest place on the target that it finds, as far as no
 /// element falls under `floor`.

@@ -243,6 +243,44 @@ TEST_CASE("two surfaces that are drawn through each other stop before they cross
   CHECK(volume[1] > 1.2 * volume[0]);
 }
 
+TEST_CASE("where surfaces cross, only points nearby are projected anew") {
+  struct Counting : Overlapping {
+    Vec3d apart{5.1, 8.3, 8.2}; // centre of a ball that meets none of these
+    mutable int64_t asked_there = 0, asked = 0;
+    bool is_there(Vec3d p) const { return norm(p - apart) < 1.6; }
+    bool project(Vec3d& p, double reach) const override {
+      ++(is_there(p) ? asked_there : asked);
+      return Overlapping::project(p, reach);
+    }
+    bool probe(Vec3d p, double& distance, Vec3d& normal) const override {
+      if (!is_there(p))
+        return Overlapping::probe(p, distance, normal);
+      distance = norm(p - apart) - 1.25;
+      normal = (p - apart) / norm(p - apart);
+      return true;
+    }
+  };
+  const Counting target;
+  const Field balls = [&](Vec3d p) {
+    return std::exp(-0.8 * std::min(std::min(norm2(p - centre[0]), norm2(p - centre[1])) - 1.6 * 1.6,
+                                    norm2(p - target.apart) - 1.1 * 1.1));
+  };
+  const TetMesh mesh = lattice_mesh(balls, {0, 0, 0}, 0.5, 20, 1);
+  optimize::DynamicMesh m = optimize::build(mesh, 180, 1);
+  int64_t there = 0, points = 0;
+  for (size_t v = 0; v < m.point.size(); ++v)
+    if (m.vertex[v].kind == optimize::Kind::surface)
+      ++(target.is_there(m.point[v]) ? there : points);
+  REQUIRE(there > 50);
+  optimize::Schedule schedule(m, &target, 100, 1);
+  schedule.watch_crossings(optimize::Schedule::everywhere);
+  schedule.project(1, {180, 1e3, 2, 0});
+  CHECK(target.asked_there > 0.9 * double(there));
+  CHECK(target.asked_there <= there);
+  CHECK(target.asked > points); // some cross
+  CHECK(double(target.asked) < 1.5 * double(points));
+}
+
 TEST_CASE("two surfaces in different parts that move towards each other in one pass do not cross") {
   const Field balls = [](Vec3d p) {
     return std::exp(-0.8 * (std::min(norm2(p - centre[0]), norm2(p - centre[1])) - 1.6 * 1.6));
