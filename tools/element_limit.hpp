@@ -20,19 +20,15 @@ inline contour::Options::Meshed meshed_of(const std::string& region) {
                                 : contour::Options::both;
 }
 
-/// The share of a limit that a mesh may be planned to have. Above 2.5 Å a mesh is larger than its plan, by up to a
-/// third, and of the interior alone by up to three quarters, unless its cells are halved.
-inline double planned_share(double spacing, const contour::Leaves& leaves, contour::Options::Meshed meshed) {
-  const double least = meshed == contour::Options::interior ? 0.6 : 0.7;
-  return leaves.halvings > 0 ? 0.9 : std::clamp(0.9 - 0.3 * (spacing - 2.5), least, 0.9);
-}
+/// The share of a limit that a mesh is planned to have: some are larger than their plan.
+constexpr double planned_share = 0.9;
 
 /// The finest spacing, in steps of 3 %, at which that share of `most` elements is planned with the default
 /// tolerance, from those at a spacing of h; 0: none up to 20 Å.
 inline double spacing_for(const contour::Leaves& leaves, double h, contour::Options::Meshed meshed, int64_t most) {
   for (double s = 0.02; s < 20; s *= 1.03)
     if (double(contour::plan(contour::at_spacing(leaves, h, s), 0, meshed).elements) <=
-        planned_share(s, leaves, meshed) * double(most))
+        planned_share * double(most))
       return s;
   return 0;
 }

@@ -27,7 +27,7 @@ struct Chain {
   optimize::Plan improvement(contour::Options::Meshed meshed, int threads) const {
     const contour::Plan m = mesh(meshed);
     optimize::Work work{m.elements, m.triangles};
-    work.split = m.split;
+    work.across = m.across;
     work.blocks = size.blocks;
     work.threads = threads;
     return optimize::plan(work);
@@ -212,17 +212,6 @@ inline BlockGrid planned_grid(const cli::Common& o, const cli::PlanOptions& p, c
   return grid ? std::move(*grid) : BlockGrid();
 }
 
-/// For the plan of tetsmooth: as in contour::Leaves; -1 where no mesh of the grid can be made.
-inline int64_t split_cells(const BlockGrid& grid, int threads) {
-  contour::Options options;
-  options.threads = threads;
-  try {
-    return contour::LeafCounter(grid, options).split();
-  } catch (const Error&) {
-    return -1;
-  }
-}
-
 /// How a mesh is improved.
 struct Improvement {
   int iterations;
@@ -237,7 +226,7 @@ inline bool improvement_is_planned(const cli::Common& o, const cli::PlanOptions&
   optimize::Work work{elements, std::ssize(mesh.tri)};
   if (p.plan) {
     work.low = optimize::count_low(mesh, how.threads);
-    work.split = grid ? split_cells(*grid, how.threads) : -1;
+    work.across = optimize::count_across(mesh, how.threads);
   }
   work.blocks = grid ? std::ssize(grid->corner) : 0;
   work.iterations = how.iterations;

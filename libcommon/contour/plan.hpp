@@ -8,7 +8,8 @@
 
 namespace molmesh::contour {
 
-/// The octree of a mesh of both sides: elements are some 16 a leaf, on the side where the leaf lies.
+/// The octree of a mesh of both sides: elements are some 16 a leaf, on the side where the leaf lies,
+/// and more at split cells.
 struct Leaves {
   double all = 0, inside = 0; ///< inside: by the share of a leaf's corners that are
   int halvings = 0;           ///< as in Summary
@@ -63,7 +64,7 @@ Leaves expected_leaves(double spacing, int64_t active_points);
 
 struct Plan {
   int64_t elements = 0, points = 0, triangles = 0;
-  int64_t split = 0;  ///< as in Leaves
+  int64_t across = 0; ///< edges from surface to surface through a thin place
   int64_t memory = 0; ///< bytes at the peak of density2tet
   double seconds = 0; ///< of one core of the machine of docs/benchmarks.md
 };

@@ -3,32 +3,33 @@
 #include "geom/tet_quality.hpp"
 #include "par/par.hpp"
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <vector>
 
 namespace molmesh::optimize {
 namespace {
 
-/// Beside an ordinary effort: of the time that elements take, those of low quality, and searches; and bytes for
-/// each element more.
+/// Beside an ordinary effort: of the time that elements of low quality take, and edges across; and bytes for each
+/// element more.
 struct Effect {
-  double elements, low, searches, room;
+  double low, across, room;
 };
 Effect effect_of(Effort effort) {
   switch (effort) {
   case Effort::fast:
-    return {1.1, 0.35, 0.167, 0};
+    return {0.55, 0.35, 0};
   case Effort::best:
-    return {7.5, 1.4, 5, 100};
+    return {1, 3.2, 100};
   default:
-    return {1, 1, 1, 0};
+    return {1, 1, 0};
   }
 }
 
 constexpr double low_angle = 18; // degrees
-// In so many split cells of a grid some point is searched for, in a part of so many elements at most, and of more
-// some take long.
-constexpr double some_split = 20, many_split = 100, largest_part = 120e3;
+// Where so many edges go across, some point is searched for, in a part of so many elements at most.
+constexpr double some_across = 250, largest_part = 120e3;
 
 } // namespace
 
@@ -44,21 +45,43 @@ int64_t count_low(const TetMesh& mesh, int threads) {
       std::plus<int64_t>());
 }
 
+int64_t count_across(const TetMesh& mesh, int threads) {
+  using Edge = std::array<int32_t, 2>;
+  const auto edge = [](int32_t a, int32_t b) { return Edge{std::min(a, b), std::max(a, b)}; };
+  std::vector<uint8_t> of_surface(mesh.point.size());
+  std::vector<Edge> surface, all;
+  for (size_t t = 0; t < mesh.tri.size(); ++t) {
+    const Tri& v = mesh.tri[t];
+    for (size_t i = 0; i < 3; ++i) {
+      surface.push_back(edge(v[i], v[(i + 1) % 3]));
+      if (mesh.boundary[t] < Boundary::box_x0 || mesh.boundary[t] > Boundary::box_z1)
+        of_surface[v[i]] = 1;
+    }
+  }
+  for (const Tet& t : mesh.tet)
+    for (size_t i = 0; i < 4; ++i)
+      for (size_t j = 0; j < i; ++j)
+        if (of_surface[t[i]] != 0 && of_surface[t[j]] != 0)
+          all.push_back(edge(t[i], t[j]));
+  par::sort_unique(surface, threads);
+  par::sort_unique(all, threads);
+  return std::ranges::count_if(all, [&](const Edge& e) { return !std::ranges::binary_search(surface, e); });
+}
+
 Plan plan(const Work& work) {
   const auto n = static_cast<double>(work.elements), surface = static_cast<double>(work.triangles);
-  const double split = work.split < 0 ? 0.003 * surface : static_cast<double>(work.split);
-  const double low = work.low < 0 ? 0.0185 * n + 105 * split : static_cast<double>(work.low);
+  const double across = work.across < 0 ? 0.025 * surface : static_cast<double>(work.across);
+  const double low = work.low < 0 ? 0.0145 * n + 17 * across : static_cast<double>(work.low);
   const Effect e = effect_of(work.effort);
   const bool improves = work.iterations > 0;
   Plan p;
   p.elements = work.elements;
-  const double part = std::min(n, largest_part) * std::min(1., split / some_split); // copied by what searches in it
+  const double part =
+      std::min(n, largest_part) * std::min(1., across / some_across); // copied by what searches in it
   p.memory =
       std::llround(9.9e6 + 60 * n + 690 * surface + 2200 * static_cast<double>(work.blocks) +
                    (improves ? e.room * n + (work.effort == Effort::fast ? 0 : 36 * part) * work.threads : 0));
-  const double searches = 5.9e-3 * split + 5.1e-3 * std::max(0., split - many_split);
-  p.seconds =
-      0.012 + 2.6e-7 * n + (improves ? e.elements * 1.6e-7 * n + e.low * 6e-5 * low + e.searches * searches : 0);
+  p.seconds = 0.012 + 2.6e-7 * n + (improves ? e.low * 3.1e-5 * low + e.across * 1.58e-3 * across : 0);
   return p;
 }
 

@@ -11,14 +11,14 @@ using namespace molmesh;
 
 namespace {
 
-/// Atoms of 1.7 Å at random in a ball of 9 Å.
-BlockGrid ball_of_atoms(double spacing) {
+/// Atoms of 1.7 Å at random in a ball.
+BlockGrid ball_of_atoms(double spacing, double radius = 9, size_t atoms = 150) {
   Hierarchy h;
   std::mt19937 random(7);
-  std::uniform_real_distribution<double> at(-9, 9);
-  while (h.atom.size() < 150) {
+  std::uniform_real_distribution<double> at(-radius, radius);
+  while (h.atom.size() < atoms) {
     const Vec3d p{at(random), at(random), at(random)};
-    if (norm2(p) < 81) {
+    if (norm2(p) < radius * radius) {
       Atom a;
       a.center = p;
       a.radius = 1.7;
@@ -47,8 +47,22 @@ TEST_CASE("the octree tells the elements of a mesh within 15 %, and its triangle
       CAPTURE(spacing, int(meshed), plan.elements, true_elements);
       CHECK(std::abs(double(plan.elements) - true_elements) <= 0.15 * true_elements);
       CHECK(std::abs(double(plan.triangles) - true_triangles) <= 0.25 * true_triangles);
-      CHECK(plan.split == summary.split_cells);
+      CHECK(leaves.split == double(summary.split_cells));
     }
+  }
+}
+
+TEST_CASE("where a coarse grid has many split cells the plan knows of their elements") {
+  const BlockGrid grid = ball_of_atoms(2.5, 20, 1000);
+  for (const auto meshed : {contour::Options::interior, contour::Options::exterior, contour::Options::both}) {
+    contour::Options options;
+    options.meshed = meshed;
+    contour::Summary summary;
+    const TetMesh mesh = contour::contour(grid, options, summary, [](const std::string&) {});
+    const contour::Leaves leaves = contour::count_leaves(grid, options);
+    REQUIRE(leaves.split > 0.1 * leaves.surface);
+    CAPTURE(int(meshed), mesh.tet.size());
+    CHECK(double(contour::plan(leaves, 0, meshed).elements) == Approx(double(mesh.tet.size())).epsilon(0.15));
   }
 }
 

@@ -1,5 +1,6 @@
 // plan_test.cpp — a plan of the improvement grows with what makes it longer.
 #include "optimize/plan.hpp"
+#include "unit/mesh/meshes.hpp"
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -11,7 +12,7 @@ TEST_CASE(
   optimize::Work work;
   work.elements = 1'000'000;
   work.triangles = 80'000;
-  work.split = 240; // as many as usual
+  work.across = 2000; // as many as usual
   const optimize::Plan plan = optimize::plan(work);
   const auto changed = [&](auto change) {
     optimize::Work w = work;
@@ -19,10 +20,10 @@ TEST_CASE(
     return optimize::plan(w);
   };
   CHECK(plan.elements == work.elements);
-  CHECK(changed([](auto& w) { w.split = -1; }).seconds == Approx(plan.seconds));
-  CHECK(changed([](auto& w) { w.low = 0; }).seconds < 0.5 * plan.seconds);
+  CHECK(changed([](auto& w) { w.across = -1; }).seconds == Approx(plan.seconds));
+  CHECK(changed([](auto& w) { w.low = 0; }).seconds < 0.7 * plan.seconds);
   CHECK(changed([](auto& w) { w.low = 200'000; }).seconds > 2 * plan.seconds);
-  CHECK(changed([](auto& w) { w.split = 2000; }).seconds > 2 * plan.seconds);
+  CHECK(changed([](auto& w) { w.across = 8000; }).seconds > 2 * plan.seconds);
   CHECK(changed([](auto& w) { w.effort = Effort::fast; }).seconds < 0.6 * plan.seconds);
   CHECK(changed([](auto& w) { w.effort = Effort::best; }).seconds > 2 * plan.seconds);
   CHECK(changed([](auto& w) { w.threads = 9; }).memory == plan.memory + 8 * 4'320'000);
@@ -30,6 +31,18 @@ TEST_CASE(
   const optimize::Plan none = changed([](auto& w) { w.iterations = 0; });
   CHECK(none.seconds < 0.1 * plan.seconds);
   CHECK(none.memory < plan.memory);
+}
+
+TEST_CASE("edges across a layer of one element are counted, those of its surface and of walls are not") {
+  const auto layer = [](int first, int end) {
+    return testing::cubes(4, [=](Vec3i c) { return c.z >= first && c.z < end ? 1 : 2; });
+  };
+  // Of six tetrahedra a cube has a diagonal within. Edges along z and diagonals of sides are counted where no wall
+  // has them.
+  const int within = 4 * 4, of_sides = 2 * 3 * 4, along = 3 * 3;
+  CHECK(optimize::count_across(layer(1, 2), 1) == within + of_sides + along);
+  CHECK(optimize::count_across(layer(1, 2), 3) == within + of_sides + along);
+  CHECK(optimize::count_across(layer(1, 3), 1) == 0);
 }
 
 TEST_CASE("elements with angles below 18 degrees, or as far above, are low") {
