@@ -22,7 +22,7 @@ TEST_CASE(
   CHECK(plan.elements == work.elements);
   CHECK(changed([](auto& w) { w.across = -1; }).seconds == Approx(plan.seconds));
   CHECK(changed([](auto& w) { w.low = 0; }).seconds < 0.7 * plan.seconds);
-  CHECK(changed([](auto& w) { w.low = 200'000; }).seconds > 2 * plan.seconds);
+  CHECK(changed([](auto& w) { w.low = 250'000; }).seconds > 2 * plan.seconds);
   CHECK(changed([](auto& w) { w.across = 8000; }).seconds > 2 * plan.seconds);
   CHECK(changed([](auto& w) { w.effort = Effort::fast; }).seconds < 0.6 * plan.seconds);
   CHECK(changed([](auto& w) { w.effort = Effort::best; }).seconds > 2 * plan.seconds);
