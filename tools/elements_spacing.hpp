@@ -104,7 +104,7 @@ struct FinerMeshes {
 
 inline FinerMeshes finer_meshes(MeshCounter& counter, const CountedMesh& fine, const CountedMesh& fitting,
                                 int64_t elements, const std::string& region) {
-  const double coarsened = region == "interior" ? 0.9 : 0.65; // of the planned elements, at most
+  const double coarsened = region == "interior" ? 0.68 : 0.55; // of the planned elements, at most
   FinerMeshes found{fitting, {}, fitting};
   for (double s = fitting.spacing; found.finest.volume < well_shown * fine.volume && s > 1.06 * fine.spacing;) {
     s = std::round(20 * s / 1.06) / 20;
