@@ -39,8 +39,7 @@ public:
   /// As the options say; or with another tolerance and other layers.
   Leaves count() const;
   Leaves count(double adapt, int layers) const;
-  int64_t split() const { return split_; } ///< as in Leaves
-  double volume() const;                   ///< Å³ within the isosurface that the grid shows, without cavities
+  double volume() const; ///< Å³ within the isosurface that the grid shows, without cavities
 
 private:
   Leaves count(const RefineOptions& refine) const;
