@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+"""How long does tetsmooth take to find out that nothing helps?
+
+    fans.py BIN
+
+Fans: 50, 200, 1,000 and 5,000 thin elements round one edge. Microseconds of processor time for each element on one thread, with the
+start of the program, reading and writing: the least of five runs. The goal is 50, beyond 10 ms. Status 5 where it is missed."""
+import math
+import os
+import pathlib
+import resource
+import subprocess
+import sys
+import tempfile
+
+START = 0.01  # of any run (s)
+
+
+def fan(n):
+    """A .vtu of n elements round an edge from (0, 0, 0) to (0, 0, 1), whose other corners are on a circle."""
+    points = "0 0 0 0 0 1 " + " ".join(f"{math.cos(2 * math.pi * k / n)!r} {math.sin(2 * math.pi * k / n)!r} 0.5" for k in range(n))
+    corners = " ".join(f"0 1 {2 + k} {2 + (k + 1) % n}" for k in range(n))
+    array = '<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="ascii">{}</DataArray>'
+    return (f'<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian"><UnstructuredGrid>'
+            f'<Piece NumberOfPoints="{n + 2}" NumberOfCells="{n}"><Points>{array.format("Float64", "Points", 3, points)}</Points><Cells>'
+            + array.format("Int32", "connectivity", 1, corners)
+            + array.format("Int32", "offsets", 1, " ".join(str(4 * k + 4) for k in range(n)))
+            + array.format("UInt8", "types", 1, " ".join(["10"] * n))
+            + '</Cells></Piece></UnstructuredGrid></VTKFile>')
+
+
+def seconds(command):
+    def used():
+        u = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return u.ru_utime + u.ru_stime
+    before = used()
+    subprocess.run(command, check=True)
+    return used() - before
+
+
+def main():
+    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+        sys.exit(__doc__)
+    missed = False
+    with tempfile.TemporaryDirectory() as folder:
+        mesh, out = os.path.join(folder, "fan.vtu"), os.path.join(folder, "out.vtu")
+        for n in (50, 200, 1000, 5000):
+            pathlib.Path(mesh).write_text(fan(n))
+            least = min(seconds([os.path.join(sys.argv[1], "tetsmooth"), "-q", "-t", "1", mesh, "-o", out]) for _ in range(5))
+            print(f"{n:6,} elements: {1e6 * (least - START) / n:6.1f} µs each beyond {1e3 * START:.0f} ms")
+            missed = missed or least - START > 50e-6 * n
+    return 5 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
