@@ -97,12 +97,13 @@ const std::vector<Round> rounds_to_promise{{1, true, 32, true, may_leave_surface
 struct Course {
   double min_dihedral, max_dihedral; // degrees aimed at, more than is promised
   const std::vector<Round>& rounds;
-  size_t rounds_to_coarsening; // before it
-  size_t rounds_to_offset;     // after this one points are put further out, for what chords enclose less
-  size_t most_elements;        // below the goal that are searched for; 0: none but for the promise, and no points
+  size_t rounds_to_coarsening;  // before it
+  size_t rounds_to_offset;      // after this one points are put further out, for what chords enclose less
+  size_t most_elements;         // below the goal that are searched for; 0: none but for the promise, and no points
+  double last_min_dihedral = 0; // aimed at by a last search, for which elements give way that are above the promise
 };
 const Course to_fair{16.5, 154.4, rounds_to_fair, 2, 1, 0}, to_good{26, 138.5, rounds_to_good, 4, 4, 64},
-    to_best{30.65, 129.4, rounds_to_good, 4, 4, 1024};
+    to_best{30.65, 129.4, rounds_to_good, 4, 4, 1024, 29.4};
 
 const Course& course_of(Effort effort) {
   return effort == Effort::fast ? to_fair : effort == Effort::good ? to_good : to_best;
@@ -320,7 +321,9 @@ private:
       schedule_.allow(looks_for_points * elements_);
       search_points();
     }
-    search_elements(course_.most_elements);
+    search_elements(course_.most_elements, goal_);
+    if (course_.last_min_dihedral > 0)
+      search_elements(few_elements, static_cast<float>(angle_quality(course_.last_min_dihedral)));
   }
 
   // But for rounding: what is put on the isosurface may lose a millionth. What is coarsened may lose what is better
@@ -339,7 +342,7 @@ private:
         count(schedule_.run(pass_of(round)));
       }
     if (!is_promise_kept())
-      search_elements(few_elements);
+      search_elements(few_elements, goal_);
   }
 
   /// A floor for projection: with fewer rounds than all nothing repairs what falls to it.
@@ -366,9 +369,9 @@ private:
     }
   }
 
-  void search_elements(size_t most) {
+  void search_elements(size_t most, float goal) {
     for (Strategy s : for_elements) {
-      s.goal = goal_;
+      s.goal = goal;
       s.most_elements = most;
       count(schedule_.search(s));
     }
