@@ -100,7 +100,7 @@ struct Course {
   size_t rounds_to_coarsening;  // before it
   size_t rounds_to_offset;      // after this one points are put further out, for what chords enclose less
   size_t most_elements;         // below the goal that are searched for; 0: none but for the promise, and no points
-  double last_min_dihedral = 0; // aimed at by a last search, for which elements give way that are above the promise
+  double last_min_dihedral = 0; // of a last search, for which elements give way that are above the promise; 0: none
 };
 const Course to_fair{16.5, 154.4, rounds_to_fair, 2, 1, 0}, to_good{26, 138.5, rounds_to_good, 4, 4, 64},
     to_best{30.65, 129.4, rounds_to_good, 4, 4, 1024, 29.4};
