@@ -99,6 +99,16 @@ void AtomSite::check(int64_t line) {
   }
 }
 
+void AtomSite::check_memory(int64_t line) const {
+  constexpr size_t atom = 90, residue = 110, chain = 140, name = 50; // pdb2hier's bytes for each
+  const size_t takes = atom * static_cast<size_t>(rows_) + residue * residues_.size() + chain * chain_count_ +
+                       name * parsed_.structure.labels.size();
+  if (takes > most_memory_)
+    fail_input(at(line) + ": found " + std::to_string(rows_) + " atoms of " + std::to_string(residues_.size()) +
+               " residues and " + std::to_string(chain_count_) + " chains, which take over " +
+               std::to_string(most_memory_) + " bytes, expected at most 20 times the file and 64 MiB");
+}
+
 gemmi::Element AtomSite::element() {
   std::string& text = value_[symbol];
   if (const auto end = std::find_if_not(text.begin(), text.end(), is_letter); end != text.begin())
@@ -186,8 +196,10 @@ void AtomSite::open_chain() {
   const uint32_t chain = chains.index.find_or_add(
       next, hash(chain_), [&](uint32_t c) { return chains.name[c] == chain_; },
       [&](uint32_t c) { return hash(chains.name[c]); });
-  if (chain == next)
+  if (chain == next) {
     chains.name.emplace_back(label(chain_));
+    ++chain_count_;
+  }
   runs_.emplace_back(Run{static_cast<uint32_t>(model_index_), chain, static_cast<uint32_t>(residues_.size())});
 }
 
@@ -253,6 +265,7 @@ void AtomSite::row(const std::vector<std::string_view>& values, int64_t line) {
     fail_input(at(line) + ": " + std::string(e.what()).substr(0, std::string_view(e.what()).find('\n')));
   }
   ++rows_;
+  check_memory(line);
   if (!has(charge) && !has(radius))
     return;
   constexpr double none = std::numeric_limits<double>::quiet_NaN();

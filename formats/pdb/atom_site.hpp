@@ -3,6 +3,7 @@
 #include "base/index_table.hpp"
 #include "formats/pdb/chunks.hpp"
 #include "formats/pdb/element_name.hpp"
+#include "formats/pdb/gunzip.hpp"
 #include "formats/pdb/parse.hpp"
 #include "formats/pdb/structure.hpp"
 #include <array>
@@ -28,8 +29,9 @@ bool is_category_read(std::string_view name);
 /// the row.
 class AtomSite {
 public:
-  /// Charges and radii go to parsed.pqr.
-  AtomSite(Parsed& parsed, std::string file) : parsed_(parsed), file_(std::move(file)) {}
+  /// Charges and radii go to parsed.pqr. bytes: of the file, which bound what its atoms may take.
+  AtomSite(Parsed& parsed, std::string file, size_t bytes)
+      : parsed_(parsed), file_(std::move(file)), most_memory_(most_unpacked(bytes)) {}
   AtomSite(const AtomSite&) = delete;
   AtomSite& operator=(const AtomSite&) = delete;
 
@@ -40,7 +42,7 @@ public:
   /// Of the tag with this index: is its column used?
   bool uses(size_t tag) const { return used_[tag] != 0; }
   /// One value for each tag, as CIF writes it, quotes and all. Throws Error(bad_input) "FILE:LINE: …" where a value
-  /// is none.
+  /// is none, and where all that is read would take more memory than 20 times the file and 64 MiB.
   void row(const std::vector<std::string_view>& values, int64_t line);
   int64_t rows() const { return rows_; }
   /// After the last row: the models into parsed.structure, and what the file did not have into parsed.notes.
@@ -109,9 +111,11 @@ private:
   void place_residues();
   gemmi::Element element();
   void check(int64_t line);
+  void check_memory(int64_t line) const;
 
   Parsed& parsed_;
   std::string file_;
+  size_t most_memory_;
   int64_t line_ = 1, rows_ = 0;
   bool begun_ = false;
   std::vector<uint8_t> used_; ///< by tag
@@ -131,6 +135,7 @@ private:
     Chunks<pdb::Label> name;
   };
   std::vector<Chains> chains_; ///< of each model
+  size_t chain_count_ = 0;     ///< of all
   struct Run {                 ///< of residues that stand together in the file, of one chain
     uint32_t model, chain, begin;
   };

@@ -238,7 +238,7 @@ struct Taken<cif::rules::loop> {
 
 Parsed parse_mmcif(std::string_view text, const std::string& file, const std::string& assembly) {
   Parsed parsed;
-  AtomSite atoms(parsed, file);
+  AtomSite atoms(parsed, file, text.size());
   Reading document(atoms, text);
   document.source = file;
   try {
@@ -260,14 +260,14 @@ Parsed parse_mmcif(std::string_view text, const std::string& file, const std::st
 
 Parsed parse_bcif(const std::string& bytes, const std::string& file, const std::string& assembly) {
   Parsed parsed;
-  AtomSite atoms(parsed, file);
+  AtomSite atoms(parsed, file, bytes.size());
   cif::Document document = read_bcif(bytes, file, atoms);
   return from_document(document, atoms, parsed, {}, file, "BinaryCIF", assembly);
 }
 
 Parsed parse_mmjson(std::string_view text, const std::string& file, const std::string& assembly) {
   Parsed parsed;
-  AtomSite atoms(parsed, file);
+  AtomSite atoms(parsed, file, text.size());
   cif::Document document = read_mmjson(text, file, atoms);
   return from_document(document, atoms, parsed, {}, file, "mmJSON", assembly);
 }

@@ -42,6 +42,7 @@ public:
   Labels(Labels&&) = default;
   Labels& operator=(Labels&&) = default;
   Label add(std::string_view text) { return text.empty() ? Label() : Label(all_[all_.add(text)]); }
+  size_t size() const { return static_cast<size_t>(all_.size()); }
 
 private:
   Names all_;
