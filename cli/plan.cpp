@@ -121,11 +121,40 @@ int64_t PlanOptions::memory_limit() const {
   return granted >= 0 || !machine_limits ? granted : machine_memory();
 }
 
+Speeds speeds_of(const std::string& text, const std::string& where) {
+  std::vector<double> speed;
+  const char *at = text.data(), *const end = at + text.size();
+  for (bool more = true; more;) {
+    double& x = speed.emplace_back();
+    const auto [stopped, error] = std::from_chars(at, end, x, std::chars_format::fixed);
+    more = stopped != end && *stopped == ',';
+    if (error != std::errc() || !(x > 0) || !std::isfinite(x) || (stopped != end && !more)) {
+      speed.clear();
+      break;
+    }
+    at = stopped + 1;
+  }
+  if (speed.size() == 1)
+    return {speed[0], speed[0], speed[0]};
+  if (speed.size() != 3)
+    fail(Status::usage, where + ": found '" + text +
+                            "', expected a speed > 0, or those of hier2density, density2tet " +
+                            "and tetsmooth such as 1.2,1,0.8");
+  return {speed[0], speed[1], speed[2]};
+}
+
+Speeds PlanOptions::speeds() const {
+  if (speed != "auto")
+    return speeds_of(speed, "--speed");
+  const char* const measured = std::getenv("MOLMESH_SPEED");
+  return measured && *measured ? speeds_of(measured, "MOLMESH_SPEED") : Speeds{};
+}
+
 void add_plan_options(Table& table, PlanOptions& o) {
   table.group("plan");
   table.add("--plan", o.plan, "tell what the run will take, and do not run");
   table.add("--json", o.json, "the plan as one JSON object (formats/report/REPORTv1.md)").needs({"plan"});
-  table.add("--speed", o.speed, "speed of a core, for seconds; docs/benchmarks.md: 1").positive().needs({"plan"});
+  table.add("--speed", o.speed, "of a core, for seconds: 2, by stage 1,2,0.5").unit("SPEED").needs({"plan"});
   table
       .add("--max-mem", o.max_mem,
            o.machine_limits ? "memory at most: 2G, none; auto: granted, or all"

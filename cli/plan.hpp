@@ -9,16 +9,26 @@
 
 namespace molmesh::cli {
 
+/// Of a core, for each stage of the chain, where the machine of docs/benchmarks.md has 1.
+struct Speeds {
+  double hier2density = 1, density2tet = 1, tetsmooth = 1;
+};
+
+/// "2" for all, or "1.2,0.9,0.8" in the order of the chain, each > 0. Throws Error(usage) "WHERE: …".
+Speeds speeds_of(const std::string& text, const std::string& where);
+
 /// The options --plan, --json, --speed and --max-mem. A program's Options derives from it beside Common.
 struct PlanOptions {
   bool plan = false, json = false;
-  double speed = 1; ///< of a core, where the docs' machine has 1
+  std::string speed = "auto";
   std::string max_mem = "auto";
   bool machine_limits = false; ///< where nothing is granted
 
   /// Bytes that the run may take; -1: no limit is known. auto: what the batch system grants, else, with
   /// machine_limits, what the machine has.
   int64_t memory_limit() const;
+  /// auto: what MOLMESH_SPEED says, else 1.
+  Speeds speeds() const;
 };
 
 void add_plan_options(Table& table, PlanOptions& o);

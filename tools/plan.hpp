@@ -122,6 +122,7 @@ inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, 
     return false;
   }
   const Vec3i n = plan.size.points;
+  const cli::Speeds speeds = p.speeds();
   cli::Value v{{"atoms", atoms},
                {"spacing", plan.size.spacing},
                {"margin", plan.margin},
@@ -129,7 +130,7 @@ inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, 
                {"active_points", own.active_points},
                {"blocks", own.blocks},
                {"memory_bytes", cost.memory},
-               {"seconds", cost.seconds / p.speed}};
+               {"seconds", cost.seconds / speeds.hier2density}};
   Options both;
   both.meshed = Options::both;
   both.threads = d.threads;
@@ -137,8 +138,8 @@ inline bool density_is_planned(const cli::Common& o, const cli::PlanOptions& p, 
   const Chain chain = counted.at(plan.size.spacing);
   for (const auto& [region, meshed] :
        {std::pair{"interior", Options::interior}, std::pair{"both", Options::both}}) {
-    add_mesh(v["density2tet"][region], chain.mesh(meshed), p.speed);
-    add_improvement(v["tetsmooth"][region], chain.improvement(meshed, d.threads), p.speed);
+    add_mesh(v["density2tet"][region], chain.mesh(meshed), speeds.density2tet);
+    add_improvement(v["tetsmooth"][region], chain.improvement(meshed, d.threads), speeds.tetsmooth);
   }
   cli::write_plan(o, p, run, v);
   return true;
@@ -186,14 +187,15 @@ bool mesh_is_planned(const cli::Common& o, const cli::PlanOptions& p, const cont
     refuse(chain);
     return false;
   }
+  const cli::Speeds speeds = p.speeds();
   cli::Value v{{"spacing", size.spacing},
                {"active_points", size.active_points},
                {"blocks", size.blocks},
                {"leaves", std::llround(chain.leaves.all)}};
   if (most_elements > 0)
     v.add({{"adapt", fit.fineness.adapt}, {"layers", fit.fineness.layers}});
-  add_mesh(v, chain.mesh(options.meshed), p.speed);
-  add_improvement(v["tetsmooth"], chain.improvement(options.meshed, options.threads), p.speed);
+  add_mesh(v, chain.mesh(options.meshed), speeds.density2tet);
+  add_improvement(v["tetsmooth"], chain.improvement(options.meshed, options.threads), speeds.tetsmooth);
   cli::write_plan(o, p, run, v);
   return true;
 }
@@ -236,7 +238,7 @@ inline bool improvement_is_planned(const cli::Common& o, const cli::PlanOptions&
   if (p.plan) {
     cli::Value v;
     v["elements_before"] = elements;
-    add_improvement(v, plan, p.speed);
+    add_improvement(v, plan, p.speeds().tetsmooth);
     cli::write_plan(o, p, run, v);
     return true;
   }

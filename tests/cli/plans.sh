@@ -34,6 +34,19 @@ near "tetsmooth, elements before" "$(field smooth.json elements_before)" "$true"
 tetsmooth --plan --density a.vdb a.tet.vtu | grep -q '^memory '
 [ ! -e out.vtu ]
 
+# Seconds follow the speed of each stage, of which molmesh-array measures three.
+unset MOLMESH_SPEED
+seconds=$(field plan.json seconds) low=$(field plan.json density2tet both seconds) last=$(field plan.json tetsmooth both seconds)
+MOLMESH_SPEED=2,4,0.5 hier2density --plan --json --spacing 0.5 a.hier -o fast.json
+near "hier2density, twice as fast" "$(field fast.json seconds)" "$seconds" 0.499 0.501
+near "density2tet, four times as fast" "$(field fast.json density2tet both seconds)" "$low" 0.249 0.251
+near "tetsmooth, half as fast" "$(field fast.json tetsmooth both seconds)" "$last" 1.99 2.01
+MOLMESH_SPEED=2,4,0.5 hier2density --plan --json --speed 1 --spacing 0.5 a.hier -o plain.json
+near "as given" "$(field plain.json seconds)" "$seconds" 1 1
+line=$(molmesh-array --measure-speed --hier2density '--spacing 1' "$source/tests/data/1l2y.pqr")
+echo "$line"
+[[ $line =~ ^MOLMESH_SPEED=[0-9.]+,[0-9.]+,[0-9.]+$ ]] && env "$line" hier2density --plan a.hier >/dev/null
+
 # Refused beforehand; the spacing that the message names fits.
 if density2tet -q --region both --max-mem 100M a.vdb -o out.vtu 2>message; then echo "FAILED: 100M are enough?"; exit 1; fi
 cat message

@@ -16,6 +16,19 @@ TEST_CASE("a size of memory is a number with K, M, G or T, in powers of 1024") {
     CHECK_THROWS_AS(cli::bytes_of(text), Error);
 }
 
+TEST_CASE("speeds are one for all stages, or one for each") {
+  const cli::Speeds one = cli::speeds_of("0.5", "--speed"), each = cli::speeds_of("1.2,0.9,2", "--speed");
+  CHECK(one.hier2density == 0.5);
+  CHECK(one.density2tet == 0.5);
+  CHECK(one.tetsmooth == 0.5);
+  CHECK(each.hier2density == 1.2);
+  CHECK(each.density2tet == 0.9);
+  CHECK(each.tetsmooth == 2);
+  for (const char* text :
+       {"", "x", "0", "-1", "inf", "nan", "1,", ",1", "1,2", "1,2,3,4", "1,2,0", "1;2;3", "1,2,3 "})
+    CHECK_THROWS_AS(cli::speeds_of(text, "--speed"), Error);
+}
+
 TEST_CASE("sizes are shown with three digits, in powers of ten") {
   CHECK(cli::size_text(999) == "999 B");
   CHECK(cli::size_text(531'400'000) == "531 MB");
