@@ -154,7 +154,7 @@ void add_plan_options(Table& table, PlanOptions& o) {
   table.group("plan");
   table.add("--plan", o.plan, "tell what the run will take, and do not run");
   table.add("--json", o.json, "the plan as one JSON object (formats/report/REPORTv1.md)").needs({"plan"});
-  table.add("--speed", o.speed, "of a core, for seconds: 2, by stage 1,2,0.5").unit("SPEED").needs({"plan"});
+  table.add("--speed", o.speed, "speed of a core, for seconds: 2; by stage: 1,2,0.5").unit("SPEED").needs({"plan"});
   table
       .add("--max-mem", o.max_mem,
            o.machine_limits ? "memory at most: 2G, none; auto: granted, or all"
