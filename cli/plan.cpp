@@ -122,25 +122,11 @@ int64_t PlanOptions::memory_limit() const {
 }
 
 Speeds speeds_of(const std::string& text, const std::string& where) {
-  std::vector<double> speed;
-  const char *at = text.data(), *const end = at + text.size();
-  for (bool more = true; more;) {
-    double& x = speed.emplace_back();
-    const auto [stopped, error] = std::from_chars(at, end, x, std::chars_format::fixed);
-    more = stopped != end && *stopped == ',';
-    if (error != std::errc() || !(x > 0) || !std::isfinite(x) || (stopped != end && !more)) {
-      speed.clear();
-      break;
-    }
-    at = stopped + 1;
-  }
-  if (speed.size() == 1)
-    return {speed[0], speed[0], speed[0]};
-  if (speed.size() != 3)
-    fail(Status::usage, where + ": found '" + text +
-                            "', expected a speed > 0, or those of hier2density, density2tet " +
-                            "and tetsmooth such as 1.2,1,0.8");
-  return {speed[0], speed[1], speed[2]};
+  const bool one_for_all = text.find(',') == std::string::npos;
+  const std::vector<double> speed = numbers(where, text, one_for_all ? 1 : 3);
+  if (!std::all_of(speed.begin(), speed.end(), [](double x) { return x > 0; }))
+    fail(Status::usage, where + ": found '" + text + "', expected speeds > 0");
+  return {speed.front(), speed[speed.size() / 2], speed.back()};
 }
 
 Speeds PlanOptions::speeds() const {
@@ -148,6 +134,12 @@ Speeds PlanOptions::speeds() const {
     return speeds_of(speed, "--speed");
   const char* const measured = std::getenv("MOLMESH_SPEED");
   return measured && *measured ? speeds_of(measured, "MOLMESH_SPEED") : Speeds{};
+}
+
+void PlanOptions::check() const {
+  memory_limit();
+  if (plan)
+    speeds();
 }
 
 void add_plan_options(Table& table, PlanOptions& o) {

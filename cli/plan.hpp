@@ -29,6 +29,8 @@ struct PlanOptions {
   int64_t memory_limit() const;
   /// auto: what MOLMESH_SPEED says, else 1.
   Speeds speeds() const;
+  /// Throws Error(usage) where a text is no size or no speed: run_main() calls it.
+  void check() const;
 };
 
 void add_plan_options(Table& table, PlanOptions& o);

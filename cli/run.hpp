@@ -99,12 +99,18 @@ int run_program(Table& table, Common& options, int argc, char** argv, const std:
                 const std::function<Status(Run&)>& work);
 
 /// describe(table, options) declares the program's own options; work(options, run) works and returns a Status.
+/// Before it options.check(), where there is one, throws what the table cannot say of them.
 template <class Options, class Describe, class Work>
 int run_main(const char* program, const char* purpose, int argc, char** argv, Describe describe, Work work) {
   Options options;
   Table table(program, purpose);
   return run_program(
-      table, options, argc, argv, [&] { describe(table, options); }, [&](Run& run) { return work(options, run); });
+      table, options, argc, argv, [&] { describe(table, options); },
+      [&](Run& run) {
+        if constexpr (requires { options.check(); })
+          options.check();
+        return work(options, run);
+      });
 }
 
 } // namespace molmesh::cli

@@ -194,7 +194,7 @@ def prepare(page, folder):
         for name in FILAMENT MEMBRANE PAIR; do printf 'join 1\\npiece MODEL.hier\\npiece OTHER.hier\\n' >$name.join; done
         printf 'join 1\\npiece MODEL.vdb\\npiece MODEL.vdb translate=60,0,0\\n' >LATTICE.join
         for name in A MAP ALL PORE; do cp MODEL.vdb $name.vdb; done
-        for i in 1 2; do hier2density -q --spacing 2 --tile $i/2 MODEL.hier -o TILE-$i.vdb; done
+        for i in 1 2; do hier2density -q --spacing 2 --tile $i/2 MODEL.hier -o BIG.$i-of-2.tile; done
         tetconvert -q 1tii.vtu -o PART.msh""", folder, f"{page}: setup")
     subprocess.run(["python3", "-c", CLOUD], cwd=folder, env=ENVIRONMENT, capture_output=True)
 

@@ -50,7 +50,7 @@ inline void describe(cli::Table& t, Options& o) {
       {"densityjoin --piece A.vdb --piece 'A.vdb translate=0,0,60' -o two.vdb",
        "a density and a copy 60 Å above it"},
       {"densityjoin LATTICE.join -o lattice.vdb", "by a plan"},
-      {"densityjoin --tiles BIG.*-of-16.tile -o big.vdb", "the tiles of one density"},
+      {"densityjoin --tiles BIG.*.tile -o big.vdb", "the tiles of one density"},
       {"densityjoin --combine max --piece MAP.vdb --piece MODEL.vdb -o both.vdb", "a map and the model in it"},
       {"densityjoin --piece ALL.vdb --piece 'PORE.vdb combine=subtract' -o open.vdb", "one body without another"}};
   t.page.files = {{".join", "plan of pieces, read: formats/plan/PLAN.md"},

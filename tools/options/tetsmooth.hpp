@@ -44,7 +44,7 @@ inline void describe(cli::Table& t, Options& o) {
   t.add("--parts", o.parts, "parts (METIS) that the elements are numbered by in the output, one an element at most")
       .within(1, 1000000);
   t.group("quality");
-  cli::add_dihedral_limits(t, o.min_dihedral, o.max_dihedral, ", and an aim up to 34 and 125");
+  cli::add_dihedral_limits(t, o.min_dihedral, o.max_dihedral, ", and sought up to 34 and 125");
   describe_mesh_input(t, o.mesh);
   cli::add_plan_options(t, o);
   t.page.about =

@@ -36,6 +36,13 @@ constexpr bool sanitized = false;
 constexpr bool sanitized = false;
 #endif
 
+/// Memory and seconds would be the sanitizer's, not the code's.
+bool measures_sanitizer() {
+  if (sanitized)
+    WARN("skipped: built with a sanitizer");
+  return sanitized;
+}
+
 using Reader = std::function<void(std::istream&)>;
 
 /// Reads, whether it is refused or not. Any end but those is none.
@@ -825,10 +832,8 @@ const std::vector<Contrived> table = {
 } // namespace
 
 TEST_CASE("readers: memory is at most 20 times the bytes of the file beyond 64 MB, whatever it says", "[slow]") {
-  if (sanitized) {
-    WARN("skipped: a sanitizer's memory is not the reader's");
+  if (measures_sanitizer())
     return;
-  }
   for (const Contrived& c : table) {
     const std::string bytes = c.bytes(c.size);
     const int64_t before = peak([] {}), after = peak([&] { read_or_refuse(c.read, bytes); });
@@ -838,10 +843,8 @@ TEST_CASE("readers: memory is at most 20 times the bytes of the file beyond 64 M
 }
 
 TEST_CASE("readers: sixteen times the file is at most 64 times the time", "[slow]") {
-  if (sanitized) {
-    WARN("skipped: a sanitizer's time is not the reader's");
+  if (measures_sanitizer())
     return;
-  }
   for (const Contrived& c : table) {
     const std::string small = c.bytes(c.size / 16), large = c.bytes(c.size);
     const Growth g = growth([&] { read_or_refuse(c.read, small); }, [&] { read_or_refuse(c.read, large); });
@@ -851,10 +854,8 @@ TEST_CASE("readers: sixteen times the file is at most 64 times the time", "[slow
 }
 
 TEST_CASE("tetstat: sixteen times the regions take at most 64 times the time", "[slow]") {
-  if (sanitized) {
-    WARN("skipped: a sanitizer's time is not the program's");
+  if (measures_sanitizer())
     return;
-  }
   const auto report = [](int n) {
     TetMesh m; // tetrahedra apart, each a region
     for (int32_t i = 0; i < n; ++i) {
