@@ -201,7 +201,7 @@ Plan plan(const Leaves& leaves, int64_t blocks, Options::Meshed meshed) {
   p.triangles = std::llround(triangles);
   p.across = std::llround(across_split * leaves.split);
   const double bytes = 6000 * double(blocks) + 500 * leaves.all + 17.3 * elements + 250 * triangles;
-  p.memory = std::llround(9.4e6 + bytes + 0.32 * std::min(bytes, 22e6)); // small meshes fit large pages less well
+  p.memory = std::llround(9.9e6 + bytes + 0.32 * std::min(bytes, 22e6)); // small meshes fit large pages less well
   const double far = 0.6 + 0.4 * std::min(1., leaves.all / 45'000);      // small meshes stay in the cache
   p.seconds =
       0.008 + far * (2e-6 * leaves.all + 1.6e-7 * elements) + 0.0012 * leaves.split; // some 130 points relaxed
