@@ -45,14 +45,17 @@ MOLMESH_SPEED=2,4,0.5 hier2density --plan --json --speed 1 --spacing 0.5 a.hier 
 near "as given" "$(field plain.json seconds)" "$seconds" 1 1
 line=$(molmesh-array --measure-speed --hier2density '--spacing 1' "$source/tests/data/1l2y.pqr")
 echo "$line"
+[[ $line =~ ^MOLMESH_SPEED=[0-9.]+,[0-9.]+,[0-9.]+$ ]]
+env "$line" hier2density --plan a.hier >/dev/null
 if molmesh-array --wrong 2>message; then echo "FAILED: --wrong is an option?"; exit 1; fi
-[ "$(wc -l <message)" = 1 ] && grep -q "unrecognized arguments: --wrong" message
-[[ $line =~ ^MOLMESH_SPEED=[0-9.]+,[0-9.]+,[0-9.]+$ ]] && env "$line" hier2density --plan a.hier >/dev/null
+[ "$(wc -l <message)" = 1 ]
+grep -q "unrecognized arguments: --wrong" message
 
 # Refused beforehand; the spacing that the message names fits.
 if density2tet -q --region both --max-mem 100M a.vdb -o out.vtu 2>message; then echo "FAILED: 100M are enough?"; exit 1; fi
 cat message
-[ "$(wc -l <message)" = 1 ] && [ ! -e out.vtu ]
+[ "$(wc -l <message)" = 1 ]
+[ ! -e out.vtu ]
 spacing=$(grep -oP -- '--spacing \K[0-9.]+' message)
 hier2density -q --spacing "$spacing" a.hier -o b.vdb
 density2tet -q --region both --max-mem 100M b.vdb -o b.tet.vtu --report t.json
