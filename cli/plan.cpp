@@ -126,7 +126,7 @@ Speeds speeds_of(const std::string& text, const std::string& where) {
   const std::vector<double> speed = numbers(where, text, one_for_all ? 1 : 3);
   if (!std::all_of(speed.begin(), speed.end(), [](double x) { return x > 0; }))
     fail(Status::usage, where + ": found '" + text + "', expected speeds > 0");
-  return {speed.front(), speed[speed.size() / 2], speed.back()};
+  return one_for_all ? Speeds{speed[0], speed[0], speed[0]} : Speeds{speed[0], speed[1], speed[2]};
 }
 
 Speeds PlanOptions::speeds() const {
