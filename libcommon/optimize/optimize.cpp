@@ -149,18 +149,23 @@ constexpr double size_of_many = 0.35;
 
 using enum Moves;
 constexpr Scope of_points = Scope::points, of_elements = Scope::elements;
-const Strategy first{of_points, careful, relaxed}, climb{of_points, bold, relaxed, 0.5, 1, 300},
-    climb_in_necks{of_points, necks, relaxed, 0.5, 1, 300}, bend{of_points, bending, relaxed, 0.5, 1, 2000},
+const Strategy first{of_points, bold, relaxed}, climb{of_points, necks, relaxed, 0.5, 1, 300},
     walk{of_points, bending, relaxed, 0.5, 1, 2000, 3000}, via_70{of_points, bending, bent, 1, 0.7F, 2000, 3000},
     via_50{of_points, bending, bent, 1, 0.5F, 2000, 3000};
-// Last by way of a lower goal.
-const std::vector<Strategy> for_points{
-    first, climb, climb_in_necks, bend, {of_points, bending, bent, 0.5, 1, 2000}, walk, via_70, via_50};
+// A surface that may bend soon gives way. A wider guard brings back what is left, and last a lower goal.
+const std::vector<Strategy> for_points{first,
+                                       {of_points, bending, relaxed, 0.5, 1, 300},
+                                       {of_points, bending, bent, 0.5, 1, 300},
+                                       {of_points, bending, bent, 0.5, 1, 2000},
+                                       walk,
+                                       via_70,
+                                       via_50};
 // Where the mesh ends in the surface, which then must not bend as it likes, a wider guard comes last, in larger
 // parts, either measure of the deficit first for both; before that points come back by way of a lower goal.
 const Strategy wide_climb{of_points, necks, bent, 1, 1, 300}, wide_walk{of_points, bending, bent, 1, 1, 2000, 3000};
-const std::vector<Strategy> for_points_at_end{first,     climb,     climb_in_necks, bend, via_70,
-                                              via_70,    via_50,    via_50,         walk, wide_climb,
+const std::vector<Strategy> for_points_at_end{first,     climb,     {of_points, bending, relaxed, 0.5, 1, 2000},
+                                              via_70,    via_70,    via_50,
+                                              via_50,    walk,      wide_climb,
                                               wide_walk, wide_walk, wide_climb};
 // For the last elements below the goal.
 const std::vector<Strategy> for_elements{{of_elements, bold, relaxed, 0.5, 1, 300},

@@ -19,9 +19,9 @@ struct Effect {
 Effect effect_of(Effort effort) {
   switch (effort) {
   case Effort::fast:
-    return {0.55, 0.35, 0};
+    return {0.3, 0.5, 0};
   case Effort::best:
-    return {1, 3.2, 100};
+    return {1.2, 5, 100};
   default:
     return {1, 1, 0};
   }
@@ -81,8 +81,7 @@ Plan plan(const Work& work) {
   p.memory =
       std::llround(9.9e6 + 60 * n + 690 * surface + 2200 * static_cast<double>(work.blocks) +
                    (improves ? e.room * n + (work.effort == Effort::fast ? 0 : 36 * part) * work.threads : 0));
-  // The rounds and searches, some thirty, look through the mesh each: 0.058 s of small ones.
-  p.seconds = 0.012 + 2.5e-7 * n + (improves ? e.low * (0.058 + 2.2e-5 * low) + e.across * 1.6e-3 * across : 0);
+  p.seconds = 0.022 + 2.5e-7 * n + (improves ? e.low * 5e-5 * low + e.across * 8e-4 * across : 0);
   return p;
 }
 

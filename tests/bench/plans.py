@@ -4,11 +4,12 @@
 DATA holds typical/, paper/ and large/. Each program's plan is its own, of what it reads. --spacing H (1 by default),
 --region R, --most N: meshes planned larger are left out; --improve N: tetsmooth up to N elements; --raw FILE: all figures, a line of JSON a structure.
 
-Memory is that of the run reports. Seconds are those of the processor, put right for what else the machine does: a small
-run before and after each tells how fast the machine is just then, and the fastest of all is the idle machine (--idle
-SECONDS where that is known). Of runs under half a second there are three: the least seconds, and the median of the memory.
+Memory is that of the run reports. Seconds are those of the processor, beside a small run before and after each run, since
+machines do not keep their speed: the median of three such ratios for runs up to 3 s, times the median of the small runs.
+The plans are those of a processor of speed 1; what molmesh-array --measure-speed would measure, the geometric mean of planned
+over true for a few structures (--calibrate NAMES), is taken from the same runs and divides them.
 """
-import argparse, glob, json, os, subprocess, tempfile
+import argparse, glob, json, os, statistics, subprocess, tempfile
 
 
 def once(command):
@@ -23,27 +24,27 @@ def main():
     p.add_argument("bin"), p.add_argument("data"), p.add_argument("out")
     p.add_argument("--spacing", default="1"), p.add_argument("--region", default="both")
     p.add_argument("--most", type=float, default=6e6), p.add_argument("--improve", type=float, default=1.5e6)
-    p.add_argument("--idle", type=float, default=float("inf")), p.add_argument("--raw", default=os.devnull)
+    p.add_argument("--calibrate", default="1bna,1ubq,1j59,2por,1acj"), p.add_argument("--raw", default=os.devnull)
     o = p.parse_args()
     tool = lambda name: [os.path.join(o.bin, name), "-q", "-t", "1"]
     work = tempfile.mkdtemp()
     at = lambda name: os.path.join(work, name)
     read = lambda name: json.load(open(at(name)))
-    reference, speeds = [], []
+    reference, small_runs = [], []
 
-    def speed():
-        speeds.append(once(reference))
-        return speeds[-1]
+    def small():
+        small_runs.append(once(reference))
+        return small_runs[-1]
 
     def run(command, output):
-        """(bytes, seconds, seconds of the reference around it), None where it fails."""
-        command, before, runs = command + ["-o", at(output), "--report", at("r.json")], speed(), []
-        while len(runs) < (3 if not runs or runs[0][0] < 3 else 1):
-            took = once(command)
+        """(bytes, seconds over those of the small run), None where it fails."""
+        command, runs = command + ["-o", at(output), "--report", at("r.json")], []
+        while len(runs) < (3 if not runs or took < 3 else 1):
+            before, took = small(), once(command)
             if took is None:
                 return None
-            runs.append((took, read("r.json")["peak_rss_bytes"]))
-        return sorted(r[1] for r in runs)[len(runs) // 2], min(runs)[0], (before + speed()) / 2
+            runs.append((read("r.json")["peak_rss_bytes"], 2 * took / (before + small())))
+        return [statistics.median(figures) for figures in zip(*runs)]
 
     rows, seen = [], set()
     files = [f for folder in ("typical", "paper", "large") for f in glob.glob(os.path.join(o.data, folder, "*"))]
@@ -51,6 +52,7 @@ def main():
     made = [files[0]] + [at("ref" + ending) for ending in (".hier", ".vdb", ".vtu")]
     for name, before, after in zip(["pdb2hier", "hier2density", "density2tet"], made, made[1:]):
         once(tool(name) + [before, "-o", after])
+    os.environ["MOLMESH_SPEED"] = "1"
     reference += tool("tetsmooth") + ["--effort", "fast", "--density", at("ref.vdb"), at("ref.vtu"), "-o", os.devnull]
     for file in files:
         name = os.path.basename(file).split(".")[0]
@@ -82,8 +84,13 @@ def main():
         print(json.dumps(rows[-1]), file=open(o.raw, "a"))
         print(name, elements, took, flush=True)
 
-    idle = min(speeds + [o.idle])
     programs = ["hier2density", "density2tet", "tetsmooth", "--effort fast", "--effort best"]
+    second = statistics.median(small_runs)
+    ratio = lambda r, key: r["planned"][key][1] / (r["took"][key][1] * second)
+    calibrating = [r for r in rows if r["name"] in o.calibrate.split(",")]
+    speeds = [statistics.geometric_mean(ratio(r, key) for r in calibrating) for key in programs[:3]]
+    speed_of = dict(zip(programs, speeds + 2 * speeds[2:]))
+    print("MOLMESH_SPEED=" + ",".join("%.3g" % s for s in speeds))
     head = ["structure", "atoms", "elements", "elements, from atoms", "from the grid"]
     head += ["memory: " + programs[0]] + programs[1:] + ["seconds: " + programs[0]] + programs[1:] + ["seconds to plan"]
     with open(o.out, "w") as out:
@@ -92,9 +99,9 @@ def main():
         for r in sorted(rows, key=lambda r: r["elements"]):
             cells = [r["name"], "{:,}".format(r["atoms"]), "{:,}".format(r["elements"])]
             cells += ["%.2f" % (r[k] / r["elements"]) for k in ("from_atoms", "from_grid")]
-            of = lambda key, true: "%.2f" % true(r["planned"][key], r["took"][key]) if r["took"].get(key) else "–"
-            cells += [of(k, lambda p, t: p[0] / t[0]) for k in programs]
-            cells += [of(k, lambda p, t: p[1] * t[2] / (t[1] * idle)) for k in programs]
+            of = lambda key, figure: "%.2f" % figure(key) if r["took"].get(key) else "–"
+            cells += [of(k, lambda k: r["planned"][k][0] / r["took"][k][0]) for k in programs]
+            cells += [of(k, lambda k: ratio(r, k) / speed_of[k]) for k in programs]
             out.write("| " + " | ".join(cells + ["%.1f" % r["planning"]]) + " |\n")
 
 

@@ -236,8 +236,6 @@ Counts Schedule::search(const Strategy& s) {
       places[part].push_back(v);
   std::vector<uint8_t> failed(places.size());
   failed_searches_.begin(s);
-  Strategy bold = s;
-  bold.moves = Moves::bold;
   const Counts counts = for_parts(items, parts_of(items),
                                   [&](Region& r, std::vector<int32_t>& list) {
                                     const auto part = static_cast<size_t>(r.part());
@@ -247,12 +245,10 @@ Counts Schedule::search(const Strategy& s) {
                                         touched = std::max(touched, m_.touched[v]);
                                     if (failed_searches_.knows(places[part], s, touched))
                                       return;
-                                    const bool searched = s.moves == Moves::necks &&
-                                                          failed_searches_.knows(places[part], bold, touched);
                                     std::vector<int32_t> slots = list;
                                     slots.insert(slots.end(), r.room.element.begin(), r.room.element.end());
                                     r.time = time;
-                                    search_part(r, slots, s, searched);
+                                    search_part(r, slots, s);
                                     failed[part] = r.counts.total() == 0 && r.looks_left();
                                   },
                                   {.slots_per_item = 0.25,

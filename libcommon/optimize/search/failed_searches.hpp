@@ -28,12 +28,8 @@ public:
              return touched < tried.second && tried.first == s;
            });
   }
-  void note(const std::vector<int32_t>& points, Strategy s, int32_t time) {
+  void note(const std::vector<int32_t>& points, const Strategy& s, int32_t time) {
     when_[points].emplace_back(s, time);
-    if (s.moves == Moves::necks) { // the bold moves come first
-      s.moves = Moves::bold;
-      when_[points].emplace_back(s, time);
-    }
   }
 
 private:

@@ -68,14 +68,12 @@ void LocalSearch::fit_bent() {
   fit_listed(a);
 }
 
-void LocalSearch::repair(int rounds, double hopeless) {
+void LocalSearch::repair(int rounds) {
   Acceptance a = accept_;
   a.may_bend = leeway.may_bend;
   a.off_target = leeway.off_target;
   // After two without effect, one of each measure, all are.
   for (int k = 0, idle = 0; k < rounds && idle < 2 && r_.looks_left(); ++k) {
-    if (k > 0 && k * cost() > hopeless)
-      return;
     const int64_t done = r_.counts.total();
     a.worst_first = (k % 2 == 0) == accept_.worst_first;
     std::vector<int32_t> list = below_goal_();

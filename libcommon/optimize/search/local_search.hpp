@@ -32,9 +32,7 @@ public:
   Acceptance first_step() const;
   /// What has changed since Region::changed was cleared is made to fit the target, elements down to the floor.
   void fit_changed();
-  /// Elements are brought over the goal. Given up where cost() is over `hopeless` after the first round, over half
-  /// of it after the second, and so on.
-  void repair(int rounds = 6, double hopeless = 1e30);
+  void repair(int rounds = 6); ///< elements are brought over the goal
   /// Bent triangles are made to fit where no element falls under the goal.
   void fit_bent();
   /// First improvement: operations are tried on the worst elements and those next to them, each with repair after.

@@ -13,11 +13,10 @@ namespace {
 constexpr size_t most_points = 64; // more were let go here and there: that is what the rounds are for
 constexpr size_t most_states = 4;
 constexpr int trials_at_wall = 300;
-constexpr double hopeless = 3; // LocalSearch::repair: of 357 that came right 353 had less cost after a round
 
-constexpr Leeway careful{0.01f, false, 0, false, false}, bold{1e-5f, true, 2, false, false},
-    in_necks{1e-5f, true, 2, true, false}, bending{1e-5f, true, 8, true, true},
-    yielding{1e-5f, true, 8, true, false}, of_elements{1e-5f, true, 0, false, false};
+constexpr Leeway bold{1e-5f, true, 2, false, false}, in_necks{1e-5f, true, 2, true, false},
+    bending{1e-5f, true, 8, true, true}, yielding{1e-5f, true, 8, true, false},
+    of_elements{1e-5f, true, 0, false, false};
 
 Acceptance acceptance_of(const Strategy& s) {
   Acceptance a(s.guard);
@@ -36,29 +35,22 @@ bool at_wall(std::vector<int32_t> points, const DynamicMesh& m, double spacing) 
 class Recovery {
 public:
   Recovery(Region& r, const std::vector<int32_t>& slots, const Strategy& strategy)
-      : r_(r), strategy_(strategy), search_(r, slots, acceptance_of(strategy), careful) {}
+      : r_(r), strategy_(strategy), search_(r, slots, acceptance_of(strategy), bold) {}
 
-  void run(bool searched) {
-    if (searched) {
-      if (search_.faults.points_off().size() <= most_points)
-        try_necks(in_necks);
-      return;
-    }
+  void run() {
     // Where the mesh ends in it, a surface that bends freely could turn inside out unseen.
     const bool bends = strategy_.moves >= Moves::bending && r_.is_alone();
     // A guard wider than that lets it bend so far.
     const bool yields = strategy_.guard.angle > Guard::widest_unbent;
-    const Leeway& second = bends ? bending : yields ? yielding : bold;
-    if (!is_careful() || try_points(careful))
-      if (try_points(second) && !is_careful()) {
-        try_harder();
-        if (strategy_.moves >= Moves::necks)
-          try_necks(bends || yields ? second : in_necks);
-      }
+    const Leeway& leeway = bends ? bending : yields ? yielding : bold;
+    if (!try_points(leeway))
+      return;
+    try_harder();
+    if (strategy_.moves >= Moves::necks)
+      try_necks(bends || yields ? leeway : in_necks);
   }
 
 private:
-  bool is_careful() const { return strategy_.moves == Moves::careful; }
   bool is_off(int32_t v) const { return r_.mesh.incident[v] >= 0 && off(r_, v) > 1; }
 
   // False when no points are off, or too many.
@@ -87,14 +79,14 @@ private:
     r_.changed.clear();
     if (r_.looks_left() && operation(search_.first_step())) {
       search_.fit_changed();
-      search_.repair(6, is_careful() ? hopeless : 1e30);
+      search_.repair();
       if (search_.leeway.fits_after && search_.cost() == 0)
         search_.fit_bent();
       if (search_.is_better(before)) {
         nearly_.clear();
         return true;
       }
-      if (!is_careful())
+      if (strategy_.hill_climbing > 0)
         remember(before, snapshot);
     }
     r_.restore(snapshot);
@@ -239,10 +231,10 @@ private:
 
 } // namespace
 
-void search_part(Region& r, const std::vector<int32_t>& slots, const Strategy& strategy, bool searched) {
+void search_part(Region& r, const std::vector<int32_t>& slots, const Strategy& strategy) {
   const bool of_points = strategy.scope == Scope::points;
   if (of_points && strategy.goal_share == 1) {
-    Recovery(r, slots, strategy).run(searched);
+    Recovery(r, slots, strategy).run();
     return;
   }
   LocalSearch search(r, slots, acceptance_of(strategy), of_points ? yielding : of_elements);
@@ -256,7 +248,7 @@ void search_part(Region& r, const std::vector<int32_t>& slots, const Strategy& s
     Strategy lower = strategy;
     lower.goal_share = 1;
     lower.goal *= strategy.goal_share;
-    Recovery(r, slots, lower).run(false);
+    Recovery(r, slots, lower).run();
     if (r.counts.total() == snapshot.counts.total())
       return;
   } else {

@@ -14,15 +14,14 @@ enum class Scope : uint8_t {
 
 /// What is tried for a point; each does more than the one before.
 enum class Moves : uint8_t {
-  careful, ///< small steps, then bold ones, given up early where repair has much to do
-  bold,    ///< bold steps; what is repaired in part is searched further
+  bold,    ///< one operation at the point; what is repaired in part is searched further
   necks,   ///< and the surface follows necks
   bending, ///< and it may bend during repair, where it has elements on both sides
 };
 
 struct Strategy {
   Scope scope = Scope::points;
-  Moves moves = Moves::careful;
+  Moves moves = Moves::bold;
   Guard guard;
   double part_size = 0.5; ///< of the cube around each point, in the schedule's cells
   float goal_share = 1;   ///< points come back to this share of the goal first

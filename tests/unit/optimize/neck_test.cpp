@@ -75,7 +75,7 @@ TEST_CASE("the surface follows a passage of hundredths of a spacing", "[slow]") 
   optimize::Schedule schedule(m, &surface, 32 * h, 1);
   schedule.watch_crossings(optimize::Schedule::everywhere);
   optimize::Counts counts;
-  for (const optimize::Moves moves : {optimize::Moves::careful, optimize::Moves::bold, optimize::Moves::necks})
+  for (const optimize::Moves moves : {optimize::Moves::bold, optimize::Moves::necks})
     counts += schedule.search(recovery(1, moves));
   CHECK(counts.cavity_shrinks > 0);
   float worst = 2;
@@ -106,8 +106,7 @@ TEST_CASE("a surface that touches itself is left alone where it does", "[slow]")
     if (m.vertex[v].kind == optimize::Kind::fixed)
       fixed.push_back(v);
   REQUIRE(fixed.size() > 8); // not the box's corners alone
-  for (const optimize::Moves moves :
-       {optimize::Moves::careful, optimize::Moves::bold, optimize::Moves::necks, optimize::Moves::necks})
+  for (const optimize::Moves moves : {optimize::Moves::bold, optimize::Moves::necks, optimize::Moves::necks})
     schedule.search(recovery(1, moves));
   CHECK_NOTHROW(optimize::build(optimize::extract(m), 180, 1));
   for (const size_t v : fixed)

@@ -17,10 +17,10 @@ inline optimize::Pass recovery_pass(double cell) {
 }
 
 /// Brings points back. size: of the parts, in the schedule's cells.
-inline optimize::Strategy recovery(double size, optimize::Moves moves = optimize::Moves::careful) {
+inline optimize::Strategy recovery(double size, optimize::Moves moves = optimize::Moves::bold) {
   optimize::Strategy s;
   s.moves = moves;
-  s.hill_climbing = moves == optimize::Moves::careful ? 0 : moves == optimize::Moves::bending ? 2000 : 300;
+  s.hill_climbing = moves == optimize::Moves::bold ? 0 : moves == optimize::Moves::bending ? 2000 : 300;
   s.goal = static_cast<float>(angle_quality(26));
   s.part_size = size;
   s.guard = recovery_guard;
