@@ -38,4 +38,8 @@ TEST_CASE("what other moves have failed for may come right by these") {
   CHECK(failed.knows({1}, necks, 4));
   CHECK(!failed.knows({1}, bold, 4));
   CHECK(!failed.knows({1}, bending, 4));
+  failed.note({2}, bending, 5);
+  CHECK(failed.knows({2}, bending, 4));
+  CHECK(!failed.knows({2}, necks, 4));
+  CHECK(!failed.knows({2}, bold, 4));
 }
