@@ -60,7 +60,7 @@ MOLMESH_HD bool pattern_search(Worth& worth, Vec3d& x, float& best, float goal, 
             ++places;
       }
       const float above = best + 1e-9f + 5e-3f * best;
-      float q;
+      float q = above;
       for (int k = 0; (k = worth.first_above(place, k, places, above, q)) < places; ++k)
         if (accept(place[k])) {
           x = place[k];
