@@ -78,12 +78,14 @@ seed=${SEED:-$$}
 RANDOM=$seed
 four=("$structures/a.pdb" "$structures/b c.pdb" "$structures/k.l.pdb" "$structures/it's.pdb")
 declare -A due
-for n in $(seq 10); do
-  due[$n]=$(($(date +%s%3N) + RANDOM % 10000))
-  "$array" -o "$work/kill$n" "${four[@]}" "${options[@]}" --time 5 >"$work/kill$n.txt" 2>&1 &
-done
-wait
-while [ ${#due[@]} -gt 0 ] && [ -n "$(squeue -h --name=pdb2hier,hier2density,density2tet,tetsmooth)" ]; do
+for n in $(seq 10); do due[$n]=$(($(date +%s%3N) + RANDOM % 10000)); done
+{
+  for n in $(seq 10); do "$array" -o "$work/kill$n" "${four[@]}" "${options[@]}" --time 5 >"$work/kill$n.txt" 2>&1 & done
+  wait
+} &
+submission=$! # on a busy machine tasks run before it ends
+while [ ${#due[@]} -gt 0 ] &&
+  { kill -0 $submission 2>/dev/null || [ -n "$(squeue -h --name=pdb2hier,hier2density,density2tet,tetsmooth)" ]; }; do
   now=$(date +%s%3N)
   while read -r process n; do
     [ "${due[$n]:-$now}" -lt "$now" ] && kill -9 "$process" 2>/dev/null && unset "due[$n]"
@@ -91,6 +93,7 @@ while [ ${#due[@]} -gt 0 ] && [ -n "$(squeue -h --name=pdb2hier,hier2density,den
     shuf --random-source=<(yes $RANDOM)) || true
 done
 echo "killed a process of $((10 - ${#due[@]})) arrays, seed $seed: $SECONDS s"
+wait
 [ ${#due[@]} -le 5 ] || fail "expected at least 5 kills"
 while [ -n "$(squeue -h)" ]; do sleep 0.5; done
 echo "all jobs are over: $SECONDS s"
