@@ -89,7 +89,7 @@ GridSize at_spacing(const GridSize& counted, double spacing) {
 Cost cost(const GridSize& size, int64_t atoms) {
   const auto active = static_cast<double>(size.active_points), n = static_cast<double>(atoms);
   const double at_first = 6.3 * std::min(active, 1.5e6) + 137 * std::min(n, 2e4);
-  return {std::llround(9.35e6 + at_first + 5.35 * active + 115 * n), 0.012 + 25e-9 * active + 0.9e-6 * n};
+  return {std::llround(9.35e6 + at_first + 5.35 * active + 115 * n), 0.0095 + 25e-9 * active + 0.9e-6 * n};
 }
 
 GridSize part_of(const Plan& plan, Tile tile) {

@@ -6,8 +6,8 @@ DATA holds typical/, paper/ and large/. Each program's plan is its own, of what 
 
 Memory is that of the run reports. Seconds are those of the processor, beside a small run before and after each run, since
 machines do not keep their speed: the median of three such ratios for runs up to 3 s, times the median of the small runs.
-The plans are those of a processor of speed 1; what molmesh-array --measure-speed would measure, the geometric mean of planned
-over true for a few structures (--calibrate NAMES), is taken from the same runs and divides them.
+The plans are those of a processor of speed 1; what molmesh-array --measure-speed would measure with the structures of typical/
+(those that all three programs are run on), the geometric mean of planned over true, is taken from the same runs and divides them.
 """
 import argparse, glob, json, os, statistics, subprocess, tempfile
 
@@ -24,7 +24,7 @@ def main():
     p.add_argument("bin"), p.add_argument("data"), p.add_argument("out")
     p.add_argument("--spacing", default="1"), p.add_argument("--region", default="both")
     p.add_argument("--most", type=float, default=6e6), p.add_argument("--improve", type=float, default=1.5e6)
-    p.add_argument("--calibrate", default="1bna,1ubq,1j59,2por,1acj"), p.add_argument("--raw", default=os.devnull)
+    p.add_argument("--raw", default=os.devnull)
     o = p.parse_args()
     tool = lambda name: [os.path.join(o.bin, name), "-q", "-t", "1"]
     work = tempfile.mkdtemp()
@@ -78,7 +78,7 @@ def main():
             key = "tetsmooth" if effort == "good" else "--effort " + effort
             planned[key] = read("s.json")
             took[key] = run(improve, "a.vtu")
-        rows.append({"name": name, "atoms": plan["atoms"], "elements": elements, "planning": planning, "took": took,
+        rows.append({"name": name, "folder": os.path.basename(os.path.dirname(file)), "atoms": plan["atoms"], "elements": elements, "planning": planning, "took": took,
                      "from_atoms": plan["density2tet"][o.region]["elements"], "from_grid": mesh["elements"],
                      "planned": {k: (v["memory_bytes"], v["seconds"]) for k, v in planned.items()}})
         print(json.dumps(rows[-1]), file=open(o.raw, "a"))
@@ -87,7 +87,7 @@ def main():
     programs = ["hier2density", "density2tet", "tetsmooth", "--effort fast", "--effort best"]
     second = statistics.median(small_runs)
     ratio = lambda r, key: r["planned"][key][1] / (r["took"][key][1] * second)
-    calibrating = [r for r in rows if r["name"] in o.calibrate.split(",")]
+    calibrating = [r for r in rows if r["folder"] == "typical" and r["took"].get("tetsmooth")]
     speeds = [statistics.geometric_mean(ratio(r, key) for r in calibrating) for key in programs[:3]]
     speed_of = dict(zip(programs, speeds + 2 * speeds[2:]))
     print("MOLMESH_SPEED=" + ",".join("%.3g" % s for s in speeds))
