@@ -100,7 +100,7 @@ struct Course {
   size_t rounds_to_coarsening;  // before it
   size_t rounds_to_offset;      // after this one points are put further out, for what chords enclose less
   size_t most_elements;         // below the goal that are searched for; 0: none but for the promise, and no points
-  double last_min_dihedral = 0; // of a last search, for which elements give way that are above the promise; 0: none
+  double last_min_dihedral = 0; // where many are searched for: of a last search for those that miss the promise
 };
 const Course to_fair{16.5, 154.4, rounds_to_fair, 2, 1, 0}, to_good{26, 138.5, rounds_to_good, 4, 4, 64},
     to_best{30.65, 129.4, rounds_to_good, 4, 4, 1024, 29.4};
@@ -168,10 +168,14 @@ const std::vector<Strategy> for_points_at_end{first,     climb,     {of_points, 
                                               via_50,    walk,      wide_climb,
                                               wide_walk, wide_walk, wide_climb};
 // For the last elements below the goal.
-const std::vector<Strategy> for_elements{{of_elements, bold, relaxed, 0.5, 1, 300},
-                                         {of_elements, bold, relaxed, 0.5, 1, 300, 1000},
-                                         {of_elements, bold, relaxed, 1, 1, 300, 1000},
-                                         {of_elements, bold, bent, 1, 1, 300, 1000}};
+const Strategy quick{of_elements, bold, relaxed, 0.5, 1, 300},
+    longer{of_elements, bold, relaxed, 0.5, 1, 300, 1000};
+const std::vector<Strategy> for_elements{
+    quick, longer, {of_elements, bold, relaxed, 1, 1, 300, 1000}, {of_elements, bold, bent, 1, 1, 300, 1000}};
+// Many of them, most of which are above the promise, are not worth the last two rows, which take most of the time.
+// Those that miss it are searched for in larger parts too, where elements give way that are above it.
+const std::vector<Strategy> for_many_elements{quick, longer},
+    for_promise{quick, longer, {of_elements, bold, relaxed, 1, 1, 300}};
 
 float goal_of(double min_dihedral, double max_dihedral) {
   return static_cast<float>(std::max(angle_quality(min_dihedral), angle_quality(max_dihedral)));
@@ -326,9 +330,11 @@ private:
       schedule_.allow(looks_for_points * elements_);
       search_points();
     }
-    search_elements(course_.most_elements, goal_);
-    if (course_.last_min_dihedral > 0)
-      search_elements(few_elements, static_cast<float>(angle_quality(course_.last_min_dihedral)));
+    if (course_.last_min_dihedral == 0)
+      return search_elements(for_elements, course_.most_elements, goal_);
+    search_elements(for_many_elements, course_.most_elements, goal_);
+    search_elements(for_promise, course_.most_elements,
+                    static_cast<float>(angle_quality(course_.last_min_dihedral)));
   }
 
   // But for rounding: what is put on the isosurface may lose a millionth. What is coarsened may lose what is better
@@ -347,7 +353,7 @@ private:
         count(schedule_.run(pass_of(round)));
       }
     if (!is_promise_kept())
-      search_elements(few_elements, goal_);
+      search_elements(for_elements, few_elements, goal_);
   }
 
   /// A floor for projection: with fewer rounds than all nothing repairs what falls to it.
@@ -374,8 +380,8 @@ private:
     }
   }
 
-  void search_elements(size_t most, float goal) {
-    for (Strategy s : for_elements) {
+  void search_elements(const std::vector<Strategy>& rows, size_t most, float goal) {
+    for (Strategy s : rows) {
       s.goal = goal;
       s.most_elements = most;
       count(schedule_.search(s));

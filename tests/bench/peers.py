@@ -2,9 +2,9 @@
 """peers.py BIN FILE... [--spacing H] [--install] [-o TABLE.md]: from atoms to a mesh of the molecule and its surroundings, by these programs and by others.
 
 One run of each, one thread, processor seconds of all programs of a chain. The others: EDTSurf (molecular surface by marching cubes) with Gmsh's HXT or
-with TetGen, on a surface of about as many triangles as ours has, in the same box. Peers that are not here are left out with a line on standard error;
---install gets them by apt-get (edtsurf, gmsh, tetgen). CGAL's Mesh_3 and TetGen on our own density: bench_contour, section "Beside CGAL and TetGen" of
-the page that benchmarks.py makes.
+with TetGen, on a surface of about as many triangles as ours has, in the same box; and CGAL's Mesh_3 on our own density, the molecule alone, with about
+those triangles too (BIN/cgal_peer: `cmake --build build --target cgal_peer`). Peers that are not here are left out with a line on standard error;
+--install gets them by apt-get (edtsurf, gmsh, tetgen).
 """
 import argparse
 import gzip
@@ -121,7 +121,7 @@ class Comparison:
         print(*self.rows[-1], sep=" | ", flush=True)
 
     def ours(self, name, file, effort):
-        """Triangles and box of the mesh."""
+        """Surface (its report) and box of the mesh."""
         clock = Clock(self.folder)
 
         def tool(program, *options):
@@ -131,8 +131,8 @@ class Comparison:
         tool("hier2density", "--spacing", self.spacing, "a.hier", "-o", "a.vdb")
         tool("density2tet", "--region", "both", "a.vdb", "-o", "a.tet.vtu")
         tool("tetsmooth", "--effort", effort, "--density", "a.vdb", "a.tet.vtu", "-o", "a.vtu", "--report", "r.json")
-        surface = json.loads((self.folder / "r.json").read_text())["counts"]["surface"]["triangles"]
-        self.add(name, f"molmesh, `--effort {effort}`", clock, "a.vtu", surface)
+        surface = json.loads((self.folder / "r.json").read_text())["counts"]["surface"]
+        self.add(name, f"molmesh, `--effort {effort}`", clock, "a.vtu", surface["triangles"])
         box = self.stat("a.vtu")["box"]
         return surface, (box["low"], box["high"])
 
@@ -147,6 +147,25 @@ class Comparison:
                 break
             scale *= (triangles / len(faces)) ** 0.5
         return clock, points, faces
+
+    def cgal(self, name, file, surface):
+        """CGAL's Mesh_3 on our density, with edges that give as many triangles on the surface."""
+        edge = (4 * surface["area"] / (3 ** 0.5 * surface["triangles"])) ** 0.5
+        first = Clock(self.folder)
+        first.run(self.programs / "pdb2hier", "-q", file, "-o", "a.hier")
+        first.run(self.programs / "hier2density", "-q", "-t", "1", "--spacing", self.spacing, "a.hier", "-o", "a.vdb")
+        for chain, how in (("CGAL Mesh_3 on our density, the molecule alone", []), ("the same, perturbed and exuded", ["optimized"])):
+            clock = Clock(self.folder)
+            clock.seconds, clock.bytes = first.seconds, first.bytes
+            try:
+                clock.run(self.programs / "cgal_peer", "a.vdb", "cgal.vtu", edge, *how)
+                self.add(name, chain, clock, "cgal.vtu", self.stat("cgal.vtu")["triangles"])
+            except Failed as error:
+                self.fail(name, chain, "", error)
+
+    def fail(self, name, chain, triangles, error):
+        self.rows.append((name, chain, triangles, str(error), *[""] * 6))
+        print(*self.rows[-1], sep=" | ", flush=True)
 
     def peers(self, name, structure, triangles, box, here):
         if "EDTSurf" not in here:
@@ -164,8 +183,7 @@ class Comparison:
                     clock.run(*command)
                     self.add(name, chain, clock, mesh, len(faces))
             except Failed as error:
-                self.rows.append((name, chain, f"{len(faces):,}", str(error), *[""] * 6))
-                print(*self.rows[-1], sep=" | ", flush=True)
+                self.fail(name, chain, f"{len(faces):,}", error)
 
 
 def main():
@@ -181,6 +199,9 @@ def main():
     here = [p for p in PEERS if shutil.which(p)]
     for missing in sorted(set(PEERS) - set(here)):
         print(f"{missing} is not here (Debian: {PEERS[missing]})", file=sys.stderr)
+    has_cgal = (o.bin / "cgal_peer").exists()
+    if not has_cgal:
+        print("CGAL's Mesh_3 is left out: cmake --build build --target cgal_peer", file=sys.stderr)
     with tempfile.TemporaryDirectory() as folder:
         comparison = Comparison(o.bin, pathlib.Path(folder), o.spacing)
         for file in o.files:
@@ -190,7 +211,10 @@ def main():
                 plain.write_bytes(gzip.decompress(file.read_bytes()))
                 file = plain
             size = [comparison.ours(name, file.resolve(), effort) for effort in EFFORTS]
-            comparison.peers(name, file.resolve(), *size[EFFORTS.index("good")], here)
+            surface, box = size[EFFORTS.index("good")]
+            comparison.peers(name, file.resolve(), surface["triangles"], box, here)
+            if has_cgal:
+                comparison.cgal(name, file.resolve(), surface)
     if o.output:
         head = ("structure", "chain", "surface triangles", "tetrahedra", "processor, s", "tetrahedra a second", "dihedral angles", "Q ≥", "memory", "valid")
         o.output.write_text("".join("| " + " | ".join(row) + " |\n" for row in (head, ["---"] * len(head), *comparison.rows)))

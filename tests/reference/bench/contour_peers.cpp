@@ -5,10 +5,12 @@
 #include "mesh/adjacency.hpp"
 #include "mesh/quality.hpp"
 #include "mesh/validity.hpp"
+#include "reference/bench/trilinear.hpp"
 #include "reference/oracles.hpp"
 #include "reference/structure.hpp"
 #include <cstdio>
 #include <ctime>
+#include <functional>
 
 using namespace molmesh;
 
@@ -35,28 +37,6 @@ void print(const char* name, TetMesh mesh, double seconds) {
               static_cast<long long>(v.surface.euler), v.valid() ? "valid" : faults.c_str());
   std::fflush(stdout);
 }
-
-/// log G, trilinear; the band's constants beyond it.
-class Trilinear {
-public:
-  explicit Trilinear(const BlockGrid& grid) : grid_(grid), index_(grid) {}
-  double operator()(Vec3d x) const {
-    const Vec3d r = (x - grid_.frame.origin) / grid_.frame.spacing;
-    const Vec3i low{int32_t(std::floor(r.x)), int32_t(std::floor(r.y)), int32_t(std::floor(r.z))};
-    const Vec3d t = r - to_double(low);
-    double sum = 0;
-    for (int c = 0; c < 8; ++c) {
-      const int i = c & 1, j = c >> 1 & 1, k = c >> 2;
-      const double g = value_at(grid_, index_, low + Vec3i{i, j, k});
-      sum += (i ? t.x : 1 - t.x) * (j ? t.y : 1 - t.y) * (k ? t.z : 1 - t.z) * std::log(std::max(g, 1e-6));
-    }
-    return sum - std::log(grid_.info.isovalue);
-  }
-
-private:
-  const BlockGrid& grid_;
-  BlockIndex index_;
-};
 
 } // namespace
 
@@ -86,12 +66,10 @@ int main(int argc, char** argv) {
     const TetMesh m = reference::tetgen_fill(surface_points, surface, {}, "q1.4a" + volume);
     print("TetGen on our surface (with cavities)", m, watch.seconds());
   }
-  const Trilinear inside(grid);
-  const Vec3d low = grid.frame.position(grid.frame.lower),
-              extent = grid.frame.spacing * to_double(grid.frame.points - Vec3i{1, 1, 1});
+  const reference::Trilinear inside(grid);
   for (bool optimized : {false, true}) {
     const Stopwatch watch;
-    const TetMesh m = reference::cgal_mesh([&](Vec3d x) { return inside(x); }, low + 0.5 * extent, norm(extent) / 2,
+    const TetMesh m = reference::cgal_mesh(std::ref(inside), inside.center(), inside.radius(),
                                            {1.2 * h, 0.25 * h, 1.2 * h, optimized});
     print(optimized ? "CGAL Mesh_3, perturbed and exuded" : "CGAL Mesh_3", m, watch.seconds());
   }
