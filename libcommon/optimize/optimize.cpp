@@ -269,14 +269,8 @@ private:
 
   /// Far from the surface coarse elements are long: what searches look at is too small for them.
   void search_widely() {
-    for (int k = 0; repairs_ && k < wide_searches && schedule_.worst() < FaultCount::share * goal_; ++k) {
-      for (Strategy s : for_elements) {
-        s.goal = goal_;
-        s.most_elements = course_.most_elements;
-        s.part_size *= wider;
-        count(schedule_.search(s));
-      }
-    }
+    for (int k = 0; repairs_ && k < wide_searches && schedule_.worst() < FaultCount::share * goal_; ++k)
+      search_elements(for_elements, course_.most_elements, goal_, wider);
   }
 
   void run_rounds(const FlowPass& flow, size_t from = 0, size_t to = SIZE_MAX) {
@@ -380,8 +374,10 @@ private:
     }
   }
 
-  void search_elements(const std::vector<Strategy>& rows, size_t most, float goal) {
+  /// In parts so many times as large as the rows'.
+  void search_elements(const std::vector<Strategy>& rows, size_t most, float goal, double larger = 1) {
     for (Strategy s : rows) {
+      s.part_size *= larger;
       s.goal = goal;
       s.most_elements = most;
       count(schedule_.search(s));

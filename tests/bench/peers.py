@@ -26,10 +26,11 @@ class Failed(Exception):
 
 
 class Clock:
-    """Processor seconds and the largest peak memory of the programs run since it was made."""
+    """Processor seconds and the largest peak memory of the programs run since it was made, and of those on the clock before it."""
 
-    def __init__(self, folder):
-        self.folder, self.seconds, self.bytes = folder, 0, 0
+    def __init__(self, folder, before=None):
+        self.folder = folder
+        self.seconds, self.bytes = (before.seconds, before.bytes) if before else (0, 0)
 
     def run(self, *command):
         words = [str(c) for c in command]
@@ -111,8 +112,10 @@ class Comparison:
             raise Failed(f"tetstat {name}: status {done.returncode}")
         return json.loads(done.stdout)
 
-    def add(self, structure, chain, clock, mesh, surface):
+    def add(self, structure, chain, clock, mesh, surface=None):
+        """surface: triangles; without, all that the mesh has."""
         m = self.stat(mesh)
+        surface = surface or m["triangles"]
         angles = m["quality"]["dihedral"]
         rate = m["tets"] / clock.seconds
         self.rows.append((structure, chain, f"{surface:,}", f"{m['tets']:,}", f"{clock.seconds:.1f}", f"{rate:,.0f}",
@@ -155,17 +158,17 @@ class Comparison:
         first.run(self.programs / "pdb2hier", "-q", file, "-o", "a.hier")
         first.run(self.programs / "hier2density", "-q", "-t", "1", "--spacing", self.spacing, "a.hier", "-o", "a.vdb")
         for chain, how in (("CGAL Mesh_3 on our density, the molecule alone", []), ("the same, perturbed and exuded", ["optimized"])):
-            clock = Clock(self.folder)
-            clock.seconds, clock.bytes = first.seconds, first.bytes
-            try:
-                clock.run(self.programs / "cgal_peer", "a.vdb", "cgal.vtu", edge, *how)
-                self.add(name, chain, clock, "cgal.vtu", self.stat("cgal.vtu")["triangles"])
-            except Failed as error:
-                self.fail(name, chain, "", error)
+            self.go_on(name, chain, first, (self.programs / "cgal_peer", "a.vdb", "cgal.vtu", edge, *how), "cgal.vtu")
 
-    def fail(self, name, chain, triangles, error):
-        self.rows.append((name, chain, triangles, str(error), *[""] * 6))
-        print(*self.rows[-1], sep=" | ", flush=True)
+    def go_on(self, name, chain, before, command, mesh, surface=None):
+        """A row for the programs on the clock before and one more, or for why that failed."""
+        clock = Clock(self.folder, before)
+        try:
+            clock.run(*command)
+            self.add(name, chain, clock, mesh, surface)
+        except Failed as error:
+            self.rows.append((name, chain, f"{surface:,}" if surface else "", str(error), *[""] * 6))
+            print(*self.rows[-1], sep=" | ", flush=True)
 
     def peers(self, name, structure, triangles, box, here):
         if "EDTSurf" not in here:
@@ -176,14 +179,8 @@ class Comparison:
         (self.folder / "tg.smesh").write_text(tetgen_input(points, faces, box))
         for peer, chain, mesh, command in (("gmsh", "EDTSurf + Gmsh HXT", "hxt.msh", ("gmsh", "-3", "-nt", "1", "hxt.geo", "-o", "hxt.msh")),
                                            ("tetgen", "EDTSurf + TetGen", "tg.1.vtk", ("tetgen", "-pq1.6YkQ", "tg.smesh"))):
-            clock = Clock(self.folder)
-            clock.seconds, clock.bytes = first.seconds, first.bytes
-            try:
-                if peer in here:
-                    clock.run(*command)
-                    self.add(name, chain, clock, mesh, len(faces))
-            except Failed as error:
-                self.fail(name, chain, f"{len(faces):,}", error)
+            if peer in here:
+                self.go_on(name, chain, first, command, mesh, len(faces))
 
 
 def main():

@@ -78,7 +78,8 @@ def main():
             key = "tetsmooth" if effort == "good" else "--effort " + effort
             planned[key] = read("s.json")
             took[key] = run(improve, "a.vtu")
-        rows.append({"name": name, "folder": os.path.basename(os.path.dirname(file)), "atoms": plan["atoms"], "elements": elements, "planning": planning, "took": took,
+        rows.append({"name": name, "folder": os.path.basename(os.path.dirname(file)), "atoms": plan["atoms"], "elements": elements,
+                     "planning": planning, "took": took,
                      "from_atoms": plan["density2tet"][o.region]["elements"], "from_grid": mesh["elements"],
                      "planned": {k: (v["memory_bytes"], v["seconds"]) for k, v in planned.items()}})
         print(json.dumps(rows[-1]), file=open(o.raw, "a"))
