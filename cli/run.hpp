@@ -48,6 +48,7 @@ public:
   /// foreseen: where the program tells no share itself.
   void show_phases(std::vector<ForeseenPhase> foreseen = {});
   void hide_phases() { line_.reset(); }
+  bool shows_phases() const { return line_ != nullptr; }
   /// Of the present phase, where it is shown.
   void share(double done) {
     if (line_)

@@ -61,7 +61,8 @@ Status run_tool(const Options& o, cli::Run& run) {
   options.max_dihedral = o.max_dihedral;
   if (mesh.creator.rfind("density2tet", 0) == 0)
     options.sharp = 180; // an isosurface is smooth: folds of its first mesh are no features
-  options.progress = [&](double share) { run.share(share); };
+  if (run.shows_phases()) // it has to be counted
+    options.progress = [&](double share) { run.share(share); };
   if (hierarchy && grid && !level.empty()) {
     require_same_atoms(*hierarchy, structure->name(), mesh);
     const Domains domains(*hierarchy, structure->name(), level, {grid->info.decay, grid->info.isovalue, threads});

@@ -442,7 +442,7 @@ private:
   const float goal_, usual_, at_first_, no_worse_;
   const bool repairs_; ///< all rounds: what projection and fitting spoil is repaired. With fewer they spoil nothing
   const bool small_, many_;
-  const int64_t elements_ = schedule_.below(1e30F);
+  const int64_t elements_ = std::ssize(m_.element);
   int64_t at_begin_ = 0; ///< elements below the goal
 };
 

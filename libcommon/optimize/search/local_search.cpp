@@ -4,6 +4,7 @@
 #include "par/par.hpp"
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace molmesh::optimize {
 
@@ -137,6 +138,30 @@ void LocalSearch::repair_after() {
   repair(2);
 }
 
+// The last state that was kept, as the part moves on by small steps: an earlier one, and what has changed since.
+class LocalSearch::Checkpoint {
+public:
+  explicit Checkpoint(const LocalSearch& s) : s_(s), all_(s.r_.save(s.elements())) {}
+  void keep() {               // the present state
+    constexpr size_t few = 8; // a share of the part, so that neither saving nor going back takes long
+    changes_ = s_.r_.changes_since(all_);
+    if (few * changes_->element.size() > all_.element.size()) {
+      all_ = s_.r_.save(s_.elements());
+      changes_.reset();
+    }
+  }
+  void go_back() {
+    s_.r_.restore(all_);
+    if (changes_)
+      s_.r_.redo(*changes_);
+  }
+
+private:
+  const LocalSearch& s_;
+  Snapshot all_;
+  std::optional<Snapshot> changes_;
+};
+
 // What the cost and the faults after a trial must be under.
 struct LocalSearch::Limit {
   const Faults& before;
@@ -158,17 +183,19 @@ LocalSearch::Outcome LocalSearch::attempt(const Trial& trial, Limit& limit) {
 
 void LocalSearch::climb(const Faults& before, int& trials) {
   Limit limit{before, faults().off, cost()};
+  Checkpoint here(*this);
   for (bool done = true; done && limit.least > 0;) {
     done = false;
-    const Snapshot here = r_.save(elements());
     const std::vector<int32_t> around = worst();
     for (size_t i = 0; i < around.size() * operations && !done && trials > 0 && r_.looks_left(); ++i) {
       const Outcome outcome = attempt({around[i / operations], static_cast<int>(i % operations)}, limit);
       trials -= outcome != Outcome::idle;
       done = outcome == Outcome::better;
       if (outcome == Outcome::worse)
-        r_.restore(here);
+        here.go_back();
     }
+    if (done)
+      here.keep();
   }
 }
 
@@ -183,7 +210,7 @@ void LocalSearch::walk(const Faults& before, int& trials) {
   const int64_t off_at_first = faults().off;
   const int all = trials;
   double current = cost();
-  Snapshot here = r_.save(elements());
+  Checkpoint here(*this);
   std::vector<int32_t> list = worst();
   for (int idle = idle_for_a_trial * trials;
        current > 0 && trials > 0 && idle > 0 && !list.empty() && r_.looks_left();) {
@@ -197,11 +224,11 @@ void LocalSearch::walk(const Faults& before, int& trials) {
     const double now = cost();
     const Faults f = faults();
     if (now > (1 + rise) * current || f.off > off_at_first || !f.fewer_than(before, leeway.bent_for_point)) {
-      r_.restore(here);
+      here.go_back();
       continue;
     }
     current = now;
-    here = r_.save(elements());
+    here.keep();
     list = worst();
   }
 }

@@ -60,6 +60,7 @@ private:
   };
   bool operate(const Trial& trial);
   void repair_after();
+  class Checkpoint;
   struct Limit;
   enum class Outcome : uint8_t { idle, worse, better };
   Outcome attempt(const Trial& trial, Limit& limit);

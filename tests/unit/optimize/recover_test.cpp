@@ -186,18 +186,25 @@ TEST_CASE("what is restored is as it was saved", "[slow]") {
         alive.push_back(e);
     return alive;
   }());
+  const optimize::Snapshot changes = region.changes_since(snapshot);
+  CHECK(changes.element.size() < changed.element.size());
   const optimize::DynamicMesh then = c.m;
   const int64_t operations = region.counts.total();
   const size_t free_then = room.element.size();
-  region.restore(snapshot);
-  region.restore(changed);
-  CHECK(region.counts.total() == operations);
-  CHECK(room.element.size() == free_then);
-  for (size_t v = 0; v < then.point.size(); ++v)
-    REQUIRE((c.m.incident[v] == then.incident[v] && (then.incident[v] < 0 || c.m.point[v] == then.point[v])));
-  for (size_t e = 0; e < then.element.size(); ++e)
-    REQUIRE((c.m.element[e].v == then.element[e].v && c.m.element[e].n == then.element[e].n &&
-             c.m.element[e].label == then.element[e].label));
+  for (const bool by_changes : {false, true}) {
+    region.restore(snapshot);
+    if (by_changes)
+      region.redo(changes);
+    else
+      region.restore(changed);
+    CHECK(region.counts.total() == operations);
+    CHECK(room.element.size() == free_then);
+    for (size_t v = 0; v < then.point.size(); ++v)
+      REQUIRE((c.m.incident[v] == then.incident[v] && (then.incident[v] < 0 || c.m.point[v] == then.point[v])));
+    for (size_t e = 0; e < then.element.size(); ++e)
+      REQUIRE((c.m.element[e].v == then.element[e].v && c.m.element[e].n == then.element[e].n &&
+               c.m.element[e].label == then.element[e].label && c.m.element[e].q == then.element[e].q));
+  }
   const auto as_before = [&] {
     for (int32_t v = 0; v < points; ++v)
       REQUIRE((c.m.point[v] == before.point[v] && c.m.incident[v] == before.incident[v] &&
