@@ -60,7 +60,7 @@ Status run_tool(const Options& o, cli::Run& run) {
   options.min_dihedral = o.min_dihedral;
   options.max_dihedral = o.max_dihedral;
   if (mesh.creator.rfind("density2tet", 0) == 0)
-    options.sharp = 180; // an isosurface is smooth: folds of its first mesh are no features
+    options.sharp = 180;  // an isosurface is smooth: folds of its first mesh are no features
   if (run.shows_phases()) // it has to be counted
     options.progress = [&](double share) { run.share(share); };
   if (hierarchy && grid && !level.empty()) {
