@@ -141,25 +141,26 @@ void LocalSearch::repair_after() {
 // The last state that was kept, as the part moves on by small steps: an earlier one, and what has changed since.
 class LocalSearch::Checkpoint {
 public:
-  explicit Checkpoint(const LocalSearch& s) : s_(s), all_(s.r_.save(s.elements())) {}
-  void keep() {               // the present state
-    constexpr size_t few = 8; // a share of the part, so that neither saving nor going back takes long
-    changes_ = s_.r_.changes_since(all_);
-    if (few * changes_->element.size() > all_.element.size()) {
+  explicit Checkpoint(const LocalSearch& s) : s_(s) {}
+  /// The present state. More than an eighth of the part is saved as a whole: going back would take long.
+  void keep() {
+    if (all_)
+      changes_ = s_.r_.changes_since(*all_);
+    if (!all_ || 8 * changes_->element.size() > all_->element.size()) {
       all_ = s_.r_.save(s_.elements());
       changes_.reset();
     }
   }
+  /// keep() came before.
   void go_back() {
-    s_.r_.restore(all_);
+    s_.r_.restore(*all_);
     if (changes_)
       s_.r_.redo(*changes_);
   }
 
 private:
   const LocalSearch& s_;
-  Snapshot all_;
-  std::optional<Snapshot> changes_;
+  std::optional<Snapshot> all_, changes_;
 };
 
 // What the cost and the faults after a trial must be under.
@@ -186,6 +187,7 @@ void LocalSearch::climb(const Faults& before, int& trials) {
   Checkpoint here(*this);
   for (bool done = true; done && limit.least > 0;) {
     done = false;
+    here.keep();
     const std::vector<int32_t> around = worst();
     for (size_t i = 0; i < around.size() * operations && !done && trials > 0 && r_.looks_left(); ++i) {
       const Outcome outcome = attempt({around[i / operations], static_cast<int>(i % operations)}, limit);
@@ -194,8 +196,6 @@ void LocalSearch::climb(const Faults& before, int& trials) {
       if (outcome == Outcome::worse)
         here.go_back();
     }
-    if (done)
-      here.keep();
   }
 }
 
@@ -211,6 +211,7 @@ void LocalSearch::walk(const Faults& before, int& trials) {
   const int all = trials;
   double current = cost();
   Checkpoint here(*this);
+  here.keep();
   std::vector<int32_t> list = worst();
   for (int idle = idle_for_a_trial * trials;
        current > 0 && trials > 0 && idle > 0 && !list.empty() && r_.looks_left();) {
