@@ -102,9 +102,8 @@ struct WantsToMove {
     for (int64_t i = m.elements.begin[v]; i < m.elements.begin[v + 1]; ++i)
       bad = bad || q[m.elements.item[i]] < m.goal;
     const optimize::Kind kind = m.vertex[v].kind;
-    wanted[n] = bad && kind != optimize::Kind::fixed && kind != optimize::Kind::trace &&
-                kind != optimize::Kind::round &&
-                (kind != optimize::Kind::surface || (m.has_surface && !m.is_watched(v)));
+    wanted[n] = bad && (kind == optimize::Kind::interior || kind == optimize::Kind::sliding ||
+                        (kind == optimize::Kind::surface && m.has_surface && !m.is_watched(v)));
   }
 };
 

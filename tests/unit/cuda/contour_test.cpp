@@ -3,7 +3,7 @@
 #include "contour/contour.hpp"
 #include "cuda/contour/device_stages.hpp"
 #include "cuda/par/host.hpp"
-#include "unit/contour/sample_grid.hpp"
+#include "unit/contour/octree_forms.hpp"
 #include "unit/refusal.hpp"
 #include <algorithm>
 #include <array>
@@ -179,6 +179,21 @@ TEST_CASE("device stages: the host's on a molecule, in a cut box, at any number 
   options.box.lower = {-1.1, -9, -9};
   options.box.upper = {9, 1.77, 9};
   CHECK(compare(grid, options).differ == 0);
+}
+
+TEST_CASE("device stages: the host's with sizes, layers, owners, an outer sphere and a halved spacing", "[slow]") {
+  const BlockGrid ball = test::ball_grid();
+  const Seen plain = compare(ball, test::plain_form(), 2);
+  CHECK(plain.differ == 0);
+  for (const auto& [name, options] : test::octree_forms()) {
+    CAPTURE(name);
+    const Seen s = compare(ball, options, 2);
+    CHECK(s.differ == 0);
+    CHECK(s.summary.leaves > plain.summary.leaves);
+  }
+  const Seen thin = compare(test::thin_body_grid(), test::plain_form(), 2);
+  CHECK(thin.differ == 0);
+  CHECK(thin.summary.halvings > 0);
 }
 
 TEST_CASE("device stages: the host's where surface triangles far from the isosurface come nearer", "[slow]") {

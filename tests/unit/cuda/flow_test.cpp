@@ -1,4 +1,5 @@
 // flow_test.cpp — the device's geometric flow, run by the host: never worse (I9), on the surface, deterministic.
+#include "contour/contour.hpp"
 #include "cuda/optimize/geometric_flow.hpp"
 #include "cuda/par/host.hpp"
 #include "geom/predicates.hpp"
@@ -153,6 +154,43 @@ TEST_CASE("improvement with the device's flow keeps what improvement keeps, at a
   }
   CHECK(result[0].point == result[1].point);
   CHECK(result[0].tet == result[1].tet);
+}
+
+TEST_CASE("flow: points of the outer sphere stay, others move, and improvement keeps the sphere", "[slow]") {
+  const BlockGrid grid = lattice_grid(three_atoms, {0, 0, 0}, h, n);
+  const Isosurface surface(grid, 1);
+  contour::Options options;
+  options.meshed = contour::Options::both;
+  options.box.kind = contour::BoxRequest::sphere_factor;
+  options.box.scale = 1.6;
+  contour::Summary summary;
+  TetMesh mesh = contour::contour(grid, options, summary, [](const std::string&) {});
+  optimize::DynamicMesh m = optimize::build(mesh, 180, 1);
+  const std::vector<Vec3d> before = m.point;
+  cuda::HostBackend backend;
+  cuda::Flow<cuda::HostBackend> flow(backend, &surface, 1);
+  CHECK(flow.run(m, pass_with(26, true), 4) > 100);
+  int64_t round = 0, moved = 0;
+  for (size_t v = 0; v < before.size(); ++v)
+    if (m.vertex[v].kind == optimize::Kind::round) {
+      ++round;
+      moved += m.point[v] != before[v];
+    }
+  CHECK(round > 50);
+  CHECK(moved == 0);
+  const optimize::Result r = optimize::improve(
+      mesh, &grid, {}, {}, [&](optimize::DynamicMesh& now, const Isosurface* target, const optimize::Pass& pass) {
+        return cuda::Flow<cuda::HostBackend>(backend, target, 1).run(now, pass, 2);
+      });
+  CHECK(r.after.min >= 25);
+  CHECK(r.after.max <= 140);
+  REQUIRE(mesh.sphere);
+  double off = 0;
+  for (size_t t = 0; t < mesh.tri.size(); ++t)
+    if (mesh.boundary[t] == Boundary::outer_sphere)
+      for (const int32_t v : mesh.tri[t])
+        off = std::max(off, std::abs(mesh.sphere->height(mesh.point[v])));
+  CHECK(off < 1e-12 * mesh.sphere->radius);
 }
 
 TEST_CASE("flow: what stays on the device between rounds is what a mesh sent anew would be, for fewer bytes",
