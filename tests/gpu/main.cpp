@@ -1,5 +1,6 @@
 // main.cpp — what tests/gpu.sh runs on a machine with a GPU: parity of all stages, and their times.
 //   molmesh_gpu [host] small [N]                     random small cases, every Nth; all stages against the host
+//   molmesh_gpu [host] tiny                          one small case, all stages
 //   molmesh_gpu [host] parity FILE.hier GRID [STAGE] one structure, the same
 //   molmesh_gpu [host] time FILE.hier GRID STAGE REPEATS THREADS
 //                                                    medians, and each kernel's share of the card's peak
@@ -48,9 +49,9 @@ int run(int argc, char** argv) {
   }
   const std::string what = argc > 1 ? argv[1] : "";
   const bool on_file = (what == "parity" && (argc == 4 || argc == 5)) || (what == "time" && argc == 7);
-  if (!on_file && !(what == "small" && argc <= 3))
+  if (!on_file && !(what == "small" && argc <= 3) && !(what == "tiny" && argc == 2))
     fail(Status::usage,
-         "expected [host] and small [N], parity FILE GRID [STAGE] or time FILE GRID STAGE REPEATS THREADS");
+         "expected [host] and small [N], tiny, parity FILE GRID [STAGE] or time FILE GRID STAGE REPEATS THREADS");
   const gpu::Stage last = on_file && argc > 4 ? stage(argv[4]) : gpu::Stage::improve;
   std::printf("%s\n", device.by == gpu::By::device ? cuda::device_name().c_str() : "the host, as a device");
   density::Options o;
@@ -60,7 +61,9 @@ int run(int argc, char** argv) {
     o.spacing = std::stod(argv[3]);
   o.threads = par::default_threads();
   gpu::Parity parity(device, reference);
-  if (what == "small")
+  if (what == "tiny")
+    parity.tiny();
+  else if (what == "small")
     parity.small(argc == 3 ? std::max(1, std::stoi(argv[2])) : 1);
   else if (const Hierarchy h = read(argv[2]); what == "parity")
     parity.slabs(argv[2], h, o, false), parity.structure(argv[2], h, o, last);

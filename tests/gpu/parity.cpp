@@ -1,6 +1,6 @@
 // parity.cpp — each stage by the device and by the host: on random small cases, on a structure, with little memory.
 #include "parity.hpp"
-#include "unit/contour/sample_grid.hpp"
+#include "unit/contour/octree_forms.hpp"
 #include "unit/density/oracle.hpp"
 #include <cstdio>
 #include <random>
@@ -104,8 +104,35 @@ void Parity::random_grids(int step) {
        fault);
 }
 
+void Parity::forms() {
+  const auto compare = [&](const std::string& name, const BlockGrid& grid, const contour::Options& o) {
+    Timed t;
+    const TetMesh host = run_contour(grid, o, reference_, t);
+    tell(name + ", " + std::to_string(host.tet.size()) + " tetrahedra, to the last bit",
+         compare_meshes(run_contour(grid, o, device_, t), host, 0));
+    return host;
+  };
+  const BlockGrid ball = test::ball_grid();
+  for (const auto& [name, options] : test::octree_forms()) {
+    const TetMesh mesh = compare("mesh of a ball with " + name, ball, options);
+    if (!mesh.sphere)
+      continue;
+    Timed t;
+    tell("the same, improved",
+         compare_meshes(run_improve(mesh, ball, device_, t), run_improve(mesh, ball, reference_, t), 1e-6));
+  }
+  compare("mesh of a thin body", test::thin_body_grid(), test::plain_form());
+}
+
+void Parity::tiny() {
+  density::Options o;
+  o.spacing = 1.5;
+  structure("tiny", test::random_chains(1, 3, 6, {}, 5), o, Stage::improve);
+}
+
 void Parity::small(int step) {
   random_grids(step);
+  forms();
   density::Options fine;
   fine.spacing = 0.5;
   Hierarchy lengthy = test::random_chains(3, 60, 8, {0.4, 1}, 3);

@@ -10,6 +10,8 @@ public:
   Parity(const How& device, const How& reference) : device_(device), reference_(reference) {}
   /// Every so many of the cases.
   void small(int step);
+  /// One case, for tools that take a thousand times as long.
+  void tiny();
   /// The stages up to `last`, each from the host's result of the one before.
   void structure(const std::string& name, const Hierarchy& h, const density::Options& o, Stage last);
   /// Of the density, with a third of the memory; not must_fit: unless not one block's slab fits.
@@ -20,6 +22,8 @@ private:
   void tell(const std::string& what, const std::string& fault);
   /// Ambiguous cells, ties, both regions, cut boxes: connectivity and positions to the last bit.
   void random_grids(int step);
+  /// What octrees and boxes there are besides the plain ones.
+  void forms();
   How device_, reference_;
   int failures_ = 0;
 };
