@@ -7,8 +7,15 @@ import subprocess
 import time
 
 
+NO_DEVICE = 6  # what --mode cuda ends with where there is no GPU
+
+
 class ToolError(Exception):
     """A program ended with another status than 0: its name and what it wrote to standard error."""
+
+    def __init__(self, text, status):
+        super().__init__(text)
+        self.status = status
 
 
 class Chain:
@@ -34,7 +41,7 @@ class Chain:
         _, said = done.communicate()
         after, elapsed = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic() - start
         if done.returncode not in good:
-            raise ToolError(f"{program}: status {done.returncode}: {said.strip()}")
+            raise ToolError(f"{program}: status {done.returncode}: {said.strip()}", done.returncode)
         text = json.loads(report.read_text())
         text["processor"] = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         share = 1 - waited / elapsed if threads > 1 or not self.shared else min(1, text["processor"] / elapsed)
