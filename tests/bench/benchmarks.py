@@ -13,6 +13,7 @@ program had. --note: a sentence about the machine for the page. Tables that this
 script. --update: the sections that were measured (--only) take their places in the page that there is, and so do those of the
 .md files; the others stay. Such a section says on which machine it was measured."""
 import argparse
+import functools
 import json
 import os
 import pathlib
@@ -102,7 +103,6 @@ class Page:
         self.threads = 1 if arguments.shared else arguments.threads or os.cpu_count()
         self.chain = Chain(arguments.bin, folder, self.threads, arguments.shared)
         self.text, self.skipped, self.promises = [], [], []
-        self.device = self.find_device()
 
     # --- small things
 
@@ -142,8 +142,10 @@ class Page:
         one = self.repeated(lambda: run(1))
         return one, None if self.threads == 1 else self.repeated(lambda: run(self.threads))
 
-    def find_device(self):
-        """The GPU that --mode cuda runs on, as the programs name it; None where there is none."""
+    @functools.cached_property
+    def device(self):
+        """The GPU that --mode cuda runs on, as the programs name it; None where there is none. Another hierarchy takes the place of the
+        chain's when it is first asked for."""
         self.chain.hierarchy(ROOT / "tests/data/1tii.pdb")
         try:
             return self.chain.density("--spacing", "2", mode="cuda")["counts"]["device"]["name"]

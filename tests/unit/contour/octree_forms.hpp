@@ -9,8 +9,9 @@
 
 namespace molmesh::test {
 
-inline BlockGrid ball_grid() {
-  return cube_grid(6.2, 0.25, [](Vec3d x) { return std::exp(-0.3 * (norm2(x) - 25)); });
+/// Of radius 5 Å, whose surface is nearly plane for the spacing.
+inline BlockGrid ball_grid(double h = 0.25) {
+  return cube_grid(6.2, h, [](Vec3d x) { return std::exp(-0.3 * (norm2(x) - 25)); });
 }
 
 /// The cells of the ball are merged, and both regions are meshed.

@@ -1,7 +1,7 @@
 // sizes_test.cpp — leaves near given places are no larger than asked for, and layers are as thick.
 #include "unit/contour/checked.hpp"
 #include "unit/contour/level_steps.hpp"
-#include "unit/contour/sample_grid.hpp"
+#include "unit/contour/octree_forms.hpp"
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -10,11 +10,6 @@ using namespace molmesh::test;
 using namespace molmesh::contour;
 
 namespace {
-
-/// A large ball, whose surface is nearly plane for the spacing.
-BlockGrid large_ball() {
-  return cube_grid(6.2, 0.2, [](Vec3d x) { return std::exp(-0.3 * (norm2(x) - 25)); });
-}
 
 struct Leaves {
   Lattice lattice;
@@ -39,7 +34,7 @@ struct Leaves {
 } // namespace
 
 TEST_CASE("leaves that meet a ball are no larger than its size, the smallest of several, and the mesh is valid") {
-  const BlockGrid grid = large_ball();
+  const BlockGrid grid = ball_grid(0.2);
   const std::vector<SizeBall> balls = {{{5, 0, 0}, 2, 0.2}, {{0, 0, 0}, 1.5, 0.5}, {{0, 5, 0.5}, 2.5, 0.8}};
   for (const auto meshed : {Options::interior, Options::both}) {
     Options options;
@@ -67,7 +62,7 @@ TEST_CASE("leaves that meet a ball are no larger than its size, the smallest of 
 }
 
 TEST_CASE("a large size lets cells of the surface be larger there, and not elsewhere") {
-  const BlockGrid grid = large_ball();
+  const BlockGrid grid = ball_grid(0.2);
   Options options;
   options.adapt = 0.02;
   const Leaves without(grid, options);
